@@ -1,0 +1,21 @@
+# One set of flags for every target. The one-picture law (docs/conventions.md) rests on them: a per-target flag would
+# let the linker pick an inline function compiled with other arithmetic, so nothing here may differ between targets.
+
+set(PERTEV_ARITHMETIC_FLAGS -ffp-contract=off -fno-math-errno -march=x86-64-v3)
+set(PERTEV_WARNING_FLAGS -Wall -Wextra -Wpedantic -Wshadow -Wdouble-promotion -Wfloat-conversion)
+if(PERTEV_WERROR)
+  list(APPEND PERTEV_WARNING_FLAGS -Werror)
+endif()
+
+add_compile_options(
+  "$<$<COMPILE_LANGUAGE:CXX>:${PERTEV_ARITHMETIC_FLAGS};${PERTEV_WARNING_FLAGS}>"
+  "$<$<COMPILE_LANGUAGE:CUDA>:-fmad=false;-Xcompiler=-ffp-contract=off,-fno-math-errno,-march=x86-64-v3;-Xcompiler=-Wall,-Wextra;--expt-relaxed-constexpr;-Wno-deprecated-gpu-targets>")
+if(PERTEV_WERROR)
+  add_compile_options("$<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings;-Xcompiler=-Werror>")
+endif()
+add_compile_definitions($<$<STREQUAL:${PERTEV_THREADS},STD>:PERTEV_STD_THREADS>)
+
+if(PERTEV_SANITIZE)
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${PERTEV_SANITIZE};-fno-sanitize-recover=all;-fno-omit-frame-pointer;-g>")
+  add_link_options(-fsanitize=${PERTEV_SANITIZE})
+endif()

@@ -1,0 +1,31 @@
+#pragma once
+
+// Runs body(i) for each i in [0, count), in no stated order, on the threads set by set_thread_count. The body sees
+// the processor's default floating-point control register (round to nearest, no flush to zero), whatever the caller
+// has set; the caller's is restored. An exception thrown by the body is rethrown by the call. Backends: oneTBB, or
+// std::thread (PERTEV_THREADS=STD) for ThreadSanitizer, which Debian's TBB is not instrumented for.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace pertev {
+
+/// Number of worker threads for all later calls; 0 means one a hardware thread.
+void set_thread_count(int count);
+int thread_count();
+
+/// Runs body(begin, end) over ranges of at least `grain` indices that together cover [0, count) once.
+void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body);
+
+/// Runs both, perhaps at once, and returns when both are done.
+void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b);
+
+template <class Body>
+void parallel_for(uint64_t count, uint64_t grain, const Body& body) {
+    parallel_for_ranges(count, grain, [&](uint64_t begin, uint64_t end) {
+        for (uint64_t i = begin; i < end; ++i) body(i);
+    });
+}
+
+} // namespace pertev

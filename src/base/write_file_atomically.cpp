@@ -1,0 +1,106 @@
+#include "base/write_file_atomically.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace pertev {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OpenFile {
+public:
+    explicit OpenFile(int fd) : fd_(fd) {}
+    ~OpenFile() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+    int fd() const { return fd_; }
+
+private:
+    int fd_;
+};
+
+void check(bool ok) {
+    if (!ok) throw std::system_error(errno, std::generic_category());
+}
+
+void write_all(int fd, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+        if (n < 0 && errno == EINTR) continue;
+        check(n > 0);
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+}
+
+/// Where the bytes go: the end of a chain of symbolic links. Throws for anything but a regular file or nothing.
+fs::path resolve_target(const fs::path& path) {
+    const fs::path target = fs::is_symlink(fs::symlink_status(path)) ? fs::weakly_canonical(path) : path;
+    const fs::file_status status = fs::status(target);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+        throw Error(ErrorCode::FileWrite,
+                    fmt::format("{}: cannot write: it is not a regular file; name a file to create or replace",
+                                path.string()));
+    }
+    return target;
+}
+
+fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
+
+/// A new file beside the target, under a name of its own: rename() is atomic only within one file system.
+std::string temporary_name(const fs::path& target) {
+    return (folder_of(target) / ("." + target.filename().string() + ".XXXXXX")).string();
+}
+
+void replace(const fs::path& target, std::span<const std::byte> bytes) {
+    std::string temporary = temporary_name(target);
+    const OpenFile file(::mkstemp(temporary.data()));
+    check(file.fd() >= 0);
+    try {
+        write_all(file.fd(), bytes);
+        check(::fchmod(file.fd(), 0644) == 0 && ::fsync(file.fd()) == 0);
+        check(::rename(temporary.c_str(), target.c_str()) == 0);
+    } catch (...) {
+        ::unlink(temporary.c_str());
+        throw;
+    }
+    const OpenFile directory(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY));
+    check(directory.fd() >= 0 && ::fsync(directory.fd()) == 0); // so that the rename itself lasts
+}
+
+[[noreturn]] void rethrow(const fs::path& path, const std::system_error& error) {
+    throw Error(ErrorCode::FileWrite, fmt::format("{}: cannot write: {}", path.string(), error.code().message()));
+}
+
+} // namespace
+
+void write_file_atomically(const fs::path& path, std::span<const std::byte> bytes) {
+    try {
+        replace(resolve_target(path), bytes);
+    } catch (const std::system_error& error) {
+        rethrow(path, error);
+    }
+}
+
+void check_writable(const fs::path& path) {
+    try {
+        std::string temporary = temporary_name(resolve_target(path));
+        const OpenFile file(::mkstemp(temporary.data()));
+        check(file.fd() >= 0);
+        ::unlink(temporary.c_str());
+    } catch (const std::system_error& error) {
+        rethrow(path, error);
+    }
+}
+
+} // namespace pertev

@@ -1,0 +1,26 @@
+#pragma once
+
+// Which files a scene may read: those under its own folder, and under each folder that the user allowed. A scene file
+// from a stranger must not be able to read (and show in a picture) anything else.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pertev {
+
+class FileAccess {
+public:
+    /// `scene_file`: the file named by the user. `allowed`: further folders (--allow-path).
+    FileAccess(const std::filesystem::path& scene_file, std::vector<std::filesystem::path> allowed);
+
+    /// The path of `reference`, as written in `from` (a file of the scene), after symbolic links, `..` and backslashes
+    /// are resolved. Throws Error(BadInput) that names `from` and --allow-path when it leads outside. The file need
+    /// not exist.
+    std::filesystem::path resolve(const std::filesystem::path& from, const std::string& reference) const;
+
+private:
+    std::vector<std::filesystem::path> roots_; // canonical
+};
+
+} // namespace pertev

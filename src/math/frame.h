@@ -1,0 +1,27 @@
+#pragma once
+
+// Right-handed orthonormal frame about a unit normal; +z is the normal in local coordinates.
+//
+// Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017 (branchless, no singular direction).
+
+#include "base/host_device.h"
+#include "math/vec3.h"
+
+namespace pertev {
+
+struct Frame {
+    Vec3 tangent, bitangent, normal;
+
+    HD Vec3 to_local(Vec3 v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
+    HD Vec3 to_world(Vec3 v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+};
+
+/// Frame about the unit vector n; the tangent is some direction across it, a continuous function of n but at n.z = 0.
+HD inline Frame make_frame(Vec3 n) {
+    const float sign = copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z);
+    const float b = n.x * n.y * a;
+    return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}
+
+} // namespace pertev

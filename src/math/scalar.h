@@ -1,0 +1,65 @@
+#pragma once
+
+// Scalar functions with one meaning on both devices: every operation here rounds as IEEE 754 says or does not round
+// at all. Unqualified sqrt, floor or abs on a float may be double (or int) on the host, so the renderer uses these
+// names, inside its namespace. What needs a polynomial is in math/portable_math.h.
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "base/host_device.h"
+
+namespace pertev {
+
+inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr float kTwoPi = 6.28318530717958647692f;
+inline constexpr float kInvPi = 0.31830988618379067154f;
+inline constexpr float kInfinity = __builtin_huge_valf();
+
+template <class T>
+HD constexpr T min(T a, T b) {
+    return b < a ? b : a;
+}
+template <class T>
+HD constexpr T max(T a, T b) {
+    return a < b ? b : a;
+}
+/// `lo` for NaN.
+template <class T>
+HD constexpr T clamp(T x, T lo, T hi) {
+    return x > lo ? (x < hi ? x : hi) : lo;
+}
+
+HD inline uint32_t bits_of(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+HD inline float float_of(uint32_t bits) {
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+HD inline float abs(float x) { return float_of(bits_of(x) & 0x7fffffffu); }
+HD inline float copysign(float magnitude, float sign) {
+    return float_of((bits_of(magnitude) & 0x7fffffffu) | (bits_of(sign) & 0x80000000u));
+}
+HD inline bool is_finite(float x) { return (bits_of(x) & 0x7f800000u) != 0x7f800000u; }
+HD inline float sqrt(float x) { return ::sqrtf(x); }
+/// Square root of max(x, 0).
+HD inline float safe_sqrt(float x) { return ::sqrtf(x > 0 ? x : 0.0f); }
+HD inline float floor(float x) { return ::floorf(x); }
+HD inline float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
+HD inline float square(float x) { return x * x; }
+HD inline float lerp(float a, float b, float t) { return a + t * (b - a); }
+
+/// Float to integer, cut towards zero and clamped to [lo, hi]; `lo` for NaN. lo and hi within +-2^30.
+HD inline int to_int(float x, int lo, int hi) {
+    if (!(x > static_cast<float>(lo))) return lo;
+    if (!(x < static_cast<float>(hi))) return hi;
+    return static_cast<int>(x);
+}
+
+} // namespace pertev

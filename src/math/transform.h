@@ -1,0 +1,46 @@
+#pragma once
+
+// Affine map as a 3x4 matrix, rows first: p' = M p + t. Names read `world_from_local`.
+
+#include "base/host_device.h"
+#include "math/bounds3.h"
+#include "math/vec3.h"
+
+namespace pertev {
+
+struct Transform {
+    Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the linear part
+    Vec3 translation = {0, 0, 0};
+    bool operator==(const Transform&) const = default;
+};
+
+HD inline Vec3 transform_vector(const Transform& m, Vec3 v) {
+    return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)};
+}
+HD inline Vec3 transform_point(const Transform& m, Vec3 p) { return transform_vector(m, p) + m.translation; }
+/// Transpose of the linear part times `n`: with m = local_from_world this carries a normal from local to world.
+HD inline Vec3 transform_transposed(const Transform& m, Vec3 n) {
+    return n.x * m.row0 + n.y * m.row1 + n.z * m.row2;
+}
+HD inline Vec3 column(const Transform& m, int k) {
+    return {component(m.row0, k), component(m.row1, k), component(m.row2, k)};
+}
+HD inline float determinant(const Transform& m) { return dot(m.row0, cross(m.row1, m.row2)); }
+
+/// a after b: p' = a(b(p)). Host only: evaluated in double, rounded once.
+Transform compose(const Transform& a, const Transform& b);
+/// Inverse, evaluated in double. Throws nothing: a singular map gives values that are not finite.
+Transform inverse(const Transform& m);
+/// Product of the largest absolute row sums of the linear part and of its inverse (infinity-norm condition number).
+float condition_number(const Transform& m);
+
+Transform make_translation(Vec3 t);
+Transform make_scale(Vec3 s);
+/// Rotation by a unit quaternion (x, y, z, w).
+Transform make_rotation(float x, float y, float z, float w);
+/// Column-major 4x4 as glTF stores it; the last row is taken as (0, 0, 0, 1).
+Transform transform_from_columns(const float (&m)[16]);
+/// World from camera for an eye that looks along -z with +y up (glTF). `up` is not parallel to target - eye.
+Transform look_at(Vec3 eye, Vec3 target, Vec3 up);
+
+} // namespace pertev

@@ -1,0 +1,25 @@
+#pragma once
+
+// A camera: at its local origin, looking along -z, +y up, +x right.
+
+#include <cstdint>
+#include <string>
+
+#include "math/transform.h"
+
+namespace pertev {
+
+enum class Projection : uint8_t { Perspective, Orthographic };
+
+struct Camera {
+    std::string name;
+    Projection projection = Projection::Perspective;
+    Transform world_from_camera; // rigid; readers take scale out
+    float fov_y = 0.785398163f;  // Perspective: full vertical angle, radians, (0, pi)
+    float ortho_height = 2;      // Orthographic: full height of the view, metres
+    float aspect = 0;            // width / height the file asks for; 0 = none
+    float aperture_radius = 0;   // thin lens, metres; 0 = pinhole
+    float focus_distance = 1;    // metres along -z to the plane in focus
+};
+
+} // namespace pertev

@@ -1,0 +1,31 @@
+#pragma once
+
+// A triangle mesh: geometry only, in its local space. Material and place are the instance's.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "math/bounds3.h"
+#include "math/vec2.h"
+#include "math/vec3.h"
+#include "math/vec4.h"
+
+namespace pertev {
+
+struct Mesh {
+    std::string name;
+    std::vector<Vec3> positions;   // [vertices], metres
+    std::vector<Vec3> normals;     // [vertices] unit, or empty: the geometric normal is used
+    std::vector<Vec4> tangents;    // [vertices] unit xyz, w = +-1 handedness of the bitangent; or empty
+    std::vector<Vec2> uv[2];       // [vertices] each, or empty
+    std::vector<Vec4> colors;      // [vertices] linear RGBA in [0, 1], or empty
+    std::vector<uint32_t> indices; // [3 * triangles], counter-clockwise seen from the front
+
+    uint32_t triangle_count() const { return static_cast<uint32_t>(indices.size() / 3); }
+};
+
+/// Box of all positions that a triangle uses.
+Bounds3 bounds_of(const Mesh& mesh);
+
+} // namespace pertev

@@ -1,0 +1,40 @@
+#pragma once
+
+// A scene as a reader leaves it: plain data, nothing derived. Ids are positions in these vectors; the order of
+// `instances` is the scene order of the one-picture law (docs/conventions.md).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "math/transform.h"
+#include "scene/camera.h"
+#include "scene/light.h"
+#include "scene/material.h"
+#include "scene/mesh.h"
+#include "scene/texture.h"
+
+namespace pertev {
+
+struct Instance {
+    std::string name;
+    uint32_t mesh = 0;     // index into Scene::meshes
+    uint32_t material = 0; // index into Scene::materials
+    Transform world_from_local;
+};
+
+struct Scene {
+    std::vector<Mesh> meshes;
+    std::vector<Material> materials;
+    std::vector<TextureImage> images;
+    std::vector<Instance> instances;
+    std::vector<Light> lights;
+    std::optional<Environment> environment;
+    std::vector<Camera> cameras;
+};
+
+/// World-space box of all instances.
+Bounds3 bounds_of(const Scene& scene);
+
+} // namespace pertev
