@@ -10,6 +10,7 @@ if(NOT PERTEV_CUDA STREQUAL "OFF")
     endif()
     enable_language(CUDA)
     set(PERTEV_HAS_CUDA ON)
+    add_compile_definitions(PERTEV_HAS_CUDA)
     # CMake 3.25 knows no C++20 flag for nvcc and would drop the standard without a word.
     if("${CMAKE_CUDA20_STANDARD_COMPILE_OPTION}" STREQUAL "")
       set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")

@@ -1,0 +1,1 @@
+#include "formats/read_scene.h"

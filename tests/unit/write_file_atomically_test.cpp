@@ -1,0 +1,66 @@
+#include <doctest/doctest.h>
+
+#include <sys/stat.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "base/error.h"
+#include "base/write_file_atomically.h"
+#include "tests/support/options.h"
+
+namespace fs = std::filesystem;
+using namespace pertev;
+
+namespace {
+
+std::string read_text(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+    write_file_atomically(path, std::as_bytes(std::span(text)));
+}
+
+std::size_t files_in(const fs::path& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+}
+
+} // namespace
+
+TEST_CASE("writing replaces the whole file and leaves nothing else behind") {
+    const fs::path folder = test::scratch_folder();
+    write_text(folder / "a", "old, and longer");
+    write_text(folder / "a", "new");
+    CHECK(read_text(folder / "a") == "new");
+    CHECK(files_in(folder) == 1);
+}
+
+TEST_CASE("writing follows a symbolic link") {
+    const fs::path folder = test::scratch_folder();
+    write_text(folder / "target", "old");
+    fs::create_symlink("target", folder / "link");
+    write_text(folder / "link", "new");
+    CHECK(fs::is_symlink(folder / "link"));
+    CHECK(read_text(folder / "target") == "new");
+}
+
+TEST_CASE("writing to a missing folder, a folder, a FIFO or a full disk is a FileWrite error that names the path") {
+    const fs::path folder = test::scratch_folder();
+    fs::create_directory(folder / "d");
+    REQUIRE(::mkfifo((folder / "fifo").c_str(), 0600) == 0);
+    for (const fs::path& path : {folder / "missing" / "a", folder / "d", folder / "fifo", fs::path("/dev/full")}) {
+        CAPTURE(path.string());
+        try {
+            write_text(path, "x");
+            FAIL("no error");
+        } catch (const Error& error) {
+            CHECK(error.code() == ErrorCode::FileWrite);
+            CHECK(std::string(error.what()).find(path.string()) != std::string::npos);
+        }
+        CHECK_THROWS_AS(check_writable(path), Error);
+    }
+    CHECK(files_in(folder) == 2);
+}
