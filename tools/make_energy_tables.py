@@ -206,7 +206,7 @@ def main():
 namespace pertev::energy_table {{
 
 inline constexpr int kMuNodes = {MU_NODES}, kRoughnessNodes = {R_NODES}, kIorNodes = {ETA_NODES}, kAverageNodes = {AVERAGE_NODES};
-inline constexpr float kAlphaMin = {ALPHA_MIN:g}f, kIorMin = {ETA_MIN:g}f, kIorMax = {ETA_MAX:g}f;
+inline constexpr float kAlphaMin = {ALPHA_MIN:g}f, kIorMin = {ETA_MIN:g}f, kIorMax = {ETA_MAX:.1f}f;
 
 """
     body = [

@@ -28,8 +28,8 @@ struct Bsdf {
     float alpha = 0;    // all but Diffuse: GGX width
     float metallic = 0; // MetallicRoughness
     float ior = 1;      // Dielectric: index of refraction; MetallicRoughness: reflectance at normal incidence
-    Rgb color;          // Diffuse: albedo; Conductor: eta; Dielectric: tint; MetallicRoughness: base colour
-    Rgb k;              // Conductor
+    Rgb color = {};     // Diffuse: albedo; Conductor: eta; Dielectric: tint; MetallicRoughness: base colour
+    Rgb k = {};         // Conductor
 
     HD DiffuseBsdf diffuse() const { return {color}; }
     HD ConductorBsdf conductor() const { return {color, k, alpha}; }
@@ -38,11 +38,16 @@ struct Bsdf {
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi) const {
         switch (kind) {
-        case BsdfKind::Absorber: return {};
-        case BsdfKind::Diffuse: return diffuse().evaluate(wo, wi);
-        case BsdfKind::Conductor: return conductor().evaluate(wo, wi);
-        case BsdfKind::Dielectric: return dielectric().evaluate(wo, wi);
-        case BsdfKind::MetallicRoughness: return metallic_roughness().evaluate(wo, wi);
+        case BsdfKind::Absorber:
+            return {};
+        case BsdfKind::Diffuse:
+            return diffuse().evaluate(wo, wi);
+        case BsdfKind::Conductor:
+            return conductor().evaluate(wo, wi);
+        case BsdfKind::Dielectric:
+            return dielectric().evaluate(wo, wi);
+        case BsdfKind::MetallicRoughness:
+            return metallic_roughness().evaluate(wo, wi);
         }
         return {};
     }
@@ -51,11 +56,16 @@ struct Bsdf {
 
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         switch (kind) {
-        case BsdfKind::Absorber: return {};
-        case BsdfKind::Diffuse: return diffuse().sample(wo, u_lobe, u);
-        case BsdfKind::Conductor: return conductor().sample(wo, u_lobe, u);
-        case BsdfKind::Dielectric: return dielectric().sample(wo, u_lobe, u);
-        case BsdfKind::MetallicRoughness: return metallic_roughness().sample(wo, u_lobe, u);
+        case BsdfKind::Absorber:
+            return {};
+        case BsdfKind::Diffuse:
+            return diffuse().sample(wo, u_lobe, u);
+        case BsdfKind::Conductor:
+            return conductor().sample(wo, u_lobe, u);
+        case BsdfKind::Dielectric:
+            return dielectric().sample(wo, u_lobe, u);
+        case BsdfKind::MetallicRoughness:
+            return metallic_roughness().sample(wo, u_lobe, u);
         }
         return {};
     }
@@ -63,10 +73,14 @@ struct Bsdf {
     /// eval() is black for every pair of directions: light sampling is of no use here.
     HD bool has_delta_only() const {
         switch (kind) {
-        case BsdfKind::Absorber: return true;
-        case BsdfKind::Diffuse: return false;
-        case BsdfKind::Conductor: return conductor().is_smooth();
-        case BsdfKind::Dielectric: return dielectric().is_smooth();
+        case BsdfKind::Absorber:
+            return true;
+        case BsdfKind::Diffuse:
+            return false;
+        case BsdfKind::Conductor:
+            return conductor().is_smooth();
+        case BsdfKind::Dielectric:
+            return dielectric().is_smooth();
         case BsdfKind::MetallicRoughness:
             return metallic_roughness().is_smooth() && !metallic_roughness().has_base();
         }

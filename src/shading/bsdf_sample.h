@@ -15,16 +15,16 @@
 namespace pertev {
 
 struct BsdfSample {
-    Vec3 wi;
-    Rgb weight;           // eval / pdf, |cos| included; of a delta lobe the factor of throughput, probability divided out
-    float pdf = 0;        // 1/sr; of a delta lobe its probability (no use for MIS); 0: nothing sampled, all absorbed
+    Vec3 wi = {};
+    Rgb weight = {}; // eval / pdf, |cos| included; of a delta lobe the factor of throughput, probability divided out
+    float pdf = 0;   // 1/sr; of a delta lobe its probability (no use for MIS); 0: nothing sampled, all absorbed
     bool is_delta = false;
     bool is_transmission = false; // wi and wo on different sides
 };
 
 /// eval() and pdf() of one pair of directions, which share most of their work.
 struct BsdfValue {
-    Rgb f;         // f(wo, wi) |cos(wi)|, 1/sr; without delta lobes
+    Rgb f = {};    // f(wo, wi) |cos(wi)|, 1/sr; without delta lobes
     float pdf = 0; // density of sample() at wi, 1/sr; without delta lobes
 };
 

@@ -18,8 +18,8 @@ HD inline Vec3 reflect(Vec3 wo, Vec3 m) { return 2.0f * dot(wo, m) * m - wo; }
 
 /// The single-scattering lobe of reflection, without Fresnel's factor: what all GGX reflectors share.
 struct GgxReflection {
-    float f = 0;   // D G2 / (4 |cos(wo)|), 1/sr
-    float pdf = 0; // of reflecting wo about a visible normal
+    float f = 0;     // D G2 / (4 |cos(wo)|), 1/sr
+    float pdf = 0;   // of reflecting wo about a visible normal
     float cos_h = 0; // wo . h
 };
 /// wo.z > 0, wi.z > 0.
@@ -53,7 +53,8 @@ struct ConductorBsdf {
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         if (wo.z == 0) return {};
         if (is_smooth())
-            return {.wi = {-wo.x, -wo.y, wo.z}, .weight = fresnel_conductor(abs(wo.z), eta, k), .pdf = 1, .is_delta = true};
+            return {
+                .wi = {-wo.x, -wo.y, wo.z}, .weight = fresnel_conductor(abs(wo.z), eta, k), .pdf = 1, .is_delta = true};
         Vec3 wi;
         if (u_lobe < metal_lost(abs(wo.z), alpha)) {
             wi = sample_cosine_beside(wo, u);

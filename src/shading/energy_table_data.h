@@ -11,7 +11,7 @@
 namespace pertev::energy_table {
 
 inline constexpr int kMuNodes = 32, kRoughnessNodes = 24, kIorNodes = 12, kAverageNodes = 64;
-inline constexpr float kAlphaMin = 0.001f, kIorMin = 1.05f, kIorMax = 3f;
+inline constexpr float kAlphaMin = 0.001f, kIorMin = 1.05f, kIorMax = 3.0f;
 
 /// 65535 (1 - E), F = 1: [roughness][mu]
 HD inline uint16_t metal_lost_at(int i) {

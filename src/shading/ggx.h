@@ -33,10 +33,11 @@ HD inline float ggx_slope_length(float z, float alpha) { return sqrt(z * z + alp
 /// Normal m with density G1(wo) max(wo . m, 0) D(m) / wo.z. wo.z >= 0; u in [0, 1]^2.
 HD inline Vec3 sample_ggx_visible_normal(Vec3 wo, float alpha, Vec2 u) {
     const Vec3 w = normalize(Vec3{alpha * wo.x, alpha * wo.y, wo.z});
-    const float drop = u.y * (1.0f + w.z);            // 1 - z of a point on the cap z > -w.z
+    const float drop = u.y * (1.0f + w.z); // 1 - z of a point on the cap z > -w.z
     const float s = safe_sqrt(drop * (2.0f - drop));
-    const SinCos phi = sin_cos_2pi(u.x);
-    const Vec3 h = {s * phi.cos + w.x, s * phi.sin + w.y, (1.0f - u.y) * (1.0f + w.z)};
+    float sin_phi, cos_phi;
+    sin_cos_2pi(u.x, sin_phi, cos_phi);
+    const Vec3 h = {s * cos_phi + w.x, s * sin_phi + w.y, (1.0f - u.y) * (1.0f + w.z)};
     const Vec3 m = {alpha * h.x, alpha * h.y, h.z};
     const float length2 = length_squared(m);
     if (!(length2 > 0)) return {0, 0, 1}; // the cap's point opposite to wo: probability 0
