@@ -70,10 +70,13 @@ missing_packages() {
     done
 }
 
+# without_candidate PACKAGE...: prints those that apt could not install.
 without_candidate() {
-    local name
+    local name known
+    known=$(apt-cache policy "$@" 2>/dev/null |
+        awk '/^[^ ]/ { name = $1; sub(/:$/, "", name) } $1 == "Candidate:" && $2 != "(none)" { print name }')
     for name in "$@"; do
-        apt-cache policy "$name" 2>/dev/null | grep -q 'Candidate: [^(]' || echo "$name"
+        grep -qxF "$name" <<<"$known" || echo "$name"
     done
 }
 
@@ -121,7 +124,7 @@ check_tools() {
     local version
     version=$(cmake --version | head -n 1 | grep -oE '[0-9]+\.[0-9.]+')
     at_least "$version" 3.25 || fail "CMake $version is too old: 3.25 is needed ($oldest_systems has it)"
-    if "${CXX:-c++}" --version | head -n 1 | grep -qiv clang; then
+    if [[ $("${CXX:-c++}" --version) != *clang* ]]; then
         version=$("${CXX:-c++}" -dumpfullversion)
         at_least "$version" 12 || fail "g++ $version is too old: 12 is needed ($oldest_systems has it)"
     fi
