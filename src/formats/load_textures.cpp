@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
+constexpr std::size_t kMissingNamed = 20;
+
 /// 4 linear channels, as TextureImage wants them.
 Image to_rgba(const Image& image) {
     if (image.channels == 4) return image;
@@ -43,7 +45,7 @@ int32_t TextureLoader::add_file(const fs::path& from, const std::string& referen
     if (fs::exists(path, ec)) {
         index = static_cast<int32_t>(sources_.size());
         sources_.push_back({reference, path, {}});
-    } else {
+    } else if (missing_++ < kMissingNamed) {
         messages_.warn(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(), reference));
     }
     by_path_.emplace(path, index);
@@ -56,6 +58,9 @@ int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> by
 }
 
 void TextureLoader::load_into(Scene& scene) {
+    if (missing_ > kMissingNamed) {
+        messages_.warn(fmt::format("{} further textures are not there", missing_ - kMissingNamed));
+    }
     std::vector<TextureImage> decoded(sources_.size());
     std::vector<std::string> faults(sources_.size());
     std::vector<Messages> said(sources_.size());
