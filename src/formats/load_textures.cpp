@@ -9,6 +9,8 @@
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
+#include "image/image_format.h"
+#include "image/srgb.h"
 
 namespace fs = std::filesystem;
 
@@ -32,6 +34,54 @@ Image to_rgba(const Image& image) {
         to[3] = image.channels == 2 ? from[1] : 1.0f;
     }
     return rgba;
+}
+
+/// What an image is read as: values as stored, or colours that are still sRGB-encoded.
+struct Uses {
+    bool as_srgb = false, as_data = false;
+};
+
+std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
+    std::vector<Uses> uses(images);
+    for (const Material& material : scene.materials) {
+        for (const TextureRef* ref :
+             {&material.base_color_texture, &material.emission_texture, &material.metallic_texture,
+              &material.roughness_texture, &material.normal_texture, &material.alpha_texture}) {
+            if (!ref->has_image()) continue;
+            Uses& use = uses.at(static_cast<std::size_t>(ref->image));
+            (ref->is_srgb ? use.as_srgb : use.as_data) = true;
+        }
+    }
+    return uses;
+}
+
+/// A picture of 16 bits a channel: TextureImage has it in float, decoded to linear; one that is read both ways is kept
+/// as stored, in 8 bits.
+void put_png16(const Image& image, Uses use, TextureImage& to) {
+    Image rgba = to_rgba(image);
+    const std::size_t count = rgba.pixels.size();
+    if (use.as_srgb && use.as_data) {
+        to.rgba8 = {.width = rgba.width, .height = rgba.height, .pixels = std::vector<uint8_t>(count)};
+        for (std::size_t i = 0; i < count; ++i) to.rgba8.pixels[i] = to_byte(rgba.pixels[i]);
+        return;
+    }
+    if (use.as_srgb) {
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i % 4 != 3) rgba.pixels[i] = srgb_decode(rgba.pixels[i]);
+        }
+    }
+    to.rgba_float = std::move(rgba);
+}
+
+void decode(std::span<const std::byte> bytes, const std::string& name, Uses use, TextureImage& to, Messages& said) {
+    auto image = decode_image(bytes, name, &said);
+    if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
+        to.rgba8 = std::move(*rgba8);
+    } else if (recognise_image(bytes) == ImageFormat::Png) {
+        put_png16(std::get<Image>(image), use, to);
+    } else {
+        to.rgba_float = to_rgba(std::get<Image>(image));
+    }
 }
 
 } // namespace
@@ -62,20 +112,17 @@ void TextureLoader::load_into(Scene& scene) {
         messages_.warn(fmt::format("{} further textures are not there", missing_ - kMissingNamed));
     }
     std::vector<TextureImage> decoded(sources_.size());
+    const std::vector<Uses> uses = uses_of(scene, sources_.size());
     std::vector<std::string> faults(sources_.size());
     std::vector<Messages> said(sources_.size());
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
         const Source& source = sources_[i];
         decoded[i].name = source.name;
         try {
-            std::vector<std::byte> file;
-            if (!source.path.empty()) file = read_file(source.path);
-            auto image = decode_image(source.path.empty() ? source.bytes : std::span<const std::byte>(file),
-                                      source.path.empty() ? source.name : source.path.string(), &said[i]);
-            if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
-                decoded[i].rgba8 = std::move(*rgba8);
+            if (source.path.empty()) {
+                decode(source.bytes, source.name, uses[i], decoded[i], said[i]);
             } else {
-                decoded[i].rgba_float = to_rgba(std::get<Image>(image));
+                decode(read_file(source.path), source.path.string(), uses[i], decoded[i], said[i]);
             }
         } catch (const Error& error) {
             faults[i] = error.what();

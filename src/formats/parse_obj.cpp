@@ -11,9 +11,9 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
-#include "formats/decode_srgb.h"
 #include "formats/parse_number.h"
 #include "formats/triangulate_polygon.h"
+#include "image/srgb.h"
 
 namespace pertev {
 namespace {
@@ -215,7 +215,7 @@ private:
         const Vec4 white = {1, 1, 1, 1};
         if (found == 3) { // one more alone is a weight for rational curves
             data_.colors.resize(data_.positions.size() - 1, white);
-            data_.colors.push_back({decode_srgb(rgb[0]), decode_srgb(rgb[1]), decode_srgb(rgb[2]), 1});
+            data_.colors.push_back({srgb_decode(rgb[0]), srgb_decode(rgb[1]), srgb_decode(rgb[2]), 1});
         } else if (!data_.colors.empty()) {
             data_.colors.push_back(white);
         }

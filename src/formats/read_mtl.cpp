@@ -8,6 +8,7 @@
 #include <tiny_obj_loader.h>
 
 #include "base/read_file.h"
+#include "math/vec3.h"
 
 namespace fs = std::filesystem;
 
@@ -201,14 +202,23 @@ private:
     Messages& messages_;
 };
 
+std::size_t pixel_count(const TextureImage& image) {
+    return max(image.rgba8.pixels.size(), image.rgba_float.pixels.size()) / 4;
+}
+
+/// In [0, 1]; of 8-bit images as stored.
+float value(const TextureImage& image, std::size_t pixel, int channel) {
+    const std::size_t at = 4 * pixel + static_cast<std::size_t>(channel);
+    return image.rgba8.pixels.empty() ? image.rgba_float.pixels[at] : static_cast<float>(image.rgba8.pixels[at]) / 255;
+}
+
 /// A tangent-space normal map is bluish, and its texels are unit vectors; a height map is grey.
 bool looks_like_normals(const TextureImage& image) {
-    const std::vector<uint8_t>& p = image.rgba8.pixels;
     std::size_t good = 0, seen = 0;
-    for (std::size_t i = 0; i + 3 < p.size(); i += 4 * 7, ++seen) {
-        const int x = 2 * p[i] - 255, y = 2 * p[i + 1] - 255, z = 2 * p[i + 2] - 255;
-        const int square = x * x + y * y + z * z, unit = 255 * 255;
-        good += z > 0 && square > unit * 7 / 10 && square < unit * 13 / 10 && p[i + 2] > p[i] + 8;
+    for (std::size_t i = 0; i < pixel_count(image); i += 7, ++seen) {
+        const float r = value(image, i, 0), b = value(image, i, 2);
+        const float square = length_squared(Vec3{2 * r - 1, 2 * value(image, i, 1) - 1, 2 * b - 1});
+        good += b > 0.5f && b > r + 0.03f && square > 0.7f && square < 1.3f;
     }
     return seen > 0 && good > seen * 3 / 4;
 }
@@ -219,13 +229,13 @@ struct AlphaStatistics {
 };
 
 AlphaStatistics look_at_channel(const TextureImage& image, int channel) {
-    const std::vector<uint8_t>& p = image.rgba8.pixels;
     std::size_t between = 0, below = 0;
-    for (std::size_t i = static_cast<std::size_t>(channel); i < p.size(); i += 4) {
-        between += p[i] >= 32 && p[i] < 224;
-        below += p[i] < 255;
+    for (std::size_t i = 0; i < pixel_count(image); ++i) {
+        const float alpha = value(image, i, channel);
+        between += alpha >= 0.125f && alpha < 0.875f;
+        below += alpha < 1;
     }
-    return {below > 0, between * 4 < p.size() / 4};
+    return {below > 0, between * 4 < pixel_count(image)};
 }
 
 } // namespace

@@ -14,10 +14,10 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/read_file.h"
-#include "formats/decode_srgb.h"
 #include "formats/parse_number.h"
 #include "formats/ply_header.h"
 #include "formats/triangulate_polygon.h"
+#include "image/srgb.h"
 
 namespace fs = std::filesystem;
 
@@ -200,7 +200,7 @@ float colour(double value, PlyType type, bool is_alpha) {
     if (type == PlyType::Float32 || type == PlyType::Float64) return static_cast<float>(value);
     const double full = type == PlyType::UInt16 ? 65535.0 : 255.0;
     const float encoded = static_cast<float>(value / full);
-    return is_alpha ? encoded : decode_srgb(encoded);
+    return is_alpha ? encoded : srgb_decode(encoded);
 }
 
 class Reader {

@@ -69,22 +69,17 @@ private:
     }
 
     void drop_empty_meshes() {
-        std::vector<uint32_t> renumbered(scene_.meshes.size());
+        constexpr uint32_t dropped = 0xffffffffu;
+        std::vector<uint32_t> renumbered(scene_.meshes.size(), dropped);
         uint32_t kept = 0;
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
-            renumbered[i] = kept;
             if (scene_.meshes[i].indices.empty()) continue;
             if (kept != i) scene_.meshes[kept] = std::move(scene_.meshes[i]);
-            ++kept;
+            renumbered[i] = kept++;
         }
-        std::erase_if(scene_.instances,
-                      [&](const Instance& instance) { return is_dropped(renumbered, instance.mesh, kept); });
-        for (Instance& instance : scene_.instances) instance.mesh = renumbered[instance.mesh];
         scene_.meshes.resize(kept);
-    }
-
-    static bool is_dropped(const std::vector<uint32_t>& renumbered, uint32_t mesh, uint32_t kept) {
-        return renumbered[mesh] == (mesh + 1 < renumbered.size() ? renumbered[mesh + 1] : kept);
+        std::erase_if(scene_.instances, [&](const Instance& i) { return renumbered[i.mesh] == dropped; });
+        for (Instance& instance : scene_.instances) instance.mesh = renumbered[instance.mesh];
     }
 
     void transform(const Transform& m, const std::string& of) const {
