@@ -14,7 +14,7 @@ namespace pertev {
 
 struct ReadOptions {
     std::vector<std::filesystem::path> allowed_paths; // --allow-path
-    bool geometry_only = false; // skip textures and materials: every surface grey
+    bool geometry_only = false;                       // skip textures and materials: every surface grey
 };
 
 /// Throws Error(BadInput) that names the file, the place in it and what would be right. What was left out or repaired
