@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/host_device.h"
 #include "image/image.h"
 
 namespace pertev {
@@ -34,7 +35,7 @@ struct TextureRef {
     // uv' = (m00 u + m01 v + m02, m10 u + m11 v + m12), KHR_texture_transform as one matrix
     float m00 = 1, m01 = 0, m02 = 0, m10 = 0, m11 = 1, m12 = 0;
 
-    bool has_image() const { return image != kNoImage; }
+    HD bool has_image() const { return image != kNoImage; }
 };
 
 } // namespace pertev
