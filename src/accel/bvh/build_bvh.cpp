@@ -9,7 +9,7 @@ constexpr uint64_t kGrain = 1 << 14;
 
 } // namespace
 
-Bvh build_bvh(std::vector<BvhTriangle> triangles, const BvhBuildSettings& settings) {
+BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     std::vector<BuildReference> references(triangles.size());
     parallel_for(triangles.size(), kGrain, [&](uint64_t i) {
         const BvhTriangle& t = triangles[i];
@@ -17,8 +17,10 @@ Bvh build_bvh(std::vector<BvhTriangle> triangles, const BvhBuildSettings& settin
         const Vec3 zero;
         references[i] = {min(min(t.a, t.b), t.c) + zero, static_cast<uint32_t>(i), max(max(t.a, t.b), t.c) + zero};
     });
-    BuiltTree tree = build_tree(std::move(references), settings);
+    return build_tree(std::move(references), settings);
+}
 
+Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles) {
     Bvh bvh{.nodes = std::move(tree.nodes),
             .triangles = std::vector<BvhTriangle>(triangles.size()),
             .root = tree.root,
@@ -31,6 +33,10 @@ Bvh build_bvh(std::vector<BvhTriangle> triangles, const BvhBuildSettings& settin
         bvh.triangles[i] = t;
     });
     return bvh;
+}
+
+Bvh build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
+    return make_bvh(build_triangle_tree(triangles, settings), triangles);
 }
 
 } // namespace pertev

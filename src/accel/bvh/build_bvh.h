@@ -9,8 +9,13 @@
 
 namespace pertev {
 
-/// The tree over `triangles`, which it reorders; sets and clears kLastInLeaf in their flags. Vertices are finite,
+/// The tree over `triangles`, reordered, kLastInLeaf set and cleared in their flags. Vertices are finite,
 /// |coordinate| <= kMaxCoordinate. The same for any number of threads.
-Bvh build_bvh(std::vector<BvhTriangle> triangles, const BvhBuildSettings& settings = {});
+Bvh build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+
+/// The two halves of build_bvh, which the cache steps between.
+BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings);
+/// tree.order is a permutation of the triangles' positions.
+Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles);
 
 } // namespace pertev
