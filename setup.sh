@@ -1,0 +1,331 @@
+#!/usr/bin/env bash
+# Sets up Pertev on Debian 12, Ubuntu 24.04 or newer: installs what is missing, configures and builds into ./build, and
+# says what was found and what was left out. Run it again at any time; it does only what is still to do.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+usage() {
+    cat <<'END'
+usage: ./setup.sh [--cpu | --cuda] [--tests] [--no-apt] [--help]
+
+  --cpu     build without CUDA
+  --cuda    build with CUDA; where no nvcc is found, fetch one from PyPI into build/cuda (about 300 MB)
+  --tests   build the tests too and run them; the exit status is theirs
+  --no-apt  install nothing; say what is missing
+
+Without --cpu or --cuda: CUDA is on where nvcc is found, and nvcc is fetched where a GPU's driver is.
+END
+}
+
+readonly oldest_systems="Debian 12 or Ubuntu 24.04"
+readonly build=build
+cuda=auto tests=false apt=true
+for arg in "$@"; do
+    case $arg in
+        --cpu) [[ $cuda == auto ]] || { echo "setup.sh: --cpu and --cuda exclude each other" >&2; exit 2; }; cuda=off ;;
+        --cuda) [[ $cuda == auto ]] || { echo "setup.sh: --cpu and --cuda exclude each other" >&2; exit 2; }; cuda=on ;;
+        --tests) tests=true ;;
+        --no-apt) apt=false ;;
+        -h | --help) usage; exit 0 ;;
+        *) echo "setup.sh: unknown flag '$arg'" >&2; usage >&2; exit 2 ;;
+    esac
+done
+
+step() { printf '== %s\n' "$*"; }
+fail() { printf 'setup.sh: %s\n' "$*" >&2; exit 1; }
+
+# at_least 3.25.1 3.25: is the first version not older than the second?
+at_least() { [[ $(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1) == "$2" ]]; }
+
+# run_quietly LOG COMMAND...: output goes to LOG; on failure its end is shown.
+run_quietly() {
+    local log=$1
+    shift
+    if ! "$@" >"$log" 2>&1; then
+        tail -n 60 "$log" >&2
+        return 1
+    fi
+}
+
+# ---- Packages ---------------------------------------------------------------------------------------------------
+
+# Package, or package=command where any copy of that command will do.
+packages=("cmake=cmake" "ninja-build=ninja" "g++=c++" "ccache=ccache" "pkg-config=pkg-config" libtbb-dev
+    libopenexr-dev libimath-dev libpng-dev libjpeg-dev libsimdjson-dev libmeshoptimizer-dev libtinyobjloader-dev
+    libcli11-dev libfmt-dev libxxhash-dev)
+installed_something=false
+
+# missing_packages PACKAGE[=COMMAND]...: prints those that are not there.
+missing_packages() {
+    local entry names=() installed=""
+    for entry in "$@"; do names+=("${entry%%=*}"); done
+    if command -v dpkg-query >/dev/null; then
+        # shellcheck disable=SC2016 # dpkg-query expands it
+        installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${names[@]}" 2>/dev/null || true)
+    fi
+    for entry in "$@"; do
+        grep -qxF "${entry%%=*} installed" <<<"$installed" && continue
+        [[ $entry == *=* ]] && command -v "${entry#*=}" >/dev/null && continue
+        echo "${entry%%=*}"
+    done
+}
+
+without_candidate() {
+    local name
+    for name in "$@"; do
+        apt-cache policy "$name" 2>/dev/null | grep -q 'Candidate: [^(]' || echo "$name"
+    done
+}
+
+install_packages() {
+    local missing unknown as_root=()
+    mapfile -t missing < <(missing_packages "$@")
+    ((${#missing[@]})) || return 0
+    if ! $apt || ! command -v apt-get >/dev/null; then
+        echo "Not installed, by their Debian names (nothing is installed $($apt && echo 'without apt-get' || echo \
+            'with --no-apt')): ${missing[*]}"
+        return 0
+    fi
+    if ((EUID != 0)); then
+        command -v sudo >/dev/null || fail "neither root nor sudo, so these cannot be installed. As root, run:
+  apt-get install --no-install-recommends ${missing[*]}"
+        as_root=(sudo)
+    fi
+    as_root+=(env DEBIAN_FRONTEND=noninteractive)
+
+    step "Installing ${missing[*]}"
+    local log
+    log=$(mktemp)
+    mapfile -t unknown < <(without_candidate "${missing[@]}")
+    local install=("${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}")
+    if ((${#unknown[@]})); then
+        run_quietly "$log" "${as_root[@]}" apt-get update -q || fail "apt-get update failed"
+        mapfile -t unknown < <(without_candidate "${missing[@]}")
+        ((${#unknown[@]} == 0)) || fail "apt knows no package ${unknown[*]}. Pertev needs $oldest_systems or newer (on
+Ubuntu with the component 'universe'); elsewhere install these libraries yourself and pass --no-apt."
+        run_quietly "$log" "${install[@]}" || fail "apt-get install failed"
+    elif ! "${install[@]}" >"$log" 2>&1; then # the package lists may be out of date
+        run_quietly "$log" "${as_root[@]}" apt-get update -q || fail "apt-get update failed"
+        run_quietly "$log" "${install[@]}" || fail "apt-get install failed"
+    fi
+    rm -f "$log"
+    installed_something=true
+}
+
+check_tools() {
+    [[ $(uname -m) == x86_64 ]] || fail "this is $(uname -m); Pertev is built for x86-64 with AVX2 and FMA"
+    local tool
+    for tool in cmake ninja "${CXX:-c++}"; do
+        command -v "$tool" >/dev/null || fail "$tool is not installed"
+    done
+    local version
+    version=$(cmake --version | head -n 1 | grep -oE '[0-9]+\.[0-9.]+')
+    at_least "$version" 3.25 || fail "CMake $version is too old: 3.25 is needed ($oldest_systems has it)"
+    if "${CXX:-c++}" --version | head -n 1 | grep -qiv clang; then
+        version=$("${CXX:-c++}" -dumpfullversion)
+        at_least "$version" 12 || fail "g++ $version is too old: 12 is needed ($oldest_systems has it)"
+    fi
+    if ! grep -qw avx2 /proc/cpuinfo || ! grep -qw fma /proc/cpuinfo; then
+        echo "Note: this processor has no AVX2 and FMA. Pertev will be built, but cannot run here."
+    fi
+}
+
+# ---- CUDA -------------------------------------------------------------------------------------------------------
+
+nvcc="" nvcc_release="" cuda_architectures=90-real cuda_note=""
+driver="" gpu=""
+
+find_driver() {
+    if command -v nvidia-smi >/dev/null; then
+        driver=$(nvidia-smi --query-gpu=driver_version --format=csv,noheader 2>/dev/null |
+            grep -xE '[0-9]+(\.[0-9]+)+' | head -n 1 || true)
+        gpu=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null |
+            grep -xE '[0-9]+\.[0-9]+' | sort -uV || true)
+    fi
+    if [[ -z $driver && -r /proc/driver/nvidia/version ]]; then
+        driver=$(grep -oE 'Module.* [0-9]+\.[0-9]+(\.[0-9]+)*' /proc/driver/nvidia/version | head -n 1 |
+            grep -oE '[0-9]+\.[0-9.]+$' || true)
+    fi
+    # One architecture: this machine's GPU (all of them where they differ), or an H100 or H200.
+    if [[ -n $gpu ]]; then
+        cuda_architectures=$(tr -d . <<<"$gpu" | sed 's/$/-real/' | paste -sd ';')
+    fi
+}
+
+# The driver runs CUDA 13 from 580 on; without a driver any release will do.
+driver_runs() { [[ -z $driver ]] || at_least "$driver" 580 || ! at_least "$1" 13; }
+
+# The first usable nvcc at the usual places, one that this driver can run before one that it cannot.
+find_nvcc() {
+    local candidate release fallback="" fallback_release=""
+    local candidates=("${CUDACXX:-}" "$(command -v nvcc || true)" /usr/local/cuda/bin/nvcc)
+    local others
+    mapfile -t others < <(compgen -G '/usr/local/cuda-*/bin/nvcc' | sort -rV)
+    for candidate in "${candidates[@]}" "${others[@]}" /opt/cuda/bin/nvcc "$PWD/$build/cuda/bin/nvcc"; do
+        [[ -x $candidate ]] || continue
+        release=$("$candidate" --version 2>/dev/null | sed -n 's/.*release \([0-9.]*\).*/\1/p')
+        if ! at_least "${release:-0}" 12.0; then
+            cuda_note="$candidate is release ${release:-unknown}, 12.0 is needed for C++20"
+        elif driver_runs "$release"; then
+            nvcc=$candidate nvcc_release=$release
+            return
+        elif [[ -z $fallback ]]; then
+            fallback=$candidate fallback_release=$release
+        fi
+    done
+    if [[ -n $fallback ]]; then
+        nvcc=$fallback nvcc_release=$fallback_release
+        cuda_note="driver $driver is older than 580 and cannot run CUDA $nvcc_release"
+    fi
+}
+
+# nvcc and what it needs from PyPI into build/cuda; one folder, laid out like a toolkit.
+fetch_nvcc() {
+    install_packages "python3=python3" python3-venv
+    step "Fetching nvcc 13.0 from PyPI into $build/cuda"
+    local temporary=$build/cuda.new
+    rm -rf "$temporary" "$build/cuda"
+    mkdir -p "$build"
+    python3 -m venv "$temporary" || fail "python3 -m venv failed (package python3-venv)"
+    run_quietly "$build/fetch_nvcc.log" "$temporary/bin/pip" install --disable-pip-version-check --no-deps \
+        'nvidia-cuda-nvcc==13.0.*' 'nvidia-cuda-crt==13.0.*' 'nvidia-cuda-runtime==13.0.*' \
+        'nvidia-cuda-cccl==13.0.*' 'nvidia-nvvm==13.0.*' || fail "nvcc could not be fetched from PyPI"
+    local toolkit
+    toolkit=$(echo "$temporary"/lib/python3*/site-packages/nvidia/cu13)
+    [[ -x $toolkit/bin/nvcc ]] || fail "the packages from PyPI hold no nvcc (looked in $toolkit)"
+    ln -sfn lib "$toolkit/lib64" # where nvcc looks for the runtime library
+    mv "$toolkit" "$build/cuda"
+    rm -rf "$temporary"
+}
+
+# Does nvcc work with this g++? Each release knows compilers only up to some version.
+nvcc_works() {
+    local folder status=0
+    folder=$(mktemp -d)
+    echo '#include <cstdint>' >"$folder/probe.cu"
+    "$nvcc" -std=c++20 -ccbin "${CXX:-c++}" -c "$folder/probe.cu" -o "$folder/probe.o" >"$folder/log" 2>&1 || status=1
+    ((status == 0)) || cuda_note="nvcc $nvcc_release does not work with $("${CXX:-c++}" --version | head -n 1): \
+$(grep -m 1 -i error "$folder/log" || head -n 1 "$folder/log")"
+    rm -rf "$folder"
+    return "$status"
+}
+
+choose_cuda() {
+    if [[ $cuda == off ]]; then
+        cuda_note="--cpu"
+        return
+    fi
+    find_driver
+    find_nvcc
+    local no_fetch=""
+    if [[ -n $driver ]] && ! at_least "$driver" 580; then
+        # PyPI's packages of CUDA 12 hold no nvcc, only ptxas.
+        no_fetch="driver $driver runs CUDA 12 at most, and PyPI has nvcc only from 13.0. Install NVIDIA's toolkit 12.x
+or a driver from 580 on, then run ./setup.sh again"
+    fi
+    if [[ -z $nvcc && ($cuda == on || -n $driver) ]]; then
+        if [[ -n $no_fetch ]]; then
+            [[ $cuda == auto ]] || fail "$no_fetch"
+            cuda_note=$no_fetch
+            return
+        fi
+        [[ $cuda == on ]] || echo "Found a GPU's driver ($driver) but no nvcc: fetching one (--cpu does without)."
+        fetch_nvcc
+        find_nvcc
+    fi
+    if [[ -z $nvcc ]]; then
+        cuda_note=${cuda_note:-"no nvcc found; ./setup.sh --cuda fetches one"}
+        return
+    fi
+    if [[ ! -e $build/setup.options || $(<"$build/setup.options") != *"CUDA_COMPILER=$nvcc "* ]] && ! nvcc_works; then
+        [[ $cuda == auto ]] || fail "$cuda_note"
+        nvcc=""
+    fi
+}
+
+# ---- Configure and build ----------------------------------------------------------------------------------------
+
+configure() {
+    local options=(-G Ninja -DCMAKE_BUILD_TYPE=Release)
+    if command -v ccache >/dev/null; then
+        options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+        [[ -z $nvcc ]] || options+=(-DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+    fi
+    if [[ -n $nvcc ]]; then
+        options+=(-DPERTEV_CUDA=ON "-DCMAKE_CUDA_COMPILER=$nvcc" "-DCMAKE_CUDA_ARCHITECTURES=$cuda_architectures")
+    else
+        options+=(-DPERTEV_CUDA=OFF)
+    fi
+    # A build folder that has tests keeps them: a plain run does not throw work away.
+    if $tests || { [[ -e $build/setup.options ]] && grep -q 'TESTS=ON' "$build/setup.options"; }; then
+        options+=(-DPERTEV_TESTS=ON)
+    else
+        options+=(-DPERTEV_TESTS=OFF)
+    fi
+    local wanted="${options[*]} in $PWD with ${CXX:-c++}"
+    if ! $installed_something && [[ -e $build/build.ninja && -e $build/setup.options &&
+        $(<"$build/setup.options") == "$wanted" ]]; then
+        return
+    fi
+    step "Configuring"
+    mkdir -p "$build"
+    rm -f "$build/setup.options"
+    run_quietly "$build/configure.log" cmake --fresh -S . -B "$build" "${options[@]}" ||
+        fail "CMake failed; the whole log is $build/configure.log"
+    echo "$wanted" >"$build/setup.options"
+}
+
+compile() {
+    local jobs memory_gb
+    memory_gb=$(awk '/MemAvailable/ { print int($2 / 1048576) }' /proc/meminfo)
+    jobs=$(nproc)
+    ((jobs <= memory_gb * 2 / 3)) || jobs=$((memory_gb * 2 / 3)) # the largest files take 1.5 GB to compile
+    ((jobs >= 1)) || jobs=1
+    local targets=(pertev)
+    ! $tests || targets=(all)
+    step "Building"
+    if [[ -t 1 ]]; then
+        ninja -C "$build" -j "$jobs" "${targets[@]}" || fail "the build failed"
+    else
+        run_quietly "$build/build.log" ninja -C "$build" -j "$jobs" "${targets[@]}" ||
+            fail "the build failed; the whole log is $build/build.log"
+    fi
+}
+
+summary() {
+    local name=pertev
+    name=$("$build/bin/pertev" --version 2>/dev/null | head -n 1) || name=pertev
+    echo
+    echo "${name:-pertev} is built: $build/bin/pertev"
+    echo "  compiler  $("${CXX:-c++}" --version | head -n 1)"
+    if [[ -n $nvcc ]]; then
+        echo "  CUDA      on: nvcc $nvcc_release ($nvcc), architectures $cuda_architectures"
+        if [[ -n $cuda_note ]]; then
+            echo "            but $cuda_note"
+        elif [[ -z $driver ]]; then
+            echo "            but no GPU's driver is here: pictures are rendered on the CPU"
+        fi
+    else
+        echo "  CUDA      left out: $cuda_note"
+    fi
+    if ! grep -q 'PERTEV_TESTS:BOOL=ON' "$build/CMakeCache.txt"; then
+        echo "  tests     left out: ./setup.sh --tests builds and runs them"
+    elif grep -qE '^embree_DIR:PATH=/' "$build/CMakeCache.txt"; then
+        echo "  Embree    found: tests compare hits with it"
+    else
+        echo "  Embree    left out: libembree-dev is not installed; the tests that compare with it are not built"
+    fi
+}
+
+! $tests || packages+=(doctest-dev libembree-dev "python3=python3")
+install_packages "${packages[@]}"
+check_tools
+choose_cuda
+configure
+compile
+summary
+
+if $tests; then
+    echo
+    ctest --test-dir "$build" --output-on-failure -j 2
+fi

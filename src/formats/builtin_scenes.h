@@ -1,0 +1,20 @@
+#pragma once
+
+// Scenes that are part of the program and are named instead of given as a file: those of our own under scenes/, as glTF
+// files without companions. The definitions are written by cmake/embed_scenes.cmake.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace pertev {
+
+/// The glTF file of a built-in scene ("cornell-box"); nothing where there is no scene of that name.
+std::optional<std::span<const std::byte>> builtin_scene(std::string_view name);
+
+/// All names, for messages.
+std::vector<std::string_view> builtin_scene_names();
+
+} // namespace pertev

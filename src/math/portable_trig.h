@@ -1,0 +1,181 @@
+#pragma once
+
+// sin, cos, tan of portable_math.h: the angle less a multiple of pi/2, then one polynomial on [-pi/4, pi/4]. Up to 2^16
+// radians the multiple is subtracted in three floats (Cody, Waite, "Software Manual for the Elementary Functions",
+// 1980); above, it is found in integers from the bits of 2/pi (Payne, Hanek, SIGNUM Newsletter 18, 1983).
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/portable_exp_log.h"
+#include "math/scalar.h"
+
+namespace pertev {
+
+namespace portable {
+
+struct ReducedAngle {
+    float high, low; // radians; the angle is high + low, |high| < 0.79
+    int quadrant;    // quarter turns taken off; only the last two bits count
+};
+
+HD inline uint32_t two_over_pi_word(uint32_t k) { // 32 zero bits, then the fraction of 2/pi
+    switch (k) {
+    case 1:
+        return 0xa2f9836eu;
+    case 2:
+        return 0x4e441529u;
+    case 3:
+        return 0xfc2757d1u;
+    case 4:
+        return 0xf534ddc0u;
+    case 5:
+        return 0xdb629599u;
+    case 6:
+        return 0x3c439041u;
+    case 7:
+        return 0xfe5163abu;
+    }
+    return 0;
+}
+
+/// For 2^16 <= |x| < infinity. Of |x| 2/pi = m 2^s 2/pi, with m an integer of 24 bits, only the bits of 2/pi whose
+/// product with m 2^s is below 4 turn the quadrant; 96 of them leave at least 30 good bits in the worst case.
+HD inline ReducedAngle reduce_large_angle(float x) {
+    const uint32_t bits = bits_of(x) & 0x7fffffffu;
+    const uint64_t m = (bits & 0x7fffffu) | 0x800000u;
+    const uint32_t first = (bits >> 23) - 127 - 23 + 30; // s + 30
+    const uint32_t word = first >> 5, shift = first & 31;
+    uint32_t window[3];
+    for (uint32_t k = 0; k < 3; k++) {
+        const uint64_t pair = static_cast<uint64_t>(two_over_pi_word(word + k)) << 32 | two_over_pi_word(word + k + 1);
+        window[k] = static_cast<uint32_t>(pair >> (32 - shift));
+    }
+    const uint64_t p2 = m * window[2], p1 = m * window[1] + (p2 >> 32), p0 = m * window[0] + (p1 >> 32);
+    const uint64_t product = p0 << 32 | (p1 & 0xffffffffu); // quarter turns, 62 bits after the point, modulo 4
+    const uint64_t quadrant = (product + (uint64_t{1} << 61)) >> 62;
+    const int64_t fraction = static_cast<int64_t>(product - (quadrant << 62));
+    double angle = static_cast<double>(fraction) * 0x1.921fb54442d18p-62; // pi/2 * 2^-62
+    int turns = static_cast<int>(quadrant);
+    if (x < 0) angle = -angle, turns = -turns;
+    const float high = static_cast<float>(angle);
+    return {high, static_cast<float>(angle - static_cast<double>(high)), turns};
+}
+
+HD inline bool is_large_angle(float x) { return (bits_of(x) & 0x7fffffffu) >= 0x47800000u; } // 2^16, or NaN
+
+/// For finite x; `low` is left 0 below 2^16: high alone is within 1 ulp.
+HD inline ReducedAngle reduce_angle(float x) {
+    if (is_large_angle(x)) return reduce_large_angle(x);
+    const float q = round_to_integer(x * 0x1.45f306p-1f);
+    // The first step is exact.
+    const float r = fma(q, 0x1.ee59dap-50f, fma(q, 0x1.777a5cp-25f, fma(q, -0x1.921fb6p0f, x)));
+    return {r, 0, static_cast<int>(q)};
+}
+
+/// The same with high + low good to about 2^-45.
+HD inline ReducedAngle reduce_angle_in_two_floats(float x) {
+    if (is_large_angle(x)) return reduce_large_angle(x);
+    const float q = round_to_integer(x * 0x1.45f306p-1f);
+    const float a = fma(q, -0x1.921fb6p0f, x);
+    const float b = q * 0x1.777a5cp-25f, b_low = fma(q, 0x1.777a5cp-25f, -b);
+    const float sum = a + b, b_part = sum - a; // Knuth's two-sum
+    const float error = (a - (sum - b_part)) + (b - b_part);
+    const float low = error + fma(q, 0x1.ee59dap-50f, b_low);
+    const float high = sum + low;
+    return {high, (sum - high) + low, static_cast<int>(q)};
+}
+
+/// sin(r + low) and cos(r + low), |r| <= 0.79.
+HD inline float sin_near_0(float r, float low) {
+    const float s = r * r;
+    float p = -0x1.991c22p-13f;
+    p = fma(p, s, 0x1.1106c6p-7f);
+    p = fma(p, s, -0x1.555544p-3f);
+    return r + fma(r * s, p, low);
+}
+HD inline float cos_near_0(float r, float low) {
+    const float s = r * r;
+    float p = 0x1.99e528p-16f;
+    p = fma(p, s, -0x1.6c0c22p-10f);
+    p = fma(p, s, 0x1.55554ap-5f);
+    return fma(s, -0.5f, 1.0f) + fma(s * s, p, -r * low);
+}
+
+} // namespace portable
+
+/// Sine and cosine of x radians; NaN for infinity. At most 2 ulp off for every float.
+HD inline void sin_cos(float x, float& s, float& c) {
+    s = c = kNaN;
+    if (!is_finite(x)) return;
+    const portable::ReducedAngle angle = portable::reduce_angle(x);
+    const float a = portable::sin_near_0(angle.high, angle.low), b = portable::cos_near_0(angle.high, angle.low);
+    const bool swap = (angle.quadrant & 1) != 0;
+    s = swap ? b : a;
+    c = swap ? a : b;
+    if ((angle.quadrant & 2) != 0) s = -s;
+    if (((angle.quadrant + 1) & 2) != 0) c = -c;
+    if (x == 0) s = x; // the reduction loses the sign of zero
+}
+
+/// Sine of x radians; NaN for infinity. At most 2 ulp off for every float.
+HD inline float sin(float x) {
+    if (!is_finite(x)) return kNaN;
+    const portable::ReducedAngle angle = portable::reduce_angle(x);
+    const float s = (angle.quadrant & 1) != 0 ? portable::cos_near_0(angle.high, angle.low)
+                                              : portable::sin_near_0(angle.high, angle.low);
+    return x == 0 ? x : ((angle.quadrant & 2) != 0 ? -s : s);
+}
+
+/// Cosine of x radians; NaN for infinity. At most 2 ulp off for every float.
+HD inline float cos(float x) {
+    if (!is_finite(x)) return kNaN;
+    const portable::ReducedAngle angle = portable::reduce_angle(x);
+    const float c = (angle.quadrant & 1) != 0 ? portable::sin_near_0(angle.high, angle.low)
+                                              : portable::cos_near_0(angle.high, angle.low);
+    return ((angle.quadrant + 1) & 2) != 0 ? -c : c;
+}
+
+/// Tangent of x radians; NaN for infinity. At most 2 ulp off for every float.
+HD inline float tan(float x) {
+    if (!is_finite(x)) return kNaN;
+    if (x == 0) return x;
+    const portable::ReducedAngle angle = portable::reduce_angle_in_two_floats(x);
+    const float r = angle.high, s = r * r, cube = r * s;
+    float p = 0x1.24a82ap-8f;
+    p = fma(p, s, -0x1.74ac5ap-14f);
+    p = fma(p, s, 0x1.679abap-7f);
+    p = fma(p, s, 0x1.5bd3e2p-6f);
+    p = fma(p, s, 0x1.baf0c6p-5f);
+    p = fma(p, s, 0x1.110d1ap-3f);
+    p = fma(p, s, 0x1.555562p-2f);
+    const float rough = fma(cube, p, r);
+    const float t = r + fma(cube, p, angle.low * fma(rough, rough, 1.0f)); // tan' = 1 + tan^2
+    return (angle.quadrant & 1) != 0 ? -1.0f / t : t;
+}
+
+/// Sine and cosine of 2 pi u, for |u| <= 2^20: the turn is taken off exactly. At most 1 ulp off; exact at quarters.
+HD inline void sin_cos_2pi(float u, float& s, float& c) {
+    const float q = portable::round_to_integer(4.0f * u);
+    const float f = fma(q, -0.25f, u), square = f * f; // |f| <= 1/8
+    float p = 0x1.443a72p5f;
+    p = fma(p, square, -0x1.32adaap6f);
+    p = fma(p, square, 0x1.466b78p6f);
+    p = fma(p, square, -0x1.4abbcep5f);
+    p = fma(p, square, -0x1.777a5cp-23f); // 2 pi in two floats
+    const float a = fma(f, 0x1.921fb6p2f, f * p);
+    float r = 0x1.846342p6f;
+    r = fma(r, square, 0x1.bb9a7ap5f);
+    r = fma(r, square, -0x1.5591aep6f);
+    r = fma(r, square, 0x1.03c196p6f);
+    r = fma(r, square, -0x1.3bd3ccp4f);
+    const float b = fma(r, square, 1.0f);
+    const int quadrant = static_cast<int>(q);
+    const bool swap = (quadrant & 1) != 0;
+    s = swap ? b : a;
+    c = swap ? a : b;
+    if ((quadrant & 2) != 0) s = -s;
+    if (((quadrant + 1) & 2) != 0) c = -c;
+}
+
+} // namespace pertev
