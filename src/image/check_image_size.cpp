@@ -1,0 +1,27 @@
+#include "image/check_image_size.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+
+namespace pertev {
+
+void check_image_size(const std::string& name, uint64_t width, uint64_t height, uint64_t decoded_bytes,
+                      uint64_t file_bytes, uint64_t most_per_byte) {
+    if (width == 0 || height == 0)
+        throw Error(
+            ErrorCode::BadInput,
+            fmt::format("{}: the header says {} x {} pixels; both sides must be at least 1", name, width, height));
+    const uint64_t could_hold = multiply_saturated(file_bytes, most_per_byte);
+    if (decoded_bytes > kImageBytesAlwaysAllowed && decoded_bytes - kImageBytesAlwaysAllowed > could_hold)
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: the header says {} x {} pixels, which {} bytes cannot hold; the file is damaged "
+                                "or cut short",
+                                name, width, height, file_bytes));
+    if (width > kMaxImageSide || height > kMaxImageSide || multiply_saturated(width, height) > kMaxImagePixels)
+        throw Error(ErrorCode::OverLimit, fmt::format("{}: {} x {} pixels; the limit is {} along a side and {} in all",
+                                                      name, width, height, kMaxImageSide, kMaxImagePixels));
+}
+
+} // namespace pertev

@@ -1,0 +1,19 @@
+#pragma once
+
+// Radiance HDR (RGBE): flat, old and new run-length coding, all eight orientations. Called by decode_image.
+//
+// Source: Ward, "Real Pixels", Graphics Gems II, 1991; the Radiance reference manual, "Picture File Format". A pixel
+// is mantissa * 2^(exponent - 136), without Radiance's later half unit, as other renderers read it.
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "image/image.h"
+
+namespace pertev {
+
+/// RGB picture, linear. Values are divided by the header's EXPOSURE and COLORCORR (products of all lines).
+Image decode_hdr(std::span<const std::byte> bytes, const std::string& name);
+
+} // namespace pertev

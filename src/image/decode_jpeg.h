@@ -1,0 +1,19 @@
+#pragma once
+
+// JPEG by libjpeg-turbo: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK. Called by decode_image, which says
+// what the result holds. Slow integer DCT and the library's exact up-sampling, whose SIMD versions give the same bytes
+// as its C version: the pixels do not depend on the processor.
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "base/messages.h"
+#include "image/image.h"
+
+namespace pertev {
+
+/// See decode_image.
+Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Messages* messages);
+
+} // namespace pertev

@@ -1,0 +1,39 @@
+#include "image/tone_map_image.h"
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+
+namespace pertev {
+
+Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops) {
+    PERTEV_CHECK(linear.channels >= 1 && linear.channels <= 4);
+    const float scale = exposure_scale(exposure_stops);
+    const bool is_grey = linear.channels < 3, has_alpha = linear.channels % 2 == 0;
+    Rgba8Image result{linear.width, linear.height, {}};
+    result.pixels.resize(std::size_t(linear.width) * linear.height * 4);
+    parallel_for(linear.height, 8, [&](uint64_t y) {
+        const float* from = linear.at(0, static_cast<uint32_t>(y));
+        uint8_t* to = result.pixels.data() + y * linear.width * 4;
+        for (uint32_t x = 0; x < linear.width; ++x, from += linear.channels, to += 4) {
+            Rgb light = is_grey ? grey(from[0]) : Rgb{from[0], from[1], from[2]};
+            const float alpha = has_alpha ? clamp(from[linear.channels - 1], 0.0f, 1.0f) : 1.0f;
+            if (alpha > 0 && alpha < 1) light = (1.0f / alpha) * light;
+            const Rgb shown = tone_map(light, kind, scale);
+            to[0] = to_byte(shown.r);
+            to[1] = to_byte(shown.g);
+            to[2] = to_byte(shown.b);
+            to[3] = to_byte(alpha);
+        }
+    });
+    return result;
+}
+
+std::optional<ToneMap> tone_map_named(std::string_view name) {
+    if (name == "srgb") return ToneMap::Srgb;
+    if (name == "agx") return ToneMap::Agx;
+    if (name == "aces") return ToneMap::Aces;
+    if (name == "neutral") return ToneMap::Neutral;
+    return std::nullopt;
+}
+
+} // namespace pertev
