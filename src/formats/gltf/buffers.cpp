@@ -1,0 +1,131 @@
+#include "formats/gltf/buffers.h"
+
+#include <fmt/format.h>
+#include <meshoptimizer.h>
+
+#include "base/read_file.h"
+#include "formats/gltf/uri.h"
+
+namespace pertev::gltf {
+namespace {
+
+// What a scene may take in memory for each byte of its files. A part that is drawn ten thousand times with another
+// material each is shared; this stops a small file that multiplies itself.
+constexpr uint64_t kMaxExpansion = 4096, kFreeBytes = uint64_t(256) << 20;
+
+// The vertex codec spends at least two bits on a group of 16 bytes, the others more: no stream can grow further.
+constexpr uint64_t kMaxCodecRatio = 64;
+
+} // namespace
+
+Buffers::Buffers(const Document& document, const FileAccess& access)
+    : document_(document), decompressed_(document.table("bufferViews").size()), file_bytes_(document.file_bytes()) {
+    const std::vector<JsonValue>& buffers = document.table("buffers");
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        const uint64_t length = buffers[i].at("byteLength").to_unsigned();
+        std::optional<std::span<const std::byte>> bytes;
+        if (buffers[i].find("uri")) {
+            bytes = owned_.emplace_back(read_buffer(buffers[i], access));
+            file_bytes_ += bytes->size();
+        } else if (i == 0) {
+            bytes = document.binary_chunk();
+        }
+        if (bytes && bytes->size() < length) {
+            throw buffers[i].error(fmt::format("byteLength is {}, but there are only {} bytes", length, bytes->size()));
+        }
+        if (bytes) bytes = bytes->first(length);
+        buffers_.push_back(bytes);
+    }
+}
+
+std::vector<std::byte> Buffers::read_buffer(const JsonValue& buffer, const FileAccess& access) const {
+    const JsonValue uri = buffer.at("uri");
+    const std::string_view text = uri.to_string();
+    if (is_data_uri(text)) {
+        std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
+        if (!bytes)
+            throw uri.error("the data URI cannot be decoded; expected data:application/octet-stream;base64,...");
+        return *std::move(bytes);
+    }
+    const std::optional<std::string> path = decode_path_uri(text);
+    if (!path) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", text));
+    try {
+        return read_file(access.resolve(document_.path(), *path));
+    } catch (const Error& error) {
+        throw Error(error.code(), fmt::format("{}: {}", uri.place(), error.what()));
+    }
+}
+
+std::span<const std::byte> Buffers::slice(const JsonValue& place) const {
+    const JsonValue reference = place.at("buffer");
+    const std::optional<std::span<const std::byte>>& buffer = buffers_[document_.index_into("buffers", reference)];
+    if (!buffer) throw reference.error("this buffer has no data: neither a uri nor the binary chunk of a .glb");
+    const uint64_t offset = place.unsigned_or("byteOffset", 0), length = place.at("byteLength").to_unsigned();
+    if (offset > buffer->size() || length > buffer->size() - offset) {
+        throw place.error(
+            fmt::format("{} bytes from byte {} leave the buffer, which has {}", length, offset, buffer->size()));
+    }
+    return buffer->subspan(offset, length);
+}
+
+std::vector<std::byte> Buffers::decompress(const JsonValue& compressed) const {
+    const std::span<const std::byte> source = slice(compressed);
+    const uint64_t count = compressed.at("count").to_unsigned(), stride = compressed.at("byteStride").to_unsigned();
+    const std::string mode = compressed.string_or("mode", ""), filter = compressed.string_or("filter", "NONE");
+    const bool is_vertices = mode == "ATTRIBUTES";
+    if (!is_vertices && mode != "TRIANGLES" && mode != "INDICES") {
+        throw compressed.error(fmt::format("mode \"{}\"; expected ATTRIBUTES, TRIANGLES or INDICES", mode));
+    }
+    // Conditions of the extension's text; the decoders take them for granted.
+    const bool good_stride = is_vertices ? stride > 0 && stride <= 256 && stride % 4 == 0 : stride == 2 || stride == 4;
+    if (!good_stride) throw compressed.error(fmt::format("byteStride {} is not allowed for {}", stride, mode));
+    if (mode == "TRIANGLES" && count % 3 != 0) throw compressed.error("count is not a multiple of 3");
+    const bool good_filter =
+        filter == "NONE" || (is_vertices && filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+        (is_vertices && filter == "QUATERNION" && stride == 8) || (is_vertices && filter == "EXPONENTIAL");
+    if (!good_filter) {
+        throw compressed.error(fmt::format("filter \"{}\" is not allowed for {} of {} bytes", filter, mode, stride));
+    }
+    if (count > kMaxCodecRatio * source.size() / stride) {
+        throw compressed.error(
+            fmt::format("{} compressed bytes cannot hold {} elements of {} bytes", source.size(), count, stride));
+    }
+
+    std::vector<std::byte> bytes(count * stride);
+    const auto* data = reinterpret_cast<const unsigned char*>(source.data());
+    int failure = 0;
+    if (count == 0) return bytes;
+    if (is_vertices)
+        failure = meshopt_decodeVertexBuffer(bytes.data(), count, stride, data, source.size());
+    else if (mode == "TRIANGLES")
+        failure = meshopt_decodeIndexBuffer(bytes.data(), count, stride, data, source.size());
+    else
+        failure = meshopt_decodeIndexSequence(bytes.data(), count, stride, data, source.size());
+    if (failure != 0) throw compressed.error("the compressed data is damaged");
+    if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(bytes.data(), count, stride);
+    if (filter == "QUATERNION") meshopt_decodeFilterQuat(bytes.data(), count, stride);
+    if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(bytes.data(), count, stride);
+    return bytes;
+}
+
+BufferView Buffers::view(const JsonValue& reference) {
+    const uint32_t index = document_.index_into("bufferViews", reference);
+    const JsonValue& view = document_.table("bufferViews")[index];
+    const std::optional<JsonValue> compressed = view.extension("EXT_meshopt_compression");
+    if (!compressed) return {slice(view), view.unsigned_or("byteStride", 0)};
+    if (!decompressed_[index]) decompressed_[index] = decompress(*compressed);
+    return {*decompressed_[index], view.unsigned_or("byteStride", 0)};
+}
+
+void Buffers::charge(uint64_t bytes, const JsonValue& place) {
+    const uint64_t limit = kFreeBytes + kMaxExpansion * file_bytes_;
+    charged_bytes_ += bytes;
+    if (bytes > limit || charged_bytes_ > limit) {
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("{}: the scene takes more than {} MB in memory, {} times the size of its files; use "
+                                "one mesh many times instead of many meshes with the same data",
+                                place.place(), limit >> 20, kMaxExpansion));
+    }
+}
+
+} // namespace pertev::gltf

@@ -1,0 +1,50 @@
+#include "formats/gltf/camera.h"
+
+#include <fmt/format.h>
+
+namespace pertev::gltf {
+namespace {
+
+float positive(const JsonValue& value, float below) {
+    const float number = value.to_float();
+    if (!(number > 0 && number < below)) {
+        throw value.error(below == kInfinity ? fmt::format("{}; expected a number above 0", number)
+                                             : fmt::format("{}; expected between 0 and {}", number, below));
+    }
+    return number;
+}
+
+} // namespace
+
+Camera read_camera(const JsonValue& source) {
+    Camera camera;
+    camera.name = source.string_or("name", "");
+    const std::string type = source.string_or("type", "");
+    if (type == "perspective") {
+        const JsonValue perspective = source.at("perspective");
+        camera.fov_y = positive(perspective.at("yfov"), kPi);
+        if (const auto aspect = perspective.find("aspectRatio")) camera.aspect = positive(*aspect, kInfinity);
+    } else if (type == "orthographic") {
+        const JsonValue orthographic = source.at("orthographic");
+        camera.projection = Projection::Orthographic;
+        const float half_width = abs(orthographic.at("xmag").to_float());
+        const float half_height = abs(orthographic.at("ymag").to_float());
+        if (!(half_width > 0 && half_height > 0))
+            throw orthographic.error("xmag or ymag is 0; expected another number");
+        camera.ortho_height = 2 * half_height;
+        camera.aspect = half_width / half_height;
+    } else {
+        throw source.error(fmt::format("type \"{}\"; expected perspective or orthographic", type));
+    }
+    return camera;
+}
+
+std::optional<Transform> without_scale(const Transform& m) {
+    const Vec3 back = normalize(column(m, 2));
+    const Vec3 right = normalize(cross(column(m, 1), back));
+    const Vec3 up = cross(back, right);
+    if (!is_finite(back) || !is_finite(right) || !is_finite(m.translation)) return std::nullopt;
+    return Transform{{right.x, up.x, back.x}, {right.y, up.y, back.y}, {right.z, up.z, back.z}, m.translation};
+}
+
+} // namespace pertev::gltf

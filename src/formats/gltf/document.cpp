@@ -1,0 +1,156 @@
+#include "formats/gltf/document.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/read_file.h"
+
+namespace pertev::gltf {
+namespace {
+
+constexpr std::array<std::string_view, 8> kSupportedExtensions = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
+
+constexpr std::array<std::string_view, 12> kTables = {"accessors", "bufferViews", "buffers", "cameras",
+                                                      "images",    "materials",   "meshes",  "nodes",
+                                                      "samplers",  "scenes",      "skins",   "textures"};
+
+constexpr uint32_t kGlbMagic = 0x46546c67;    // "glTF"
+constexpr uint32_t kJsonChunk = 0x4e4f534a;   // "JSON"
+constexpr uint32_t kBinaryChunk = 0x004e4942; // "BIN\0"
+constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+
+uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
+    uint32_t value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+}
+
+bool is_supported(std::string_view extension) {
+    return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
+}
+
+} // namespace
+
+Document::Document(const std::filesystem::path& path, Messages& messages)
+    : path_(path), file_(path.string()), bytes_(read_file(path)), json_chunk_(bytes_) {
+    if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) split_glb();
+    parse(json_chunk_);
+    check_version();
+    for (const std::string_view name : kTables) tables_.emplace(name, root().elements_of(name));
+    const std::optional<JsonValue> lights = root().extension("KHR_lights_punctual");
+    tables_.emplace("lights", lights ? lights->elements_of("lights") : std::vector<JsonValue>());
+    check_extensions(messages);
+}
+
+void Document::split_glb() {
+    const auto fail = [&](std::size_t at, const std::string& what) {
+        return Error(ErrorCode::BadInput, fmt::format("{}: byte {}: {}", file_, at, what));
+    };
+    if (bytes_.size() < kHeaderBytes) throw fail(bytes_.size(), "the file ends within the GLB header of 12 bytes");
+    const uint32_t version = read_u32(bytes_, 4), length = read_u32(bytes_, 8);
+    if (version != 2) throw fail(4, fmt::format("GLB container version {}; expected 2", version));
+    if (length > bytes_.size() || length < kHeaderBytes) {
+        throw fail(8, fmt::format("the header says {} bytes, but the file has {}; it is cut off or damaged", length,
+                                  bytes_.size()));
+    }
+    const std::span<const std::byte> glb(bytes_.data(), length);
+    bool has_json = false;
+    for (std::size_t at = kHeaderBytes; at < glb.size();) {
+        if (glb.size() - at < kChunkHeaderBytes) throw fail(at, "the file ends within a chunk's header of 8 bytes");
+        const uint32_t size = read_u32(glb, at), type = read_u32(glb, at + 4);
+        const std::size_t begin = at + kChunkHeaderBytes, available = glb.size() - begin;
+        if (size > available) {
+            throw fail(at, fmt::format("the chunk says {} bytes, but {} are left; the file is cut off or damaged", size,
+                                       available));
+        }
+        if (!has_json && type != kJsonChunk) throw fail(at, "the first chunk of a GLB file must be JSON");
+        if (!has_json)
+            json_chunk_ = glb.subspan(begin, size);
+        else if (type == kBinaryChunk && !binary_chunk_)
+            binary_chunk_ = glb.subspan(begin, size);
+        has_json = true;
+        at = begin + size;
+    }
+    if (!has_json) throw fail(kHeaderBytes, "there is no JSON chunk");
+}
+
+void Document::parse(std::span<const std::byte> json) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    std::string_view text(reinterpret_cast<const char*>(json.data()), json.size());
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    // The parser reads past the end in whole vectors: it gets a copy with room for that.
+    const simdjson::padded_string padded(text);
+    simdjson::dom::element element;
+    if (const simdjson::error_code failure = parser_.parse(padded).get(element)) {
+        const std::string what = failure == simdjson::DEPTH_ERROR
+                                     ? fmt::format("JSON nested more than {} levels deep", parser_.max_depth())
+                                     : fmt::format("not valid JSON: {}", simdjson::error_message(failure));
+        throw Error(ErrorCode::BadInput, fmt::format("{}: {}; expected a glTF 2.0 document", file_, what));
+    }
+    root_.emplace(file_, "", element);
+}
+
+void Document::check_version() const {
+    const auto parts = [](const JsonValue& value) {
+        const std::string_view text = value.to_string();
+        std::array<unsigned, 2> numbers = {0, 0}; // major, minor
+        const char *begin = text.data(), *end = begin + text.size();
+        const auto major = std::from_chars(begin, end, numbers[0]);
+        bool good = major.ec == std::errc() && major.ptr != end && *major.ptr == '.';
+        if (good) {
+            const auto minor = std::from_chars(major.ptr + 1, end, numbers[1]);
+            good = minor.ec == std::errc() && minor.ptr == end;
+        }
+        if (!good) throw value.error(fmt::format("\"{}\" is not a version; expected \"2.0\"", text));
+        return numbers;
+    };
+    const JsonValue asset = root().at("asset"), version = asset.at("version");
+    if (parts(version)[0] != 2) {
+        throw version.error(fmt::format("glTF {}; this reader knows 2.0", version.to_string()));
+    }
+    const std::optional<JsonValue> least = asset.find("minVersion");
+    if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
+        throw least->error(fmt::format("the file needs glTF {}; this reader knows 2.0", least->to_string()));
+    }
+}
+
+void Document::check_extensions(Messages& messages) const {
+    std::vector<std::string_view> required;
+    for (const JsonValue& name : root().elements_of("extensionsRequired")) {
+        required.push_back(name.to_string());
+        if (!is_supported(required.back())) {
+            throw name.error(fmt::format("the file requires the extension {}, which is not supported; export it "
+                                         "without that extension",
+                                         required.back()));
+        }
+    }
+    for (const JsonValue& name : root().elements_of("extensionsUsed")) {
+        if (is_supported(name.to_string())) continue;
+        messages.warn(
+            fmt::format("{}: the extension {} is not supported and left out", name.place(), name.to_string()));
+    }
+}
+
+const std::vector<JsonValue>& Document::table(std::string_view name) const {
+    const auto found = tables_.find(name);
+    PERTEV_CHECK(found != tables_.end());
+    return found->second;
+}
+
+uint32_t Document::index_into(std::string_view name, const JsonValue& reference) const {
+    const uint64_t index = reference.to_unsigned(), size = table(name).size();
+    if (index >= size || index > std::numeric_limits<uint32_t>::max()) {
+        throw reference.error(
+            fmt::format("{}; expected an index into \"{}\", which has {} elements", index, name, size));
+    }
+    return static_cast<uint32_t>(index);
+}
+
+} // namespace pertev::gltf

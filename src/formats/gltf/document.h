@@ -1,0 +1,63 @@
+#pragma once
+
+// A glTF 2.0 document, from .gltf (JSON) or .glb (JSON and one binary chunk in a container), told apart by content.
+//
+// Source: Khronos glTF 2.0 specification, sections 3.2, 3.12 and 4.4.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <simdjson.h>
+
+#include "base/messages.h"
+#include "formats/gltf/json_value.h"
+
+namespace pertev::gltf {
+
+class Document {
+public:
+    /// Parses the file. Throws Error(BadInput) when it is not glTF 2 or requires an extension that is not supported;
+    /// warns of each extension that the file uses without requiring it and that is not supported.
+    Document(const std::filesystem::path& path, Messages& messages);
+    Document(const Document&) = delete; // its values point into it
+    Document& operator=(const Document&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    const std::string& file() const { return file_; } // the path, for messages
+    const JsonValue& root() const { return *root_; }
+    /// The binary chunk of a .glb; nothing when there is none.
+    std::optional<std::span<const std::byte>> binary_chunk() const { return binary_chunk_; }
+    uint64_t file_bytes() const { return bytes_.size(); }
+
+    /// A top-level array, for instance "accessors"; empty where the file has none. Lights are under "lights".
+    const std::vector<JsonValue>& table(std::string_view name) const;
+    /// The number in `reference` as an index into table(name). Throws Error(BadInput) when there is no such element.
+    uint32_t index_into(std::string_view name, const JsonValue& reference) const;
+    const JsonValue& item(std::string_view name, const JsonValue& reference) const {
+        return table(name)[index_into(name, reference)];
+    }
+
+private:
+    void split_glb();
+    void parse(std::span<const std::byte> json);
+    void check_version() const;
+    void check_extensions(Messages& messages) const;
+
+    std::filesystem::path path_;
+    std::string file_;
+    std::vector<std::byte> bytes_;
+    std::span<const std::byte> json_chunk_;
+    std::optional<std::span<const std::byte>> binary_chunk_;
+    simdjson::dom::parser parser_;
+    std::optional<JsonValue> root_;
+    std::map<std::string, std::vector<JsonValue>, std::less<>> tables_;
+};
+
+} // namespace pertev::gltf

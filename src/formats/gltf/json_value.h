@@ -1,0 +1,78 @@
+#pragma once
+
+// One value of a JSON document together with where it stands, so that every error can name its file and JSON pointer.
+// All readings are checked: a value of another type, out of range or not finite is an Error(BadInput).
+//
+// A JsonValue is a view: the document that it comes from must outlive it.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <simdjson.h>
+
+#include "base/error.h"
+
+namespace pertev::gltf {
+
+class JsonValue {
+public:
+    /// `file` names the source in messages and must outlive the value; the whole document has the pointer "".
+    JsonValue(const std::string& file, std::string pointer, simdjson::dom::element element)
+        : file_(&file), pointer_(std::move(pointer)), element_(element) {}
+
+    /// "file: /pointer", for messages.
+    std::string place() const;
+    /// Error(BadInput) "file: /pointer: what".
+    Error error(const std::string& what) const;
+
+    /// Member of an object; nothing when it has none of that name.
+    std::optional<JsonValue> find(std::string_view key) const;
+    JsonValue at(std::string_view key) const;
+    /// /extensions/NAME of an object.
+    std::optional<JsonValue> extension(std::string_view name) const;
+    /// All values of an array, in order.
+    std::vector<JsonValue> elements() const;
+    /// The values of member `key`, an array; none when it is missing.
+    std::vector<JsonValue> elements_of(std::string_view key) const;
+
+    /// A whole number in [0, 2^53], also when written as 3.0.
+    uint64_t to_unsigned() const;
+    /// A number that a float can hold.
+    float to_float() const;
+    bool to_bool() const;
+    std::string_view to_string() const;
+    /// `count` numbers.
+    template <std::size_t count>
+    std::array<float, count> to_floats() const {
+        std::array<float, count> numbers{};
+        read_floats(numbers.data(), count);
+        return numbers;
+    }
+    /// The value as JSON text without spaces: equal texts are equal values.
+    std::string to_json() const;
+
+    // Member `key`, or a default where it is missing.
+    uint64_t unsigned_or(std::string_view key, uint64_t fallback) const;
+    float float_or(std::string_view key, float fallback) const;
+    bool bool_or(std::string_view key, bool fallback) const;
+    std::string string_or(std::string_view key, std::string_view fallback) const;
+    template <std::size_t count>
+    std::array<float, count> floats_or(std::string_view key, std::array<float, count> fallback) const {
+        const std::optional<JsonValue> member = find(key);
+        return member ? member->to_floats<count>() : fallback;
+    }
+
+private:
+    void read_floats(float* numbers, std::size_t count) const;
+    JsonValue child(std::string_view key, simdjson::dom::element element) const;
+
+    const std::string* file_;
+    std::string pointer_;
+    simdjson::dom::element element_;
+};
+
+} // namespace pertev::gltf

@@ -1,0 +1,107 @@
+#include "formats/gltf/materials.h"
+
+#include <fmt/format.h>
+
+namespace pertev::gltf {
+namespace {
+
+// Also what every property of a material is where the file says nothing.
+Material make_default_material() {
+    Material material;
+    material.kind = MaterialKind::MetallicRoughness;
+    material.base_color = {1, 1, 1};
+    material.metallic = 1;
+    material.roughness = 1;
+    return material;
+}
+
+} // namespace
+
+uint32_t Materials::material_of(const JsonValue& primitive) {
+    const std::optional<JsonValue> reference = primitive.find("material");
+    if (reference && textures_ != nullptr) {
+        const uint32_t index = document_.index_into("materials", *reference);
+        if (!by_index_[index]) by_index_[index] = add(read(document_.table("materials")[index]));
+        return *by_index_[index];
+    }
+    if (!default_) {
+        default_ = add(textures_ == nullptr ? Material() : make_default_material());
+    }
+    return *default_;
+}
+
+uint32_t Materials::add(Material material) {
+    scene_.materials.push_back(std::move(material));
+    return static_cast<uint32_t>(scene_.materials.size() - 1);
+}
+
+Material Materials::read(const JsonValue& source) {
+    Material material = make_default_material();
+    material.name = source.string_or("name", "");
+    if (source.extension("KHR_materials_unlit")) material.kind = MaterialKind::Unlit;
+    if (const std::optional<JsonValue> pbr = source.find("pbrMetallicRoughness")) {
+        read_metallic_roughness(*pbr, material);
+    }
+    read_alpha(source, material);
+    material.ior = read_ior(source);
+
+    float strength = 1;
+    if (const std::optional<JsonValue> extension = source.extension("KHR_materials_emissive_strength")) {
+        strength = extension->float_or("emissiveStrength", 1);
+        if (strength < 0) throw extension->at("emissiveStrength").error("expected a number of at least 0");
+    }
+    const std::array<float, 3> emission = source.floats_or<3>("emissiveFactor", {0, 0, 0});
+    material.emission = strength * Rgb{emission[0], emission[1], emission[2]};
+    material.emission_texture = read_texture(source, "emissiveTexture", true);
+
+    material.normal_texture = read_texture(source, "normalTexture", false);
+    if (const std::optional<JsonValue> normal = source.find("normalTexture")) {
+        material.normal_scale = normal->float_or("scale", 1);
+    }
+    return material;
+}
+
+void Materials::read_metallic_roughness(const JsonValue& pbr, Material& material) {
+    const std::array<float, 4> color = pbr.floats_or<4>("baseColorFactor", {1, 1, 1, 1});
+    material.base_color = {clamp(color[0], 0.0f, 1.0f), clamp(color[1], 0.0f, 1.0f), clamp(color[2], 0.0f, 1.0f)};
+    material.alpha = clamp(color[3], 0.0f, 1.0f);
+    material.base_color_texture = read_texture(pbr, "baseColorTexture", true);
+    material.metallic = clamp(pbr.float_or("metallicFactor", 1), 0.0f, 1.0f);
+    material.roughness = clamp(pbr.float_or("roughnessFactor", 1), 0.0f, 1.0f);
+    const TextureRef both = read_texture(pbr, "metallicRoughnessTexture", false);
+    material.metallic_texture = material.roughness_texture = both;
+    material.roughness_texture.channel = 1;
+    material.metallic_texture.channel = 2;
+}
+
+void Materials::read_alpha(const JsonValue& source, Material& material) const {
+    const std::string mode = source.string_or("alphaMode", "OPAQUE");
+    if (mode == "MASK")
+        material.alpha_mode = AlphaMode::Mask;
+    else if (mode == "BLEND")
+        material.alpha_mode = AlphaMode::Blend;
+    else if (mode != "OPAQUE") {
+        throw source.at("alphaMode").error(fmt::format("\"{}\"; expected OPAQUE, MASK or BLEND", mode));
+    }
+    material.alpha_cutoff = source.float_or("alphaCutoff", 0.5f);
+}
+
+float Materials::read_ior(const JsonValue& material) const {
+    constexpr float usual = 1.5f;
+    const std::optional<JsonValue> extension = material.extension("KHR_materials_ior");
+    const float ior = extension ? extension->float_or("ior", usual) : usual;
+    if (ior >= 1) return ior;
+    messages_.warn(
+        fmt::format("{}: ior {} is not supported; expected at least 1, {} is used", extension->place(), ior, usual));
+    return usual;
+}
+
+TextureRef Materials::read_texture(const JsonValue& parent, std::string_view key, bool is_srgb) {
+    const std::optional<JsonValue> info = parent.find(key);
+    if (!info) return {};
+    TextureRef texture = textures_->read(*info);
+    texture.is_srgb = is_srgb;
+    return texture;
+}
+
+} // namespace pertev::gltf

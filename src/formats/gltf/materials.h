@@ -1,0 +1,42 @@
+#pragma once
+
+// glTF materials as Scene materials, in the order of their first use; those that nothing uses are not read.
+//
+// Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit. Occlusion
+// textures are not read: a path tracer computes what they approximate. Faces are always double sided.
+
+#include <optional>
+#include <vector>
+
+#include "formats/gltf/textures.h"
+#include "scene/scene.h"
+
+namespace pertev::gltf {
+
+class Materials {
+public:
+    /// `textures` is null to leave all materials out: every surface is then one grey.
+    Materials(const Document& document, Textures* textures, Scene& scene, Messages& messages)
+        : document_(document), textures_(textures), scene_(scene), messages_(messages),
+          by_index_(document.table("materials").size()) {}
+
+    /// Index into scene.materials of the material of `primitive`; glTF's default material where it names none.
+    uint32_t material_of(const JsonValue& primitive);
+
+private:
+    uint32_t add(Material material);
+    Material read(const JsonValue& material);
+    void read_metallic_roughness(const JsonValue& pbr, Material& material);
+    void read_alpha(const JsonValue& source, Material& material) const;
+    float read_ior(const JsonValue& material) const;
+    TextureRef read_texture(const JsonValue& parent, std::string_view key, bool is_srgb);
+
+    const Document& document_;
+    Textures* textures_;
+    Scene& scene_;
+    Messages& messages_;
+    std::vector<std::optional<uint32_t>> by_index_;
+    std::optional<uint32_t> default_; // glTF's default material, or the grey of geometry alone
+};
+
+} // namespace pertev::gltf

@@ -1,0 +1,76 @@
+#include "formats/gltf/meshes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "formats/gltf/skin.h"
+
+namespace pertev::gltf {
+namespace {
+
+std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh) {
+    const JsonValue& source = node.find("weights") ? node : mesh;
+    std::vector<float> weights;
+    for (const JsonValue& weight : source.elements_of("weights")) weights.push_back(weight.to_float());
+    return weights;
+}
+
+// Equal texts: equal vertices and triangles.
+std::string data_key(const JsonValue& primitive, const std::vector<float>& weights,
+                     const std::optional<JsonValue>& skin) {
+    std::string key;
+    for (const std::string_view member : {"mode", "attributes", "indices", "targets"}) {
+        const std::optional<JsonValue> value = primitive.find(member);
+        key += fmt::format("{};", value ? value->to_json() : "");
+    }
+    if (primitive.find("targets")) key += fmt::format("{}", fmt::join(weights, ","));
+    return key + fmt::format(";{}", skin ? skin->to_json() : "");
+}
+
+} // namespace
+
+std::vector<Meshes::Part> Meshes::parts_of(const JsonValue& node) {
+    const JsonValue& mesh = document_.item("meshes", node.at("mesh"));
+    const std::vector<float> weights = read_weights(node, mesh);
+    const std::optional<JsonValue> skin = node.find("skin");
+    const std::string name = mesh.string_or("name", "");
+    const std::vector<JsonValue> primitives = mesh.elements_of("primitives");
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const std::string part_name = primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
+        const std::optional<uint32_t> index = mesh_of(primitives[i], weights, skin, part_name);
+        if (index) parts.push_back({*index, materials_.material_of(primitives[i])});
+    }
+    return parts;
+}
+
+std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, const std::vector<float>& weights,
+                                        const std::optional<JsonValue>& skin, const std::string& name) {
+    const auto [entry, is_new] = by_data_.try_emplace(data_key(primitive, weights, skin));
+    if (!is_new) return entry->second;
+    std::optional<Mesh> mesh = read_primitive({document_, buffers_, primitive, weights, geometry_only_}, messages_);
+    if (!mesh) return std::nullopt;
+    if (primitive.find("targets")) {
+        messages_.warn(fmt::format("{}: morph targets are drawn with their default weights; animation is not played",
+                                   document_.file()));
+    }
+    if (skin) {
+        messages_.warn(
+            fmt::format("{}: skinned meshes are drawn in their rest pose; animation is not played", document_.file()));
+        apply_skin(document_, buffers_, primitive.at("attributes"), joints_of(*skin), *mesh);
+    }
+    finish_normals(*mesh);
+    mesh->name = name;
+    scene_.meshes.push_back(*std::move(mesh));
+    entry->second = static_cast<uint32_t>(scene_.meshes.size() - 1);
+    return entry->second;
+}
+
+const std::vector<Transform>& Meshes::joints_of(const JsonValue& skin) {
+    const uint32_t index = document_.index_into("skins", skin);
+    const auto [entry, is_new] = joints_.try_emplace(index);
+    if (is_new) entry->second = read_joint_transforms(document_, buffers_, nodes_, document_.table("skins")[index]);
+    return entry->second;
+}
+
+} // namespace pertev::gltf

@@ -1,0 +1,118 @@
+#include "formats/gltf/node_graph.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace pertev::gltf {
+namespace {
+
+Transform parent_from_node(const JsonValue& node) {
+    if (const std::optional<JsonValue> matrix = node.find("matrix")) {
+        const std::array<float, 16> values = matrix->to_floats<16>();
+        float columns[16];
+        std::copy(values.begin(), values.end(), columns);
+        return transform_from_columns(columns);
+    }
+    const std::array<float, 3> t = node.floats_or<3>("translation", {0, 0, 0});
+    const std::array<float, 4> r = node.floats_or<4>("rotation", {0, 0, 0, 1});
+    const std::array<float, 3> s = node.floats_or<3>("scale", {1, 1, 1});
+    if (r == std::array<float, 4>{0, 0, 0, 0}) throw node.at("rotation").error("expected a unit quaternion");
+    return transform_from_trs({t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}, {s[0], s[1], s[2]});
+}
+
+} // namespace
+
+Transform transform_from_trs(Vec3 translation, Vec4 rotation, Vec3 scale) {
+    const auto squared = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
+    const double length =
+        std::sqrt(squared(rotation.x) + squared(rotation.y) + squared(rotation.z) + squared(rotation.w));
+    const auto unit = [&](float x) { return static_cast<float>(static_cast<double>(x) / length); };
+    Transform m = make_rotation(unit(rotation.x), unit(rotation.y), unit(rotation.z), unit(rotation.w));
+    for (Vec3* row : {&m.row0, &m.row1, &m.row2}) *row = {row->x * scale.x, row->y * scale.y, row->z * scale.z};
+    m.translation = translation;
+    return m;
+}
+
+NodeGraph::NodeGraph(const Document& document, Messages& messages) {
+    read_children(document);
+    place_nodes(document);
+    for_each_below(scene_roots(document, messages), [&](uint32_t node) { scene_nodes_.push_back(node); });
+}
+
+void NodeGraph::read_children(const Document& document) {
+    const std::vector<JsonValue>& nodes = document.table("nodes");
+    children_.resize(nodes.size());
+    parents_.resize(nodes.size());
+    for (uint32_t node = 0; node < nodes.size(); ++node) {
+        for (const JsonValue& reference : nodes[node].elements_of("children")) {
+            const uint32_t child = document.index_into("nodes", reference);
+            if (parents_[child]) {
+                throw reference.error(
+                    fmt::format("node {} is already a child of node {}; expected one parent", child, *parents_[child]));
+            }
+            parents_[child] = node;
+            children_[node].push_back(child);
+        }
+    }
+}
+
+void NodeGraph::place_nodes(const Document& document) {
+    const std::vector<JsonValue>& nodes = document.table("nodes");
+    std::vector<uint32_t> roots;
+    for (uint32_t node = 0; node < nodes.size(); ++node) {
+        if (!parents_[node]) roots.push_back(node);
+    }
+    world_from_node_.resize(nodes.size());
+    std::vector<bool> is_placed(nodes.size());
+    for_each_below(roots, [&](uint32_t node) {
+        const Transform local = parent_from_node(nodes[node]);
+        world_from_node_[node] = parents_[node] ? compose(world_from_node_[*parents_[node]], local) : local;
+        is_placed[node] = true;
+    });
+    // Each node has at most one parent, so what no root leads to goes round in a circle.
+    for (uint32_t node = 0; node < nodes.size(); ++node) {
+        if (!is_placed[node]) throw nodes[node].error("the node is its own ancestor; expected a tree");
+    }
+}
+
+std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages& messages) const {
+    const std::vector<JsonValue>& scenes = document.table("scenes");
+    std::vector<uint32_t> roots;
+    if (scenes.empty()) { // a library of parts: show all of it
+        for (uint32_t node = 0; node < parents_.size(); ++node) {
+            if (!parents_[node]) roots.push_back(node);
+        }
+        return roots;
+    }
+    const std::optional<JsonValue> chosen = document.root().find("scene");
+    const uint32_t scene = chosen ? document.index_into("scenes", *chosen) : 0;
+    if (scenes.size() > 1) {
+        messages.note(
+            fmt::format("{}: the file has {} scenes; number {} is shown", document.file(), scenes.size(), scene));
+    }
+    std::vector<bool> is_listed(parents_.size());
+    for (const JsonValue& reference : scenes[scene].elements_of("nodes")) {
+        const uint32_t node = document.index_into("nodes", reference);
+        if (parents_[node] || is_listed[node]) {
+            throw reference.error(fmt::format("node {} {}; expected each root once", node,
+                                              is_listed[node] ? "is listed twice" : "is a child of another node"));
+        }
+        is_listed[node] = true;
+        roots.push_back(node);
+    }
+    return roots;
+}
+
+template <class Visit>
+void NodeGraph::for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const {
+    std::vector<uint32_t> waiting(roots.rbegin(), roots.rend());
+    while (!waiting.empty()) {
+        const uint32_t node = waiting.back();
+        waiting.pop_back();
+        visit(node);
+        waiting.insert(waiting.end(), children_[node].rbegin(), children_[node].rend());
+    }
+}
+
+} // namespace pertev::gltf

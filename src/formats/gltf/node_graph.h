@@ -1,0 +1,44 @@
+#pragma once
+
+// The nodes of a document as a forest: parents, world transforms, and which of them the scene shows.
+//
+// Source: glTF 2.0 section 3.5. Nothing here recurses: a chain of a million nodes is a loop.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/messages.h"
+#include "formats/gltf/document.h"
+#include "math/transform.h"
+#include "math/vec4.h"
+
+namespace pertev::gltf {
+
+class NodeGraph {
+public:
+    /// Throws Error(BadInput) for a cycle, a node with two parents, or a scene that lists a child as its root.
+    NodeGraph(const Document& document, Messages& messages);
+
+    /// The scene's nodes, each before its children, in the order of the file.
+    const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
+    /// World from local of any node, in the scene or not.
+    const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
+
+private:
+    void read_children(const Document& document);
+    void place_nodes(const Document& document);
+    std::vector<uint32_t> scene_roots(const Document& document, Messages& messages) const;
+    template <class Visit>
+    void for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const;
+
+    std::vector<std::vector<uint32_t>> children_;
+    std::vector<std::optional<uint32_t>> parents_;
+    std::vector<Transform> world_from_node_;
+    std::vector<uint32_t> scene_nodes_;
+};
+
+/// Translation * rotation * scale, the rotation a quaternion (x, y, z, w) of any length but 0.
+Transform transform_from_trs(Vec3 translation, Vec4 rotation, Vec3 scale);
+
+} // namespace pertev::gltf

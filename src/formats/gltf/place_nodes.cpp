@@ -1,0 +1,100 @@
+#include "formats/gltf/place_nodes.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/limits.h"
+#include "formats/gltf/accessor.h"
+#include "formats/gltf/camera.h"
+#include "formats/gltf/light.h"
+
+namespace pertev::gltf {
+namespace {
+
+// One transform an instance that EXT_mesh_gpu_instancing places within the node.
+std::vector<Transform> read_placements(const Document& document, Buffers& buffers, const JsonValue& instancing) {
+    const JsonValue attributes = instancing.at("attributes");
+    std::optional<uint64_t> count;
+    const auto find = [&](std::string_view name, ElementType type) {
+        const std::optional<JsonValue> reference = attributes.find(name);
+        std::optional<Accessor> accessor;
+        if (!reference) return accessor;
+        accessor.emplace(document, buffers, *reference, std::initializer_list<ElementType>{type});
+        if (count && *count != accessor->count()) {
+            throw reference->error(
+                fmt::format("{} elements; expected {} as in the attributes before it", accessor->count(), *count));
+        }
+        count = accessor->count();
+        return accessor;
+    };
+    const auto translations = find("TRANSLATION", ElementType::Vec3);
+    const auto rotations = find("ROTATION", ElementType::Vec4);
+    const auto scales = find("SCALE", ElementType::Vec3);
+    if (!count) return {Transform()};
+
+    const std::vector<Vec3> t = translations ? translations->read_vec3() : std::vector<Vec3>();
+    const std::vector<Vec4> r = rotations ? rotations->read_vec4() : std::vector<Vec4>();
+    const std::vector<Vec3> s = scales ? scales->read_vec3() : std::vector<Vec3>();
+    buffers.charge(*count * sizeof(Transform), attributes);
+    std::vector<Transform> placements;
+    for (std::size_t i = 0; i < *count; ++i) {
+        const Vec4 rotation = r.empty() || r[i] == Vec4{} ? Vec4{0, 0, 0, 1} : r[i];
+        placements.push_back(transform_from_trs(t.empty() ? Vec3{} : t[i], rotation, s.empty() ? Vec3{1, 1, 1} : s[i]));
+    }
+    return placements;
+}
+
+} // namespace
+
+void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
+                 Messages& messages) {
+    const auto place_mesh = [&](const JsonValue& node, const Transform& world_from_node) {
+        const std::vector<Meshes::Part> parts = meshes.parts_of(node);
+        const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
+        std::vector<Transform> world_from_local = {world_from_node};
+        if (node.find("skin")) {
+            world_from_local = {Transform()}; // its joints have moved it already
+        } else if (instancing) {
+            world_from_local = read_placements(document, buffers, *instancing);
+            for (Transform& m : world_from_local) m = compose(world_from_node, m);
+        }
+        const std::string name = node.string_or("name", "");
+        if (world_from_local.size() > 1) {
+            buffers.charge(world_from_local.size() * parts.size() * sizeof(Instance), node);
+        }
+        for (const Transform& m : world_from_local) {
+            for (const Meshes::Part& part : parts) scene.instances.push_back({name, part.mesh, part.material, m});
+        }
+        if (scene.instances.size() > kMaxInstances) {
+            throw Error(ErrorCode::OverLimit, fmt::format("{}: more than {} instances", node.place(), kMaxInstances));
+        }
+    };
+
+    for (const uint32_t index : nodes.scene_nodes()) {
+        const JsonValue& node = document.table("nodes")[index];
+        const Transform& world_from_node = nodes.world_from_node(index);
+        if (node.find("mesh")) place_mesh(node, world_from_node);
+        if (const std::optional<JsonValue> reference = node.find("camera")) {
+            Camera camera = read_camera(document.item("cameras", *reference));
+            if (camera.name.empty()) camera.name = node.string_or("name", "");
+            if (const std::optional<Transform> rigid = without_scale(world_from_node)) {
+                camera.world_from_camera = *rigid;
+                scene.cameras.push_back(std::move(camera));
+            } else {
+                messages.warn(fmt::format("{}: the camera is squashed to nothing and left out", node.place()));
+            }
+        }
+        if (const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual")) {
+            Light light = read_light(document.item("lights", extension->at("light")));
+            if (light.name.empty()) light.name = node.string_or("name", "");
+            if (place_light(world_from_node, light)) {
+                scene.lights.push_back(std::move(light));
+            } else {
+                messages.warn(fmt::format("{}: the light is squashed to nothing and left out", node.place()));
+            }
+        }
+    }
+}
+
+} // namespace pertev::gltf

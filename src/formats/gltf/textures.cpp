@@ -1,0 +1,116 @@
+#include "formats/gltf/textures.h"
+
+#include <fmt/format.h>
+
+#include "formats/gltf/uri.h"
+#include "math/portable_math.h"
+
+namespace pertev::gltf {
+namespace {
+
+// OpenGL's constants, which glTF uses for samplers.
+constexpr uint64_t kNearest = 9728, kLinear = 9729, kNearestMipmapNearest = 9984, kLinearMipmapLinear = 9987;
+constexpr uint64_t kClampToEdge = 33071, kMirroredRepeat = 33648, kRepeat = 10497;
+
+Wrap read_wrap(const JsonValue& sampler, std::string_view key) {
+    const uint64_t wrap = sampler.unsigned_or(key, kRepeat);
+    switch (wrap) {
+    case kRepeat:
+        return Wrap::Repeat;
+    case kMirroredRepeat:
+        return Wrap::MirroredRepeat;
+    case kClampToEdge:
+        return Wrap::ClampToEdge;
+    default:
+        throw sampler.at(key).error(fmt::format("{}; expected 10497, 33071 or 33648", wrap));
+    }
+}
+
+// The order is translation * rotation * scale. The rotation's sign is that of the extension's words, pictures and test
+// model (counter-clockwise in u right, v down); the GLSL in its text turns the other way (KhronosGroup/glTF #1563).
+void read_transform(const JsonValue& transform, TextureRef& texture) {
+    const std::array<float, 2> offset = transform.floats_or<2>("offset", {0, 0});
+    const std::array<float, 2> scale = transform.floats_or<2>("scale", {1, 1});
+    const float rotation = transform.float_or("rotation", 0);
+    const float s = sin(rotation), c = cos(rotation);
+    texture.m00 = c * scale[0];
+    texture.m01 = s * scale[1];
+    texture.m02 = offset[0];
+    texture.m10 = -s * scale[0];
+    texture.m11 = c * scale[1];
+    texture.m12 = offset[1];
+}
+
+} // namespace
+
+TextureRef Textures::read(const JsonValue& info) {
+    const JsonValue& source = document_.item("textures", info.at("index"));
+    TextureRef texture;
+    uint64_t uv_set = info.unsigned_or("texCoord", 0);
+    if (const std::optional<JsonValue> transform = info.extension("KHR_texture_transform")) {
+        uv_set = transform->unsigned_or("texCoord", uv_set);
+        read_transform(*transform, texture);
+    }
+    if (const std::optional<JsonValue> sampler = source.find("sampler")) {
+        read_sampler(document_.item("samplers", *sampler), texture);
+    }
+    if (uv_set > 1) {
+        messages_.warn(fmt::format("{}: set {} of texture coordinates; only 0 and 1 are supported, the texture is left "
+                                   "out",
+                                   info.place(), uv_set));
+        return {};
+    }
+    texture.uv_set = static_cast<uint8_t>(uv_set);
+    const std::optional<JsonValue> reference = source.find("source");
+    if (!reference) {
+        messages_.warn(fmt::format("{}: the texture has no image that is supported; it is left out", source.place()));
+        return {};
+    }
+    texture.image = image(*reference);
+    return texture;
+}
+
+void Textures::read_sampler(const JsonValue& sampler, TextureRef& texture) const {
+    texture.wrap_s = read_wrap(sampler, "wrapS");
+    texture.wrap_t = read_wrap(sampler, "wrapT");
+    const uint64_t minify = sampler.unsigned_or("minFilter", kLinear);
+    if (minify != kNearest && minify != kLinear && (minify < kNearestMipmapNearest || minify > kLinearMipmapLinear)) {
+        throw sampler.at("minFilter").error(fmt::format("{}; expected 9728, 9729 or 9984 to 9987", minify));
+    }
+    // A path tracer averages many samples where a texture is minified; only magnification is left to choose.
+    const uint64_t magnify = sampler.unsigned_or("magFilter", minify == kNearest ? kNearest : kLinear);
+    if (magnify != kNearest && magnify != kLinear) {
+        throw sampler.at("magFilter").error(fmt::format("{}; expected 9728 or 9729", magnify));
+    }
+    texture.filter = magnify == kNearest ? TextureFilter::Nearest : TextureFilter::Linear;
+}
+
+int32_t Textures::image(const JsonValue& reference) {
+    const uint32_t index = document_.index_into("images", reference);
+    if (!images_[index]) images_[index] = add_image(document_.table("images")[index]);
+    return *images_[index];
+}
+
+int32_t Textures::add_image(const JsonValue& image) {
+    const std::string name =
+        fmt::format("{}{}{}", image.place(), image.find("name") ? " " : "", image.string_or("name", ""));
+    if (const std::optional<JsonValue> view = image.find("bufferView")) {
+        return loader_.add_bytes(name, buffers_.view(*view).bytes);
+    }
+    const std::optional<JsonValue> uri = image.find("uri");
+    if (!uri) throw image.error("an image without data; expected \"uri\" or \"bufferView\"");
+    const std::string_view text = uri->to_string();
+    if (!is_data_uri(text)) {
+        const std::optional<std::string> path = decode_path_uri(text);
+        if (!path) throw uri->error(fmt::format("\"{}\"; expected a relative path or a data URI", text));
+        return loader_.add_file(document_.path(), *path);
+    }
+    std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
+    if (!bytes) {
+        messages_.warn(fmt::format("{}: the data URI cannot be decoded; the texture is left out", uri->place()));
+        return kNoImage;
+    }
+    return loader_.add_bytes(name, embedded_.emplace_back(*std::move(bytes)));
+}
+
+} // namespace pertev::gltf

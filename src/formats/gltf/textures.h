@@ -1,0 +1,40 @@
+#pragma once
+
+// Texture slots of materials: glTF's textureInfo -> texture -> (image, sampler) chain as one TextureRef, with
+// KHR_texture_transform as a matrix. Images are handed to the TextureLoader, each once, when first used.
+
+#include <deque>
+#include <vector>
+
+#include "base/messages.h"
+#include "formats/gltf/buffers.h"
+#include "formats/gltf/document.h"
+#include "formats/load_textures.h"
+#include "scene/texture.h"
+
+namespace pertev::gltf {
+
+class Textures {
+public:
+    Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages)
+        : document_(document), buffers_(buffers), loader_(loader), messages_(messages),
+          images_(document.table("images").size()) {}
+
+    /// The texture that `info`, a textureInfo, describes. Without an image (missing, of a kind that is not supported,
+    /// over a third set of texture coordinates) after a warning.
+    TextureRef read(const JsonValue& info);
+
+private:
+    int32_t image(const JsonValue& reference);
+    int32_t add_image(const JsonValue& image);
+    void read_sampler(const JsonValue& sampler, TextureRef& texture) const;
+
+    const Document& document_;
+    Buffers& buffers_;
+    TextureLoader& loader_;
+    Messages& messages_;
+    std::vector<std::optional<int32_t>> images_;  // by glTF image: the loader's index, once asked for
+    std::deque<std::vector<std::byte>> embedded_; // what data URIs held; the loader reads it later
+};
+
+} // namespace pertev::gltf

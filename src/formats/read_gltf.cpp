@@ -1,0 +1,33 @@
+#include "formats/read_gltf.h"
+
+#include <fmt/format.h>
+
+#include "formats/gltf/materials.h"
+#include "formats/gltf/meshes.h"
+#include "formats/gltf/place_nodes.h"
+#include "formats/gltf/textures.h"
+#include "formats/load_textures.h"
+
+namespace pertev {
+
+Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
+                Messages& messages) {
+    Scene scene;
+    const gltf::Document document(path, messages);
+    gltf::Buffers buffers(document, access);
+    const gltf::NodeGraph nodes(document, messages);
+
+    TextureLoader loader(access, messages);
+    gltf::Textures textures(document, buffers, loader, messages);
+    gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, messages);
+    gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, messages);
+    gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
+    loader.load_into(scene);
+
+    if (document.root().find("animations")) {
+        messages.warn(fmt::format("{}: animations are not played", document.file()));
+    }
+    return scene;
+}
+
+} // namespace pertev

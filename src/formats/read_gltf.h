@@ -1,0 +1,23 @@
+#pragma once
+
+// Reads glTF 2.0, .gltf and .glb. The work is done by the files in formats/gltf, one part of the format each.
+//
+// Supported extensions: KHR_texture_transform, KHR_lights_punctual, KHR_materials_unlit, _ior and _emissive_strength,
+// KHR_mesh_quantization, EXT_meshopt_compression, EXT_mesh_gpu_instancing. Others are an error where the file requires
+// them and a warning where it only uses them.
+
+#include <filesystem>
+
+#include "base/messages.h"
+#include "formats/file_access.h"
+#include "formats/read_scene.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// The scene that the file shows by default, not yet validated. Throws Error(BadInput) that names the file and the JSON
+/// pointer. Normal maps without tangents leave Mesh::tangents empty: the renderer derives them.
+Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
+                Messages& messages);
+
+} // namespace pertev
