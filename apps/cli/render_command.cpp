@@ -40,7 +40,7 @@ struct RenderFlags {
     uint32_t max_depth = 16, seed = 0;
     int threads = 0;
     std::vector<std::string> aovs;
-    bool transparent = false, no_cache = false, quiet = false, verbose = false, json = false, strict = false;
+    bool transparent = false, no_cache = false, quiet = false, json = false, strict = false;
 };
 
 template <class T>
@@ -85,7 +85,8 @@ RenderSettings settings_of(const RenderFlags& flags, const Scene& scene) {
                      .light = choice(kIntegrators, flags.integrator),
                      .clamp = flags.clamp,
                      .sampler = choice(kSamplers, flags.sampler),
-                     .seed = flags.seed};
+                     .seed = flags.seed,
+                     .camera_axis = {}};
     return settings;
 }
 
@@ -162,14 +163,13 @@ int render(const RenderFlags& flags) {
     const Camera camera = choose_camera(flags.scene, scene, settings.width, settings.height, messages);
     const double load_s = seconds();
     PrepareOptions prepare;
-    if (!flags.no_cache) prepare.bvh_cache = default_bvh_cache_folder();
+    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);
     reporter.say(messages);
-    reporter.say(fmt::format("{}: {} triangles, {} instances, {} lights; loaded in {:.2f} s, tree {} in {:.2f} s; "
+    reporter.say(fmt::format("{}: {} triangles, {} instances, {} lights; loaded in {:.2f} s, trees in {:.2f} s; "
                              "rendering {}x{}, {} spp on {}, {:.0f} MiB there",
                              flags.scene.scene, prepared.triangles, scene.instances.size(),
-                             prepared.lights.choice.count, load_s, prepared.from_cache ? "from the cache" : "built",
-                             prepared.build_seconds, settings.width, settings.height, settings.samples,
+                             prepared.lights.choice.count, load_s, prepared.build_seconds, settings.width, settings.height, settings.samples,
                              queue->device_name(),
                              static_cast<double>(predicted_bytes(prepared, settings, queue->is_cuda())) / 1048576.0));
 

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
-#include "image/read_image.h"
+#include "formats/read_environment.h"
 #include "scene/defaults.h"
 
 namespace pertev {

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "formats/builtin_scenes.h"
+#include "formats/read_gltf.h"
 #include "formats/read_obj.h"
 #include "formats/read_ply.h"
 #include "scene/validate.h"
@@ -18,9 +20,11 @@ struct Reader {
     Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Messages&);
 };
 
-constexpr std::array kReaders = {
+const std::array kReaders = {
     Reader{".obj", read_obj},
     Reader{".ply", read_ply},
+    Reader{".gltf", read_gltf},
+    Reader{".glb", read_gltf},
 };
 
 const Reader& reader_for(const std::filesystem::path& path) {
@@ -42,6 +46,18 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
     const FileAccess access(path, options.allowed_paths);
     Scene scene = reader.read(path, access, options, messages);
     validate(scene, path.string(), messages);
+    return scene;
+}
+
+Scene read_builtin_scene(const std::string& name, Messages& messages) {
+    const auto bytes = builtin_scene(name);
+    if (!bytes) {
+        std::string known;
+        for (const std::string_view other : builtin_scene_names()) known += " " + std::string(other);
+        throw Error(ErrorCode::BadInput, fmt::format("{}: no built-in scene has this name; there are:{}", name, known));
+    }
+    Scene scene = read_gltf(name, {bytes->begin(), bytes->end()}, FileAccess(name, {}), {}, messages);
+    validate(scene, name, messages);
     return scene;
 }
 

@@ -25,7 +25,18 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t done, double seconds
     return std::min(left, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0)));
 }
 
+uint32_t batch_of(const RenderSettings& settings) {
+    const uint64_t paths = uint64_t(settings.width) * settings.height * settings.samples;
+    return static_cast<uint32_t>(std::min<uint64_t>(settings.batch, paths));
+}
+
 } // namespace
+
+std::size_t predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool on_cuda) {
+    const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
+    const bool wavefront = on_cuda || settings.body == PathBody::Wavefront;
+    return predicted_bytes(prepared) + film + (wavefront ? PathRenderer::kBytesPerPath * batch_of(settings) : 0);
+}
 
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                             const RenderSettings& settings,
@@ -36,10 +47,8 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
     Film film(queue, settings.width, settings.height, settings.aovs);
     const float radius = settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
     const PathBody body = queue.is_cuda() ? PathBody::Wavefront : settings.body;
-    const uint64_t paths = uint64_t(settings.width) * settings.height * settings.samples;
-    const auto batch = static_cast<uint32_t>(std::min<uint64_t>(settings.batch, paths));
     PathRenderer renderer(queue, scene.view(), camera, settings.filter, radius, settings.path, settings.width,
-                          settings.height, body, batch);
+                          settings.height, body, batch_of(settings));
     queue.wait();
     result.upload_seconds = seconds_since(start);
 

@@ -42,6 +42,9 @@ struct RenderResult {
     std::size_t device_peak_bytes = 0;
 };
 
+/// Bytes of device memory that render_picture will ask for.
+std::size_t predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool on_cuda);
+
 /// Renders until done, out of time, or `keep_going` (called after each pass) returns false; at least one sample.
 /// Throws Error(OutOfMemory, DeviceFault).
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,

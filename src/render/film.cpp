@@ -40,6 +40,11 @@ Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs)
     clear();
 }
 
+std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs) {
+    const std::size_t of_pixel = channel_count(aovs) * sizeof(FixedSum) + ((aovs & kAovIds) != 0 ? sizeof(PixelIds) : 0);
+    return std::size_t(width) * height * of_pixel + sizeof(uint64_t);
+}
+
 void Film::clear() {
     sums_.zero();
     ids_.zero();

@@ -24,6 +24,8 @@ public:
     /// `aovs`: AovBits. Starts at zero.
     Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs);
 
+    static std::size_t predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs);
+
     FilmView view() const;
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }

@@ -4,10 +4,7 @@
 
 #include <fmt/format.h>
 
-#if __has_include("accel/bvh/bvh_cache.h")
 #include "accel/bvh/bvh_cache.h"
-#define TMP_CACHE 1
-#endif
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "image/srgb_table.h"
@@ -76,36 +73,6 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const Placement& pl
     return triangles;
 }
 
-class TreeSource {
-public:
-    TreeSource(const PrepareOptions& options, Messages& messages) : options_(options), messages_(messages) {}
-
-    /// From the cache where it has this very tree, else built (and given to the cache).
-    Bvh make(std::vector<BvhTriangle> triangles) {
-        if (!options_.bvh_cache || triangles.empty()) return built(std::move(triangles));
-#ifdef TMP_CACHE
-        const Hash128 key = bvh_cache_key(triangles, options_.bvh);
-        if (std::optional<Bvh> cached = load_cached_bvh(key, *options_.bvh_cache, messages_)) return std::move(*cached);
-        Bvh bvh = built(std::move(triangles));
-        store_cached_bvh(bvh, key, *options_.bvh_cache, messages_);
-        return bvh;
-#else
-        return built(std::move(triangles));
-#endif
-    }
-    bool all_cached() const { return all_cached_; }
-
-private:
-    Bvh built(std::vector<BvhTriangle> triangles) {
-        all_cached_ = all_cached_ && triangles.empty();
-        return build_bvh(std::move(triangles), options_.bvh);
-    }
-
-    const PrepareOptions& options_;
-    Messages& messages_;
-    bool all_cached_ = true;
-};
-
 } // namespace
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages) {
@@ -113,16 +80,16 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     PreparedScene prepared;
     prepared.scene = &scene;
     const Placement placement = place_instances(scene);
-    TreeSource source(options, messages);
 
-    prepared.baked = source.make(baked_triangles(scene, placement));
+    prepared.baked = load_or_build_bvh(baked_triangles(scene, placement), options.bvh, options.bvh_cache, messages);
     prepared.mesh_bvhs.resize(placement.mesh_bvh_count);
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         if (placement.uses[i] > 0) prepared.unique_triangles += scene.meshes[i].triangle_count();
         if (placement.bvh_of_mesh[i] == kBaked) continue;
         std::vector<BvhTriangle> triangles(scene.meshes[i].triangle_count());
         add_triangles(scene.meshes[i], Transform{}, 0, triangles);
-        prepared.mesh_bvhs[placement.bvh_of_mesh[i]] = source.make(std::move(triangles));
+        prepared.mesh_bvhs[placement.bvh_of_mesh[i]] = 
+            load_or_build_bvh(triangles, options.bvh, options.bvh_cache, messages);
     }
     std::vector<PlacedBvh> placed;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -134,7 +101,6 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.top_level = build_top_level_bvh(placed);
     prepared.triangles = prepared.baked.triangles.size();
     for (const Bvh& bvh : prepared.mesh_bvhs) prepared.triangles += bvh.triangles.size();
-    prepared.from_cache = source.all_cached();
     prepared.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages);

@@ -29,8 +29,7 @@ struct PreparedScene {
     LightSetData lights;
     uint64_t triangles = 0;        // in all trees
     uint64_t unique_triangles = 0; // of all meshes used
-    double build_seconds = 0;      // trees alone
-    bool from_cache = false;       // every tree came from the cache
+    double build_seconds = 0;      // trees alone, built or read from the cache
 };
 
 /// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local

@@ -106,4 +106,24 @@ void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
     view.environment.table = upload(queue, lights.environment.table);
 }
 
+std::size_t predicted_bytes(const PreparedScene& prepared) {
+    const auto bytes_of = [](const auto& values) { return values.size() * sizeof(values[0]); };
+    std::size_t bytes = bytes_of(prepared.top_level.nodes) + bytes_of(prepared.top_level.instances);
+    const auto add_tree = [&](const Bvh& bvh) { bytes += bytes_of(bvh.nodes) + bytes_of(bvh.triangles); };
+    add_tree(prepared.baked);
+    for (const Bvh& bvh : prepared.mesh_bvhs) add_tree(bvh);
+    const Scene& scene = *prepared.scene;
+    for (const Mesh& mesh : scene.meshes) {
+        bytes += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.tangents) + bytes_of(mesh.uv[0]) +
+                 bytes_of(mesh.uv[1]) + bytes_of(mesh.colors) + bytes_of(mesh.indices);
+    }
+    for (const TextureImage& image : scene.images) bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
+    bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
+    const LightSetData& lights = prepared.lights;
+    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.choice.blocks) +
+             bytes_of(lights.choice.entries) + bytes_of(lights.environment.pixels) +
+             bytes_of(lights.environment.table.blocks) + bytes_of(lights.environment.table.entries);
+    return bytes;
+}
+
 } // namespace pertev

@@ -33,7 +33,7 @@ private:
     std::vector<Buffer<std::byte>> buffers_;
 };
 
-/// Bytes that SceneOnDevice will ask for, predicted before anything is allocated.
+/// Bytes that SceneOnDevice will ask for.
 std::size_t predicted_bytes(const PreparedScene& prepared);
 
 } // namespace pertev

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/read_file.h"
+#include "base/error.h"
 
 namespace pertev::gltf {
 namespace {
@@ -38,8 +38,8 @@ bool is_supported(std::string_view extension) {
 
 } // namespace
 
-Document::Document(const std::filesystem::path& path, Messages& messages)
-    : path_(path), file_(path.string()), bytes_(read_file(path)), json_chunk_(bytes_) {
+Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
+    : path_(path), file_(path.string()), bytes_(std::move(bytes)), json_chunk_(bytes_) {
     if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) split_glb();
     parse(json_chunk_);
     check_version();

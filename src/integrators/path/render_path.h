@@ -28,6 +28,9 @@ public:
                  const PathSettings& settings, uint32_t width, uint32_t height, PathBody body,
                  uint32_t batch = 1u << 22);
 
+    /// Device memory that the wavefront takes for each path in flight.
+    static constexpr std::size_t kBytesPerPath = 8 * sizeof(Float4) + 3 * sizeof(Uint4) + 2 * sizeof(uint32_t);
+
     /// Adds samples [first, first + count) of every pixel to `film` and returns when that is done. Throws
     /// Error(DeviceFault) when the GPU fails.
     void render(uint32_t first, uint32_t count, Film& film);
