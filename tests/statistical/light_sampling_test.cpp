@@ -185,18 +185,65 @@ TEST_CASE("lights: a texture's emission is where the texture has it") {
     }
 }
 
-TEST_CASE("lights: a triangle whose texture is bright in one texel alone is still drawn") {
+TEST_CASE("lights: a triangle is drawn wherever its texture has one bright texel, and not where it has none") {
+    std::mt19937 random(8);
+    int drawn = 0, dark = 0;
+    for (int i = 0; i < 400; ++i) {
+        constexpr uint32_t width = 300, height = 200;
+        Scene scene;
+        Mesh mesh = make_square(1);
+        const auto coordinate = [&] { return static_cast<float>(random() % 2000) / 500.0f - 2.0f; };
+        const Vec2 corner = {coordinate(), coordinate()};
+        const float side = i % 2 == 0 ? 0.1f : 0.7f;
+        for (Vec2& uv : mesh.uv[0]) uv = corner + side * uv;
+        add_emitter(scene, mesh, {1, 1, 1}, make_translation({0, 1, 0}));
+        TextureImage image;
+        image.rgba8 = {width, height, std::vector<uint8_t>(std::size_t(4) * width * height)};
+        image.rgba8.pixels[4 * (random() % (width * height))] = 255;
+        scene.images.push_back(image);
+        TextureRef& ref = scene.materials[0].emission_texture;
+        ref.image = 0;
+        ref.wrap_s = ref.wrap_t = static_cast<Wrap>(i % 3);
+        ref.filter = i % 5 == 0 ? TextureFilter::Nearest : TextureFilter::Linear;
+        const Lights lights(scene);
+
+        std::array<bool, 2> is_lit{}; // each triangle, looked at in every part
+        constexpr int steps = 500;
+        for (int a = 0; a <= steps; ++a) {
+            for (int b = 0; a + b <= steps; ++b) {
+                const float b1 = static_cast<float>(a) / steps, b2 = static_cast<float>(b) / steps;
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const EmissiveTriangle& t = lights.view.triangles[k];
+                    const Vec2 uv = (1 - b1 - b2) * t.uv0 + b1 * t.uv1 + b2 * t.uv2;
+                    if (!is_black(surface_emission(lights.view, 0, uv))) is_lit[k] = true;
+                }
+            }
+        }
+        for (uint32_t k = 0; k < 2; ++k) {
+            const bool is_drawn = lights.view.choice.count > 0 && alias_pmf(lights.view.choice, k) > 0;
+            CAPTURE(i);
+            if (is_lit[k]) CHECK(is_drawn);
+            drawn += is_drawn ? 1 : 0;
+            dark += is_drawn ? 0 : 1;
+        }
+    }
+    CHECK(drawn > 40);
+    CHECK(dark > 100);
+}
+
+TEST_CASE("lights: triangles of a textured mesh are drawn as their texture shines") {
     Scene scene;
-    add_emitter(scene, make_square(1), {1, 1, 1}, make_translation({0, 1, 0}));
-    TextureImage image;
-    image.rgba8 = {1024, 1024, std::vector<uint8_t>(4u << 20)};
-    for (std::size_t c = 0; c < 4; ++c) image.rgba8.pixels[4 * (1024 * 700 + 100) + c] = 255;
-    scene.images.push_back(image);
-    scene.materials[0].emission_texture.image = 0;
-    add_emitter(scene, make_square(1), {5, 5, 5}, make_translation({0, 3, 0}));
+    add_emitter(scene, make_square(16), {1, 1, 1}, make_translation({0, 1, 0}));
+    add_checkers(scene, 4, TextureFilter::Nearest);
     const Lights lights(scene);
-    CHECK(alias_pmf(lights.view.choice, 0) > 0);
-    CHECK(alias_pmf(lights.view.choice, 0) < 0.1f);
+    double on_bright = 0;
+    for (uint32_t i = 0; i < lights.view.triangle_count; ++i) {
+        const EmissiveTriangle& t = lights.view.triangles[i];
+        const Vec2 centre = 0.25f * (t.uv0 + t.uv1) + 0.5f * t.uv2;
+        if (!is_black(surface_emission(lights.view, 0, centre)))
+            on_bright += as_double(alias_pmf(lights.view.choice, i));
+    }
+    CHECK(on_bright > 0.8); // some dark ones touch a bright square
 }
 
 TEST_CASE("lights: point, spot and directional lights give what their definitions say") {
