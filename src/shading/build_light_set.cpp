@@ -1,10 +1,12 @@
 #include "shading/build_light_set.h"
 
 #include <algorithm>
-#include <string>
+#include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "shading/brightness_pyramid.h"
 
 namespace pertev {
 namespace {
@@ -15,32 +17,33 @@ double mean_of_channels(Rgb c) {
     return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3.0;
 }
 
-/// Emission averaged over the centroids of 16 equal parts of the triangle. Where there is a texture, at least 1/64 of
-/// what it would be without: the texture may be bright between the lookups.
-double mean_emission(const LightSetView& view, const EmissiveTriangle& triangle) {
-    const SurfaceEmission& surface = view.emissions[triangle.material];
-    const double untextured = mean_of_channels(surface.emission);
-    if (surface.texture.image == kNoImage) return untextured;
-    double sum = 0;
-    const auto add = [&](float b1, float b2) {
-        const Vec2 uv = (1.0f - b1 - b2) * triangle.uv0 + b1 * triangle.uv1 + b2 * triangle.uv2;
-        sum += std::max(0.0, mean_of_channels(surface_emission(view, triangle.material, uv)));
-    };
-    for (int i = 0; i < 4; ++i) {
-        for (int j = 0; i + j < 4; ++j) {
-            const float x = static_cast<float>(i), y = static_cast<float>(j);
-            add((x + 1.0f / 3.0f) / 4.0f, (y + 1.0f / 3.0f) / 4.0f);
-            if (i + j < 3) add((x + 2.0f / 3.0f) / 4.0f, (y + 2.0f / 3.0f) / 4.0f);
-        }
+/// Pyramids of the textures that lights of the scene emit by, each (image, encoding) once.
+using Pyramids = std::map<std::pair<int32_t, bool>, BrightnessPyramid>;
+
+Pyramids build_pyramids(const LightSetData& data, const std::vector<TextureImageView>& images,
+                        const float* linear_from_srgb) {
+    Pyramids pyramids;
+    for (const SurfaceEmission& surface : data.emissions) {
+        const TextureRef& ref = surface.texture;
+        if (ref.image == kNoImage || is_black(surface.emission)) continue;
+        const auto key = std::pair(ref.image, ref.is_srgb);
+        if (pyramids.contains(key)) continue;
+        const TextureImageView& image = images[static_cast<std::size_t>(ref.image)];
+        pyramids.try_emplace(key, image, ref.is_srgb, linear_from_srgb);
     }
-    return std::max(sum / 16.0, untextured / 64.0);
+    return pyramids;
 }
 
-double triangle_power(const LightSetView& view, const EmissiveTriangle& triangle) {
+double triangle_power(const LightSetData& data, const Pyramids& pyramids, const EmissiveTriangle& triangle) {
     const Vec3 normal = cross(triangle.ab, triangle.ac);
     const double area = 0.5 * static_cast<double>(length(normal));
-    if (!(static_cast<double>(dot(normal, normal)) > 0)) return 0; // no area, or too small to divide by
-    return 2 * kPiDouble * area * mean_emission(view, triangle);
+    if (!(dot(normal, normal) > 0)) return 0; // no area, or too small to divide by
+    const SurfaceEmission& surface = data.emissions[triangle.material];
+    const double untextured = 2 * kPiDouble * area * mean_of_channels(surface.emission);
+    const TextureRef& ref = surface.texture;
+    if (ref.image == kNoImage) return untextured;
+    const BrightnessPyramid& pyramid = pyramids.at({ref.image, ref.is_srgb});
+    return untextured * pyramid.mean_over_triangle(ref, triangle.uv0, triangle.uv1, triangle.uv2);
 }
 
 double punctual_power(const PunctualLight& light, double radius) {
@@ -129,11 +132,12 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     const Bounds3 bounds = bounds_of(scene);
     const double radius = bounds.is_empty() ? 1.0 : 0.5 * static_cast<double>(length(bounds.size()));
     const std::vector<TextureImageView> images = views_of_images(scene);
-    const LightSetView view = view_of(data, images.data(), linear_from_srgb);
+    const Pyramids pyramids = build_pyramids(data, images, linear_from_srgb);
 
     std::vector<double> powers(data.triangles.size() + data.punctual.size() + (data.has_environment ? 1 : 0));
     std::vector<bool> is_far; // of the lights after the triangles
-    parallel_for(data.triangles.size(), 1024, [&](uint64_t i) { powers[i] = triangle_power(view, data.triangles[i]); });
+    parallel_for(data.triangles.size(), 1024,
+                 [&](uint64_t i) { powers[i] = triangle_power(data, pyramids, data.triangles[i]); });
     for (std::size_t i = 0; i < data.punctual.size(); ++i) {
         powers[data.triangles.size() + i] = punctual_power(data.punctual[i], radius);
         is_far.push_back(data.punctual[i].kind == LightKind::Directional);

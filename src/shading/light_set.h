@@ -12,6 +12,7 @@
 
 #include "base/host_device.h"
 #include "math/rgb.h"
+#include "math/sampling.h"
 #include "math/scalar.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
@@ -105,8 +106,7 @@ HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float dist
 HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, float pmf, Vec3 from_point, Vec2 u,
                                      LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
-    const float root = sqrt(u.x);
-    const Vec2 b = {1.0f - root, u.y * root}; // uniform in area
+    const Vec2 b = sample_uniform_triangle(u);
     const Vec3 point = triangle.a + (b.x * triangle.ab + b.y * triangle.ac);
     const Vec3 to_light = point - from_point;
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);

@@ -78,6 +78,7 @@ HD inline Vec3 valid_normal(Vec3 normal, Vec3 geometric_normal, Vec3 wo) {
     const Vec3 mirrored = 2.0f * facing * normal - wo;
     const float height = dot(mirrored, geometric_normal);
     if (height >= least && facing > 0) return normal;
+    if (above < 1e-3f) return geometric_normal; // so flat that the sum below would cancel
     const Vec3 along = normalize_or(mirrored - height * geometric_normal, {0, 0, 0});
     const Vec3 raised = safe_sqrt(1.0f - square(least)) * along + least * geometric_normal;
     return normalize_or(wo + raised, geometric_normal);
