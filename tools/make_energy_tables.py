@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Writes src/shading/energy_table_data.h: how much energy GGX microfacets lose to single scattering.
 
-Run from anywhere, needs numpy, takes about three minutes of one core:  tools/make_energy_tables.py
+Run from anywhere, needs numpy, takes about two minutes of one core:  tools/make_energy_tables.py
 
 Each value is an integral over the distribution of visible normals (Heitz 2018; Dupuy and Benyoub 2023 for the warp),
 done with a product rule: Gauss-Legendre along the cap's height, midpoints about its axis (the integrand is even and
 periodic there). Axes and meaning are stated in src/shading/energy_tables.h, which must agree with this file.
 
 The tables are interpolated linearly. Where the chord lies above the curve a lookup would give energy away that was
-never lost, so nodes are lowered until no cell's midpoint overshoots by more than kOvershoot.
+never lost, so nodes are lowered where the inside of a cell overshoots by more than OVERSHOOT.
 """
 
 import pathlib
@@ -16,8 +16,8 @@ import sys
 
 import numpy as np
 
-MU_NODES, R_NODES, ETA_NODES, AVERAGE_NODES = 32, 24, 12, 64
-ALPHA_MIN, ETA_MIN, ETA_MAX = 1e-3, 1.05, 3.0
+MU_NODES, R_NODES, ETA_NODES, AVERAGE_NODES = 40, 24, 16, 64
+ALPHA_MIN, ETA_MIN, ETA_MAX = 1e-3, 1.1, 3.0
 R_MIN = np.sqrt(ALPHA_MIN)
 OVERSHOOT = 3e-4
 
@@ -79,12 +79,12 @@ def scattered(mu, alpha, eta=None):
 
 
 def mu_at(x, alpha):
-    t = x * x
-    return np.maximum(t * alpha / (1 - t + t * alpha), 1e-6)
+    t = alpha * x * x
+    return np.maximum(t / ((1 - x) ** 2 + t), 1e-6)
 
 
 def x_at(mu, alpha):
-    return np.sqrt(mu / (mu + alpha * (1 - mu)))
+    return np.sqrt(mu) / (np.sqrt(mu) + np.sqrt(alpha * (1 - mu)))
 
 
 def alpha_at(r):
@@ -100,26 +100,38 @@ def nodes(n):
     return np.arange(n) / (n - 1)
 
 
-def middles(n):
-    return (np.arange(n - 1) + 0.5) / (n - 1)
-
-
 def lowered(value_at, table):
-    """`table` over nodes of each axis, lowered where linear interpolation overshoots at the middle of an edge."""
-    axes = [nodes(n) for n in table.shape]
-    for axis, n in enumerate(table.shape):
-        grid = axes[:axis] + [middles(n)] + axes[axis + 1:]
-        truth = np.array([value_at(*p) for p in np.stack(np.meshgrid(*grid, indexing="ij"), -1).reshape(-1, len(grid))])
-        truth = truth.reshape([len(g) for g in grid])
-        low = np.take(table, range(n - 1), axis)
-        high = np.take(table, range(1, n), axis)
-        error = (low + high) / 2 - truth
-        print(f"  axis {axis}: interpolation error {error.min():.5f} .. {error.max():.5f}", file=sys.stderr)
-        excess = np.maximum(error - OVERSHOOT, 0)
-        pad_low = np.concatenate([excess, np.zeros_like(np.take(excess, [0], axis))], axis)
-        pad_high = np.concatenate([np.zeros_like(np.take(excess, [0], axis)), excess], axis)
-        table = table - np.maximum(pad_low, pad_high)
-    return np.clip(table, 0, 1)
+    """`table` over nodes of each axis, lowered where linear interpolation overshoots inside a cell."""
+    corners = np.stack(np.meshgrid(*[[0, 1]] * table.ndim, indexing="ij"), -1).reshape(-1, table.ndim)
+    inner = [n - 1 for n in table.shape]
+    excess = np.zeros(inner)
+    # The middle of the cell, of each face and of each edge, and three places along mu, where the curves bend most.
+    for place in np.stack(np.meshgrid(*[[0, 0.5]] * (table.ndim - 1), [0, 0.25, 0.5, 0.75], indexing="ij"),
+                          -1).reshape(-1, table.ndim):
+        if not np.any(place):
+            continue  # a corner
+        cells = [n - 1 if p else n for n, p in zip(table.shape, place)]
+        grid = [(np.arange(c) + p) / (n - 1) for c, p, n in zip(cells, place, table.shape)]
+        points = np.stack(np.meshgrid(*grid, indexing="ij"), -1).reshape(-1, table.ndim)
+        truth = np.array([value_at(*p) for p in points]).reshape(cells)
+        chord = np.zeros(cells)
+        for corner in corners:
+            weight = np.prod(np.where(corner == 1, place, 1 - place))
+            if weight > 0:
+                chord += weight * table[tuple(slice(c, c + k) if p else slice(0, k)
+                                              for c, k, p in zip(corner, cells, place))]
+        error = chord - truth
+        print(f"  {place}: interpolation error {error.min():.5f} .. {error.max():.5f}", file=sys.stderr)
+        for corner in corners:  # a face belongs to both cells beside it
+            if np.all((corner == 0) | (place == 0)):
+                part = error[tuple(slice(c, c + k) if p == 0 else slice(None)
+                                   for c, k, p in zip(corner, inner, place))]
+                excess = np.maximum(excess, part - OVERSHOOT)
+    drop = np.zeros(table.shape)
+    for corner in corners:
+        at = tuple(slice(c, c + k) for c, k in zip(corner, inner))
+        drop[at] = np.maximum(drop[at], excess)
+    return table - drop
 
 
 def tabulate(value_at, shape):
@@ -167,18 +179,21 @@ def main():
     print("metal", file=sys.stderr)
     metal = lambda r, x: 1 - scattered(mu_at(x, alpha_at(r)), alpha_at(r))[0]
     lost = quantised(lowered(metal, tabulate(metal, (R_NODES, MU_NODES))))
-    # The Fresnel-weighted part varies with mu alone where alpha is small, so its axis is sqrt(mu).
+    # Schlick's weight of the half vector less that of mu itself: goes to 0 with alpha. Rather too much than too little,
+    # since what the coat takes the base does not get.
     def schlick(r, x):
-        e, b = scattered(max(x * x, 1e-6), alpha_at(r))
-        return b / e
-    schlick_part = quantised(1 - lowered(lambda r, x: 1 - schlick(r, x), 1 - tabulate(schlick, (R_NODES, MU_NODES))))
+        mu = mu_at(x, alpha_at(r))
+        e, b = scattered(mu, alpha_at(r))
+        return 0.5 * (1 - (b / e - (1 - mu) ** 5))
+    schlick_part = quantised(1 - lowered(schlick, tabulate(schlick, (R_NODES, MU_NODES))))
 
     average_lost, average_schlick = [], []
     for r in nodes(AVERAGE_NODES):
         row = interpolate(lost / 65535, [r])
         average_lost.append(average(row, alpha_at(r)) / alpha_at(r))
-        e = 1 - np.interp(x_at(_am, alpha_at(r)), nodes(MU_NODES), row)
-        b = np.interp(np.sqrt(_am), nodes(MU_NODES), interpolate(schlick_part / 65535, [r]))
+        x = x_at(_am, alpha_at(r))
+        e = 1 - np.interp(x, nodes(MU_NODES), row)
+        b = (1 - _am) ** 5 + 2 * np.interp(x, nodes(MU_NODES), interpolate(schlick_part / 65535, [r])) - 1
         average_schlick.append(np.sum(AVERAGE_WEIGHT * e * b))
 
     glass, average_glass = [], []
@@ -211,7 +226,7 @@ inline constexpr float kAlphaMin = {ALPHA_MIN:g}f, kIorMin = {ETA_MIN:g}f, kIorM
 """
     body = [
         array("uint16_t", "metal_lost_at", flat(lost), "65535 (1 - E), F = 1: [roughness][mu]"),
-        array("uint16_t", "metal_schlick_at", flat(schlick_part), "65535 B / E: [roughness][sqrt(mu)]"),
+        array("uint16_t", "metal_schlick_at", flat(schlick_part), "65535 (1 + B / E - (1 - mu)^5) / 2: [roughness][mu]"),
         array("float", "metal_average_lost_at", average_lost, "average of 1 - E, over alpha: [roughness]"),
         array("float", "metal_average_schlick_at", average_schlick, "average of B: [roughness]"),
         array("uint16_t", "glass_lost_at", flat(glass), "65535 (1 - E): [outside, inside][ior][roughness][mu]"),

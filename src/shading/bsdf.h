@@ -98,7 +98,7 @@ HD inline Bsdf make_diffuse(Rgb albedo) { return {.kind = BsdfKind::Diffuse, .co
 HD inline Bsdf make_conductor(Rgb eta, Rgb k, float roughness) {
     return {.kind = BsdfKind::Conductor, .alpha = alpha_from_roughness(roughness), .color = eta, .k = k};
 }
-/// `ior` > 0, inside over outside; a rough one's is moved into [1.05, 3] (or its inverse). `tint` in [0, 1].
+/// `ior` > 0, inside over outside; a rough one's is moved into [1.1, 3] (or its inverse). `tint` in [0, 1].
 HD inline Bsdf make_dielectric(float ior, float roughness, Rgb tint) {
     const float alpha = alpha_from_roughness(roughness);
     return {.kind = BsdfKind::Dielectric, .alpha = alpha, .ior = DielectricBsdf::usable_ior(ior, alpha), .color = tint};

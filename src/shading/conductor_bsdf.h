@@ -2,14 +2,15 @@
 
 // Metal: exact Fresnel reflectance of a complex index, GGX microfacets, perfectly smooth below kSmoothAlpha. What
 // single scattering loses comes back through a reciprocal second lobe (energy_tables.h). Both sides reflect alike.
-// sample() takes a visible normal with the probability of the share that one bounce returns, else a cosine lobe.
+// sample() takes a visible normal with the probability of the share that one bounce returns, else the
+// grazing lobe.
 
 #include "base/host_device.h"
 #include "shading/bsdf_sample.h"
-#include "shading/diffuse_bsdf.h"
 #include "shading/energy_tables.h"
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
+#include "shading/grazing_lobe.h"
 
 namespace pertev {
 
@@ -45,7 +46,7 @@ struct ConductorBsdf {
         const float lost = metal_average_lost(alpha), cosine = i.z * kInvPi;
         const Rgb more = multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
         return {once.f * fresnel_conductor(once.cos_h, eta, k) + (cosine * lost_o * lost_i / lost) * more,
-                (1.0f - lost_o) * once.pdf + lost_o * cosine};
+                (1.0f - lost_o) * once.pdf + lost_o * pdf_grazing_lobe(i.z, alpha)};
     }
     HD Rgb eval(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).f; }
     HD float pdf(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).pdf; }
@@ -57,13 +58,13 @@ struct ConductorBsdf {
                 .wi = {-wo.x, -wo.y, wo.z}, .weight = fresnel_conductor(abs(wo.z), eta, k), .pdf = 1, .is_delta = true};
         Vec3 wi;
         if (u_lobe < metal_lost(abs(wo.z), alpha)) {
-            wi = sample_cosine_beside(wo, u);
+            wi = sample_grazing_lobe(alpha, u);
         } else {
             const Vec3 o = {wo.x, wo.y, abs(wo.z)};
             wi = normalize(reflect(o, sample_ggx_visible_normal(o, alpha, u)));
             if (!(wi.z > 0)) return {}; // into the surface: lost, and part of what the second lobe returns
-            wi.z = copysign(wi.z, wo.z);
         }
+        wi.z = copysign(wi.z, wo.z);
         const BsdfValue value = evaluate(wo, wi);
         if (!(value.pdf > 0)) return {};
         return {.wi = wi, .weight = (1.0f / value.pdf) * value.f, .pdf = value.pdf};

@@ -11,17 +11,17 @@
 #include "base/host_device.h"
 #include "shading/bsdf_sample.h"
 #include "shading/conductor_bsdf.h"
-#include "shading/diffuse_bsdf.h"
 #include "shading/energy_tables.h"
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
+#include "shading/grazing_lobe.h"
 
 namespace pertev {
 
 struct DielectricBsdf {
     Rgb tint;    // factor on what is transmitted, [0, 1]
     float alpha; // GGX width = roughness^2, [0, 1]
-    float ior;   // inside over outside; where rough within [1.05, 3] or its inverse (usable_ior)
+    float ior;   // inside over outside; where rough within [1.1, 3] or its inverse (usable_ior)
 
     /// What a rough surface can use of an index: the range of the energy tables. 1 is kept: no interface at all.
     HD static float usable_ior(float ior, float alpha) {
@@ -43,16 +43,16 @@ struct DielectricBsdf {
         const float lost_o = glass_lost(o.z, alpha, eta), average_o = glass_average_lost(alpha, eta);
         const float average_far = glass_average_lost(alpha, 1.0f / eta);
         const float share = transmitted_share(eta, average_o, average_far);
-        const float cosine = cos_i * kInvPi;
+        const float cosine = cos_i * kInvPi, grazing = pdf_grazing_lobe(cos_i, alpha);
         if (!transmitted) {
             const GgxReflection once = evaluate_ggx_reflection(o, {wi.x, wi.y, cos_i}, alpha);
             const float reflectance = fresnel_dielectric(once.cos_h, eta).reflectance;
             const float more = (1.0f - share) * lost_o * glass_lost(cos_i, alpha, eta) / average_o;
             return {grey(once.f * reflectance + cosine * more),
-                    (1.0f - lost_o) * reflectance * once.pdf + lost_o * (1.0f - share) * cosine};
+                    (1.0f - lost_o) * reflectance * once.pdf + lost_o * (1.0f - share) * grazing};
         }
         float f = share * lost_o * glass_lost(cos_i, alpha, 1.0f / eta) / average_far * cosine;
-        float pdf = lost_o * share * cosine;
+        float pdf = lost_o * share * grazing;
         // The half vector of refraction; its length is |wo . h + eta wi . h|.
         const Vec3 i = {wi.x, wi.y, -cos_i};
         const Vec3 sum = o + eta * i;
@@ -82,7 +82,7 @@ struct DielectricBsdf {
         if (u_lobe < lost) {
             const float share =
                 transmitted_share(eta, glass_average_lost(alpha, eta), glass_average_lost(alpha, 1.0f / eta));
-            i = sample_cosine_hemisphere(u);
+            i = sample_grazing_lobe(alpha, u);
             if (u_lobe < lost * share) i.z = -i.z;
         } else {
             const Vec3 m = sample_ggx_visible_normal(o, alpha, u);

@@ -16,13 +16,6 @@
 
 namespace pertev {
 
-/// Cosine-distributed direction on the side of `wo`.
-HD inline Vec3 sample_cosine_beside(Vec3 wo, Vec2 u) {
-    Vec3 wi = sample_cosine_hemisphere(u);
-    if (wo.z < 0) wi.z = -wi.z;
-    return wi;
-}
-
 struct DiffuseBsdf {
     Rgb albedo; // [0, 1] per channel, linear Rec. 709
 
@@ -34,7 +27,8 @@ struct DiffuseBsdf {
     HD Rgb eval(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).f; }
     HD float pdf(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).pdf; }
     HD BsdfSample sample(Vec3 wo, float, Vec2 u) const { // lobe choice unused: there is one lobe
-        const Vec3 wi = sample_cosine_beside(wo, u);
+        Vec3 wi = sample_cosine_hemisphere(u);
+        wi.z = copysign(wi.z, wo.z);
         const float density = pdf(wo, wi);
         if (!(density > 0)) return {};
         return {.wi = wi, .weight = albedo, .pdf = density};

@@ -5,14 +5,15 @@
 // Source: Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH course 2017.
 // With e(mu) the lost share seen from a direction of cosine mu, and its average e_avg = 2 int e(mu) mu dmu, the lobe
 // e(o) e(i) / (pi e_avg) is reciprocal and carries e(o), exactly what is missing, whatever e is, as long as e_avg
-// belongs to the interpolated e. The tables (energy_table_data.h) never say more than is lost, up to 3e-4.
-// Axes: x = sqrt(mu / (mu + alpha (1 - mu))), because e is a function of mu / alpha where both are small;
-// roughness sqrt(alpha) from alpha = 1e-3 to 1; sqrt((ior - 1) / (ior + 1)) for ior from 1.05 to 3.
+// belongs to the interpolated e. Linear interpolation; the tables err, where they must, towards too little light.
+// Axes: x = a / (a + b), a^2 = mu, b^2 = alpha (1 - mu), since e is a function of mu / alpha where both are small;
+// roughness sqrt(alpha) from alpha = 1e-3 to 1; sqrt((ior - 1) / (ior + 1)) for ior from 1.1 to 3.
 
 #include "base/host_device.h"
 #include "math/rgb.h"
 #include "math/scalar.h"
 #include "shading/energy_table_data.h"
+#include "shading/fresnel.h"
 
 namespace pertev {
 
@@ -30,13 +31,16 @@ HD inline Cell make_cell(float x, int nodes) {
     return {node, p - static_cast<float>(node)};
 }
 
-HD inline Cell mu_cell(float mu, float alpha) { return make_cell(sqrt(mu / (mu + alpha * (1.0f - mu))), kMuNodes); }
+HD inline Cell mu_cell(float mu, float alpha) {
+    const float root = sqrt(mu);
+    return make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
+}
 HD inline Cell roughness_cell(float alpha, int nodes) {
     constexpr float lowest = 0.031622776f; // sqrt(kAlphaMin)
     return make_cell((sqrt(alpha) - lowest) * (1.0f / (1.0f - lowest)), nodes);
 }
 HD inline Cell ior_cell(float ior) {
-    constexpr float lowest = 0.15617376f, highest = 0.70710678f; // of kIorMin and kIorMax
+    constexpr float lowest = 0.21821789f, highest = 0.70710678f; // of kIorMin and kIorMax
     return make_cell((safe_sqrt((ior - 1.0f) / (ior + 1.0f)) - lowest) * (1.0f / (highest - lowest)), kIorNodes);
 }
 
@@ -72,8 +76,9 @@ HD inline float metal_average_lost(float alpha) {
 /// Average of (1 - cos)^5, Schlick's weight, over what a reflector with F = 1 reflects at cosine `mu`.
 HD inline float metal_schlick(float mu, float alpha) {
     using namespace energy_table;
-    return kUnit * along([](int i) { return metal_schlick_at(i); }, 0, roughness_cell(alpha, kRoughnessNodes),
-                         make_cell(sqrt(mu), kMuNodes), kMuNodes);
+    const float beyond = along([](int i) { return metal_schlick_at(i); }, 0, roughness_cell(alpha, kRoughnessNodes),
+                               mu_cell(mu, alpha), kMuNodes);
+    return schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f);
 }
 /// 2 int (1 - metal_lost(mu)) metal_schlick(mu) mu dmu
 HD inline float metal_average_schlick(float alpha) {

@@ -13,6 +13,7 @@
 #include "shading/energy_tables.h"
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
+#include "shading/grazing_lobe.h"
 
 namespace pertev {
 
@@ -36,13 +37,13 @@ struct MetallicRoughnessBsdf {
             value.f = (cosine * (1.0f - metallic) * (1.0f - lobes.at_o.coat) * (1.0f - at_i.coat) /
                        (1.0f - lobes.average.coat)) *
                       base_color;
-        value.pdf = (1.0f - lobes.p_specular) * cosine;
+        value.pdf = lobes.p_base * cosine;
         if (is_smooth()) return value;
 
         const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
         value.f += once.f * fresnel_schlick(once.cos_h, mixed_f0()) +
                    (cosine * lobes.at_o.lost * at_i.lost / lobes.average.lost) * lobes.average.more;
-        value.pdf += lobes.p_specular * once.pdf;
+        value.pdf += lobes.p_specular * once.pdf + lobes.p_more * pdf_grazing_lobe(i.z, alpha);
         return value;
     }
     HD Rgb eval(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).f; }
@@ -51,18 +52,22 @@ struct MetallicRoughnessBsdf {
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         if (wo.z == 0) return {};
         const Vec3 o = {wo.x, wo.y, abs(wo.z)};
-        const float p_specular = make_lobes(o.z).p_specular;
+        const Lobes lobes = make_lobes(o.z);
         Vec3 wi;
-        if (!(u_lobe < p_specular)) {
-            wi = sample_cosine_beside(wo, u);
+        if (u_lobe < lobes.p_base) {
+            wi = sample_cosine_hemisphere(u);
+        } else if (u_lobe - lobes.p_base < lobes.p_more) {
+            wi = sample_grazing_lobe(alpha, u);
         } else if (is_smooth()) {
-            const Rgb f = fresnel_schlick(o.z, mixed_f0());
-            return {.wi = {-wo.x, -wo.y, wo.z}, .weight = (1.0f / p_specular) * f, .pdf = p_specular, .is_delta = true};
+            return {.wi = {-wo.x, -wo.y, wo.z},
+                    .weight = (1.0f / lobes.p_specular) * fresnel_schlick(o.z, mixed_f0()),
+                    .pdf = lobes.p_specular,
+                    .is_delta = true};
         } else {
             wi = normalize(reflect(o, sample_ggx_visible_normal(o, alpha, u)));
             if (!(wi.z > 0)) return {};
-            wi.z = copysign(wi.z, wo.z);
         }
+        wi.z = copysign(wi.z, wo.z);
         const BsdfValue value = evaluate(wo, wi);
         if (!(value.pdf > 0)) return {};
         return {.wi = wi, .weight = (1.0f / value.pdf) * value.f, .pdf = value.pdf};
@@ -82,7 +87,8 @@ private:
     struct Lobes {
         Average average;
         Albedo at_o;
-        float p_specular; // probability of sampling a visible normal (or the mirror)
+        // Probabilities of sampling a visible normal (or the mirror), the grazing lobe, a cosine lobe.
+        float p_specular, p_more, p_base;
     };
 
     HD Rgb mixed_f0() const { return lerp(grey(f0), base_color, metallic); }
@@ -112,10 +118,12 @@ private:
         const float once = (1.0f - lobes.at_o.lost) * (specular_f0 + (1.0f - specular_f0) * lobes.at_o.schlick);
         const float more = lobes.at_o.lost * max_component(lobes.average.more);
         const float base = (1.0f - metallic) * max_component(base_color) * (1.0f - lobes.at_o.coat);
-        const float cosine = more + base;
-        // A lobe that is not there gets probability 0; one that is there at least 1/16, against fireflies where the
-        // energy seen from wo is no guide to the value at wi.
-        lobes.p_specular = cosine > 0 ? clamp(once / (once + cosine), 0.0625f, 0.9375f) : 1.0f;
+        // The visible normals keep at least 1/16, against fireflies where the energy seen from wo is no guide to the
+        // value at wi.
+        lobes.p_specular = more + base > 0 ? max(once / (once + more + base), 0.0625f) : 1.0f;
+        const float rest = more + base > 0 ? (1.0f - lobes.p_specular) / (more + base) : 0.0f;
+        lobes.p_more = rest * more;
+        lobes.p_base = rest * base;
         return lobes;
     }
 };
