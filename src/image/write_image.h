@@ -15,11 +15,11 @@
 namespace pertev {
 
 struct WriteImageOptions {
-    ToneMap tone_map = ToneMap::Srgb; // of PNG and JPEG
-    float exposure_stops = 0;         // of PNG and JPEG
-    bool transparent = false;         // keep alpha in PNG; EXR keeps what the picture has
-    std::span<const ExrLayer> layers; // EXR alone
-    ExrMetadata metadata;             // EXR alone
+    ToneMap tone_map = ToneMap::Srgb;      // of PNG and JPEG
+    float exposure_stops = 0;              // of PNG and JPEG
+    bool transparent = false;              // keep alpha in PNG; EXR keeps what the picture has
+    std::span<const ExrLayer> layers = {}; // EXR alone
+    ExrMetadata metadata = {};             // EXR alone
 };
 
 /// The format of a file to be written, by its extension in any case: .exr .png .jpg .jpeg .hdr. Throws
