@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Fails on a source file longer than 500 lines, and on a header that does not open with a comment that says what it is.
+
+A table of numbers may be as long as it is, in a file of its own whose name ends in _data.
 """
 
 import pathlib
@@ -17,7 +19,7 @@ def faults_in(root):
                 continue
             lines = file.read_text(encoding="utf-8").splitlines()
             name = file.relative_to(root)
-            if len(lines) > LIMIT:
+            if len(lines) > LIMIT and not file.stem.endswith("_data"):
                 yield f"{name}: {len(lines)} lines; the limit is {LIMIT}: which two ideas does it hold?"
             if folder == "src" and file.suffix == ".h":
                 text = [line for line in lines if line.strip()]
