@@ -15,9 +15,9 @@ enum class SurroundingsKind {
 
 struct Surroundings {
     SurroundingsKind kind = SurroundingsKind::Object;
-    Bounds3 bounds;     // of the scene, world space
-    Vec3 inside;        // Room: a point with free sight
-    Vec3 open_side;     // Stage: unit, horizontal, the way out
+    Bounds3 bounds;       // of the scene, world space
+    Vec3 inside;          // Room: a point with free sight
+    Vec3 open_side;       // Stage: unit, horizontal, the way out
     bool is_dark = false; // Room: no ray finds a way out, so no light from outside comes in
 };
 
