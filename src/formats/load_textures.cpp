@@ -1,6 +1,6 @@
 #include "formats/load_textures.h"
 
-#include <system_error>
+#include <optional>
 #include <variant>
 
 #include <fmt/format.h>
@@ -87,19 +87,17 @@ void decode(std::span<const std::byte> bytes, const std::string& name, Uses use,
 } // namespace
 
 int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference) {
-    const fs::path path = access_.resolve(from, reference);
-    const auto known = by_path_.find(path);
-    if (known != by_path_.end()) return known->second;
-    int32_t index = kNoImage;
-    std::error_code ec;
-    if (fs::exists(path, ec)) {
-        index = static_cast<int32_t>(sources_.size());
-        sources_.push_back({reference, path, {}});
-    } else if (missing_++ < kMissingNamed) {
-        messages_.warn(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(), reference));
+    const std::optional<fs::path> path = access_.find(from, reference);
+    if (!path) {
+        if (missing_++ < kMissingNamed) {
+            messages_.warn(
+                fmt::format("{}: there is no texture {}; its factor alone is used", from.string(), reference));
+        }
+        return kNoImage;
     }
-    by_path_.emplace(path, index);
-    return index;
+    const auto [known, is_new] = by_path_.try_emplace(*path, static_cast<int32_t>(sources_.size()));
+    if (is_new) sources_.push_back({reference, *path, {}});
+    return known->second;
 }
 
 int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> bytes) {

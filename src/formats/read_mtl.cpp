@@ -235,7 +235,7 @@ AlphaStatistics look_at_channel(const TextureImage& image, int channel) {
         between += alpha >= 0.125f && alpha < 0.875f;
         below += alpha < 1;
     }
-    return {below > 0, between * 4 < pixel_count(image)};
+    return {below > 0, between * 3 < pixel_count(image)};
 }
 
 } // namespace

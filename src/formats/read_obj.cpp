@@ -2,8 +2,9 @@
 
 #include <bit>
 #include <map>
+#include <optional>
+#include <set>
 #include <sstream>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -86,15 +87,12 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
 /// Names on a mtllib line: one that may hold spaces, or several apart by spaces.
 std::vector<fs::path> material_files(const std::string& line, const fs::path& obj, const FileAccess& access,
                                      Messages& messages) {
+    if (const std::optional<fs::path> whole = access.find(obj, line)) return {*whole};
     std::vector<fs::path> found;
-    std::error_code ec;
-    const fs::path whole = access.resolve(obj, line);
-    if (fs::is_regular_file(whole, ec)) return {whole};
     std::istringstream names(line);
     for (std::string name; names >> name;) {
-        const fs::path path = access.resolve(obj, name);
-        if (fs::is_regular_file(path, ec)) {
-            found.push_back(path);
+        if (const std::optional<fs::path> path = access.find(obj, name)) {
+            found.push_back(*path);
         } else {
             messages.warn(
                 fmt::format("{}: there is no material file {}; what it describes is grey", obj.string(), name));
@@ -106,11 +104,11 @@ std::vector<fs::path> material_files(const std::string& line, const fs::path& ob
 std::map<std::string, MtlMaterial> read_materials(const ObjData& data, const fs::path& obj, const FileAccess& access,
                                                   TextureLoader& loader, Messages& messages) {
     std::map<std::string, MtlMaterial> materials;
-    std::map<fs::path, bool> seen;
+    std::set<fs::path> seen;
     for (const std::string& line : data.material_files) {
         if (line.empty()) continue;
         for (const fs::path& path : material_files(line, obj, access, messages)) {
-            if (seen.emplace(path, true).second) materials.merge(read_mtl(path, loader, messages));
+            if (seen.insert(path).second) materials.merge(read_mtl(path, loader, messages));
         }
     }
     return materials;
