@@ -52,10 +52,14 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
     float ea = difference_of_products(pc.x, pb.y, pc.y, pb.x);
     float eb = difference_of_products(pa.x, pc.y, pa.y, pc.x);
     float ec = difference_of_products(pb.x, pa.y, pb.y, pa.x);
-    if (min(abs(ea), min(abs(eb), abs(ec))) < 0x1p-100f) { // products may have underflown: exact in double
-        ea = difference_of_products_in_double(pc.x, pb.y, pc.y, pb.x);
-        eb = difference_of_products_in_double(pa.x, pc.y, pa.y, pc.x);
-        ec = difference_of_products_in_double(pb.x, pa.y, pb.y, pa.x);
+    if (min(abs(ea), min(abs(eb), abs(ec))) < 0x1p-100f) {
+        // Zero, or products may have underflown: exact in double. Only their ratios matter below, so they are brought
+        // up to where floats hold them; one that is still lost beside the others counts as zero, which is inside.
+        const double da = difference_of_products_in_double(pc.x, pb.y, pc.y, pb.x);
+        const double db = difference_of_products_in_double(pa.x, pc.y, pa.y, pc.x);
+        const double dc = difference_of_products_in_double(pb.x, pa.y, pb.y, pa.x);
+        const double scale = 1 / ((da < 0 ? -da : da) + (db < 0 ? -db : db) + (dc < 0 ? -dc : dc));
+        ea = static_cast<float>(da * scale), eb = static_cast<float>(db * scale), ec = static_cast<float>(dc * scale);
     }
     // Zero counts as inside for both neighbours, so an edge may be hit twice but never missed.
     if ((ea < 0 || eb < 0 || ec < 0) && (ea > 0 || eb > 0 || ec > 0)) return false;
