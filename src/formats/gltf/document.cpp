@@ -40,7 +40,15 @@ bool is_supported(std::string_view extension) {
 
 Document::Document(const std::filesystem::path& path, Messages& messages)
     : path_(path), file_(path.string()), bytes_(read_file(path)), json_chunk_(bytes_) {
-    if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) split_glb();
+    if (bytes_.empty()) {
+        throw Error(ErrorCode::BadInput, fmt::format("{}: the file is empty; expected a glTF 2.0 document", file_));
+    }
+    if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
+        split_glb();
+    } else if (path.extension() == ".glb") {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: byte 0: expected the letters glTF, with which a GLB file starts", file_));
+    }
     parse(json_chunk_);
     check_version();
     for (const std::string_view name : kTables) tables_.emplace(name, root().elements_of(name));
@@ -122,20 +130,19 @@ void Document::check_version() const {
 }
 
 void Document::check_extensions(Messages& messages) const {
-    std::vector<std::string_view> required;
     for (const JsonValue& name : root().elements_of("extensionsRequired")) {
-        required.push_back(name.to_string());
-        if (!is_supported(required.back())) {
-            throw name.error(fmt::format("the file requires the extension {}, which is not supported; export it "
-                                         "without that extension",
-                                         required.back()));
-        }
+        if (is_supported(name.to_string())) continue;
+        throw name.error(fmt::format("the file requires the extension {}, which is not supported; export it without "
+                                     "that extension",
+                                     name.to_string()));
     }
+    std::string left_out;
     for (const JsonValue& name : root().elements_of("extensionsUsed")) {
         if (is_supported(name.to_string())) continue;
-        messages.warn(
-            fmt::format("{}: the extension {} is not supported and left out", name.place(), name.to_string()));
+        left_out += fmt::format("{}{}", left_out.empty() ? "" : ", ", name.to_string());
     }
+    if (left_out.empty()) return;
+    messages.warn(fmt::format("{}: extensions that are not supported are left out: {}", file_, left_out));
 }
 
 const std::vector<JsonValue>& Document::table(std::string_view name) const {

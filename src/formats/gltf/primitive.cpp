@@ -54,6 +54,7 @@ std::vector<Vec4> read_colors(const Accessor& accessor) {
     if (accessor.element_type() == ElementType::Vec4) {
         colors = accessor.read_vec4();
     } else {
+        colors.reserve(accessor.count());
         for (const Vec3 rgb : accessor.read_vec3()) colors.push_back({rgb.x, rgb.y, rgb.z, 1});
     }
     for (Vec4& c : colors) {
@@ -73,9 +74,8 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     if (vertices == 0) return;
     if (const auto normals = reader.find("NORMAL", vertices, {ElementType::Vec3})) mesh.normals = normals->read_vec3();
     if (request.geometry_only) return;
-    if (const auto tangents = reader.find("TANGENT", vertices, {ElementType::Vec4})) {
-        mesh.tangents = tangents->read_vec4();
-    }
+    const auto tangents = reader.find("TANGENT", vertices, {ElementType::Vec4});
+    if (tangents && !mesh.normals.empty()) mesh.tangents = tangents->read_vec4(); // without normals they mean nothing
     if (const auto uv = reader.find("TEXCOORD_0", vertices, {ElementType::Vec2})) mesh.uv[0] = uv->read_vec2();
     if (const auto uv = reader.find("TEXCOORD_1", vertices, {ElementType::Vec2})) mesh.uv[1] = uv->read_vec2();
     if (const auto colors = reader.find("COLOR_0", vertices, {ElementType::Vec3, ElementType::Vec4})) {
