@@ -17,6 +17,9 @@ constexpr std::array<std::string_view, 8> kSupportedExtensions = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
 
+// Of this one only what turns the dielectric coat off (materials.cpp): a file that requires it is refused.
+constexpr std::string_view kSupportedInPart = "KHR_materials_specular";
+
 constexpr std::array<std::string_view, 12> kTables = {"accessors", "bufferViews", "buffers", "cameras",
                                                       "images",    "materials",   "meshes",  "nodes",
                                                       "samplers",  "scenes",      "skins",   "textures"};
@@ -132,7 +135,7 @@ void Document::check_extensions(Messages& messages) const {
         }
     }
     for (const JsonValue& name : root().elements_of("extensionsUsed")) {
-        if (is_supported(name.to_string())) continue;
+        if (is_supported(name.to_string()) || name.to_string() == kSupportedInPart) continue;
         messages.warn(
             fmt::format("{}: the extension {} is not supported and left out", name.place(), name.to_string()));
     }

@@ -38,12 +38,13 @@ uint32_t Materials::add(Material material) {
 Material Materials::read(const JsonValue& source) {
     Material material = make_default_material();
     material.name = source.string_or("name", "");
-    if (source.extension("KHR_materials_unlit")) material.kind = MaterialKind::Unlit;
     if (const std::optional<JsonValue> pbr = source.find("pbrMetallicRoughness")) {
         read_metallic_roughness(*pbr, material);
     }
     read_alpha(source, material);
     material.ior = read_ior(source);
+    read_specular(source, material);
+    if (source.extension("KHR_materials_unlit")) material.kind = MaterialKind::Unlit;
 
     float strength = 1;
     if (const std::optional<JsonValue> extension = source.extension("KHR_materials_emissive_strength")) {
@@ -84,6 +85,18 @@ void Materials::read_alpha(const JsonValue& source, Material& material) const {
         throw source.at("alphaMode").error(fmt::format("\"{}\"; expected OPAQUE, MASK or BLEND", mode));
     }
     material.alpha_cutoff = source.float_or("alphaCutoff", 0.5f);
+}
+
+void Materials::read_specular(const JsonValue& material, Material& result) const {
+    const std::optional<JsonValue> extension = material.extension("KHR_materials_specular");
+    if (!extension) return;
+    const float weight = extension->float_or("specularFactor", 1);
+    if (weight == 0 && result.metallic == 0) {
+        result.kind = MaterialKind::Diffuse;
+        return;
+    }
+    messages_.warn(fmt::format("{}: left out; only a specularFactor of 0 with a metallicFactor of 0 is supported",
+                               extension->place()));
 }
 
 float Materials::read_ior(const JsonValue& material) const {
