@@ -70,10 +70,13 @@ missing_packages() {
     done
 }
 
+# without_candidate PACKAGE...: prints those that apt could not install.
 without_candidate() {
-    local name
+    local name known
+    known=$(apt-cache policy "$@" 2>/dev/null |
+        awk '/^[^ ]/ { name = $1; sub(/:$/, "", name) } $1 == "Candidate:" && $2 != "(none)" { print name }')
     for name in "$@"; do
-        apt-cache policy "$name" 2>/dev/null | grep -q 'Candidate: [^(]' || echo "$name"
+        grep -qxF "$name" <<<"$known" || echo "$name"
     done
 }
 
@@ -121,7 +124,7 @@ check_tools() {
     local version
     version=$(cmake --version | head -n 1 | grep -oE '[0-9]+\.[0-9.]+')
     at_least "$version" 3.25 || fail "CMake $version is too old: 3.25 is needed ($oldest_systems has it)"
-    if "${CXX:-c++}" --version | head -n 1 | grep -qiv clang; then
+    if [[ $("${CXX:-c++}" --version) != *clang* ]]; then
         version=$("${CXX:-c++}" -dumpfullversion)
         at_least "$version" 12 || fail "g++ $version is too old: 12 is needed ($oldest_systems has it)"
     fi
@@ -179,20 +182,28 @@ find_nvcc() {
     fi
 }
 
-# nvcc and what it needs from PyPI into build/cuda; one folder, laid out like a toolkit.
+# nvcc and what it needs from PyPI into build/cuda; one folder, laid out like a toolkit. Sets cuda_note on failure.
 fetch_nvcc() {
     install_packages "python3=python3" python3-venv
     step "Fetching nvcc 13.0 from PyPI into $build/cuda"
-    local temporary=$build/cuda.new
+    local temporary=$build/cuda.new toolkit
     rm -rf "$temporary" "$build/cuda"
     mkdir -p "$build"
-    python3 -m venv "$temporary" || fail "python3 -m venv failed (package python3-venv)"
-    run_quietly "$build/fetch_nvcc.log" "$temporary/bin/pip" install --disable-pip-version-check --no-deps \
+    if ! run_quietly "$build/fetch_nvcc.log" python3 -m venv "$temporary"; then
+        cuda_note="no nvcc found, and python3 -m venv failed (package python3-venv)"
+        return 1
+    fi
+    if ! run_quietly "$build/fetch_nvcc.log" "$temporary/bin/pip" -qq install --disable-pip-version-check --no-deps \
         'nvidia-cuda-nvcc==13.0.*' 'nvidia-cuda-crt==13.0.*' 'nvidia-cuda-runtime==13.0.*' \
-        'nvidia-cuda-cccl==13.0.*' 'nvidia-nvvm==13.0.*' || fail "nvcc could not be fetched from PyPI"
-    local toolkit
+        'nvidia-cuda-cccl==13.0.*' 'nvidia-nvvm==13.0.*'; then
+        cuda_note="no nvcc found, and it could not be fetched from PyPI"
+        return 1
+    fi
     toolkit=$(echo "$temporary"/lib/python3*/site-packages/nvidia/cu13)
-    [[ -x $toolkit/bin/nvcc ]] || fail "the packages from PyPI hold no nvcc (looked in $toolkit)"
+    if [[ ! -x $toolkit/bin/nvcc ]]; then
+        cuda_note="no nvcc found, and the packages from PyPI hold none"
+        return 1
+    fi
     ln -sfn lib "$toolkit/lib64" # where nvcc looks for the runtime library
     mv "$toolkit" "$build/cuda"
     rm -rf "$temporary"
@@ -220,8 +231,8 @@ choose_cuda() {
     local no_fetch=""
     if [[ -n $driver ]] && ! at_least "$driver" 580; then
         # PyPI's packages of CUDA 12 hold no nvcc, only ptxas.
-        no_fetch="driver $driver runs CUDA 12 at most, and PyPI has nvcc only from 13.0. Install NVIDIA's toolkit 12.x
-or a driver from 580 on, then run ./setup.sh again"
+        no_fetch="driver $driver runs CUDA 12 at most, and PyPI has nvcc only from 13.0: install NVIDIA's \
+toolkit 12.x or a driver from 580 on, then run ./setup.sh again"
     fi
     if [[ -z $nvcc && ($cuda == on || -n $driver) ]]; then
         if [[ -n $no_fetch ]]; then
@@ -230,8 +241,11 @@ or a driver from 580 on, then run ./setup.sh again"
             return
         fi
         [[ $cuda == on ]] || echo "Found a GPU's driver ($driver) but no nvcc: fetching one (--cpu does without)."
-        fetch_nvcc
-        find_nvcc
+        if fetch_nvcc; then
+            find_nvcc
+        elif [[ $cuda == on ]]; then
+            fail "$cuda_note"
+        fi
     fi
     if [[ -z $nvcc ]]; then
         cuda_note=${cuda_note:-"no nvcc found; ./setup.sh --cuda fetches one"}

@@ -56,4 +56,14 @@ fs::path FileAccess::resolve(const fs::path& from, const std::string& reference)
     return path;
 }
 
+std::optional<fs::path> FileAccess::find(const fs::path& from, const std::string& reference) const {
+    std::error_code ec;
+    const fs::path path = resolve(from, reference);
+    if (fs::exists(path, ec)) return path;
+    if (path.filename().empty()) return std::nullopt;
+    const fs::path beside = resolve(from, path.filename().string());
+    if (fs::exists(beside, ec)) return beside;
+    return std::nullopt;
+}
+
 } // namespace pertev

@@ -4,6 +4,7 @@
 // from a stranger must not be able to read (and show in a picture) anything else.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ public:
     /// are resolved. Throws Error(BadInput) that names `from` and --allow-path when it leads outside. The file need
     /// not exist.
     std::filesystem::path resolve(const std::filesystem::path& from, const std::string& reference) const;
+
+    /// As resolve, for a file that is read: where there is none of that path but one of that name beside `from`, that
+    /// one (exporters write paths of the machine they ran on). Nothing where there is neither.
+    std::optional<std::filesystem::path> find(const std::filesystem::path& from, const std::string& reference) const;
 
 private:
     std::vector<std::filesystem::path> roots_; // canonical

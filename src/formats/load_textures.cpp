@@ -1,6 +1,6 @@
 #include "formats/load_textures.h"
 
-#include <system_error>
+#include <optional>
 #include <variant>
 
 #include <fmt/format.h>
@@ -9,11 +9,15 @@
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
+#include "image/image_format.h"
+#include "image/srgb.h"
 
 namespace fs = std::filesystem;
 
 namespace pertev {
 namespace {
+
+constexpr std::size_t kMissingNamed = 20;
 
 /// 4 linear channels, as TextureImage wants them.
 Image to_rgba(const Image& image) {
@@ -32,22 +36,68 @@ Image to_rgba(const Image& image) {
     return rgba;
 }
 
+/// What an image is read as: values as stored, or colours that are still sRGB-encoded.
+struct Uses {
+    bool as_srgb = false, as_data = false;
+};
+
+std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
+    std::vector<Uses> uses(images);
+    for (const Material& material : scene.materials) {
+        for (const TextureRef* ref :
+             {&material.base_color_texture, &material.emission_texture, &material.metallic_texture,
+              &material.roughness_texture, &material.normal_texture, &material.alpha_texture}) {
+            if (!ref->has_image()) continue;
+            Uses& use = uses.at(static_cast<std::size_t>(ref->image));
+            (ref->is_srgb ? use.as_srgb : use.as_data) = true;
+        }
+    }
+    return uses;
+}
+
+/// A picture of 16 bits a channel: TextureImage has it in float, decoded to linear; one that is read both ways is kept
+/// as stored, in 8 bits.
+void put_png16(const Image& image, Uses use, TextureImage& to) {
+    Image rgba = to_rgba(image);
+    const std::size_t count = rgba.pixels.size();
+    if (use.as_srgb && use.as_data) {
+        to.rgba8 = {.width = rgba.width, .height = rgba.height, .pixels = std::vector<uint8_t>(count)};
+        for (std::size_t i = 0; i < count; ++i) to.rgba8.pixels[i] = to_byte(rgba.pixels[i]);
+        return;
+    }
+    if (use.as_srgb) {
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i % 4 != 3) rgba.pixels[i] = srgb_decode(rgba.pixels[i]);
+        }
+    }
+    to.rgba_float = std::move(rgba);
+}
+
+void decode(std::span<const std::byte> bytes, const std::string& name, Uses use, TextureImage& to, Messages& said) {
+    auto image = decode_image(bytes, name, &said);
+    if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
+        to.rgba8 = std::move(*rgba8);
+    } else if (recognise_image(bytes) == ImageFormat::Png) {
+        put_png16(std::get<Image>(image), use, to);
+    } else {
+        to.rgba_float = to_rgba(std::get<Image>(image));
+    }
+}
+
 } // namespace
 
 int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference) {
-    const fs::path path = access_.resolve(from, reference);
-    const auto known = by_path_.find(path);
-    if (known != by_path_.end()) return known->second;
-    int32_t index = kNoImage;
-    std::error_code ec;
-    if (fs::exists(path, ec)) {
-        index = static_cast<int32_t>(sources_.size());
-        sources_.push_back({reference, path, {}});
-    } else {
-        messages_.warn(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(), reference));
+    const std::optional<fs::path> path = access_.find(from, reference);
+    if (!path) {
+        if (missing_++ < kMissingNamed) {
+            messages_.warn(
+                fmt::format("{}: there is no texture {}; its factor alone is used", from.string(), reference));
+        }
+        return kNoImage;
     }
-    by_path_.emplace(path, index);
-    return index;
+    const auto [known, is_new] = by_path_.try_emplace(*path, static_cast<int32_t>(sources_.size()));
+    if (is_new) sources_.push_back({reference, *path, {}});
+    return known->second;
 }
 
 int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> bytes) {
@@ -56,21 +106,21 @@ int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> by
 }
 
 void TextureLoader::load_into(Scene& scene) {
+    if (missing_ > kMissingNamed) {
+        messages_.warn(fmt::format("{} further textures are not there", missing_ - kMissingNamed));
+    }
     std::vector<TextureImage> decoded(sources_.size());
+    const std::vector<Uses> uses = uses_of(scene, sources_.size());
     std::vector<std::string> faults(sources_.size());
     std::vector<Messages> said(sources_.size());
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
         const Source& source = sources_[i];
         decoded[i].name = source.name;
         try {
-            std::vector<std::byte> file;
-            if (!source.path.empty()) file = read_file(source.path);
-            auto image = decode_image(source.path.empty() ? source.bytes : std::span<const std::byte>(file),
-                                      source.path.empty() ? source.name : source.path.string(), &said[i]);
-            if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
-                decoded[i].rgba8 = std::move(*rgba8);
+            if (source.path.empty()) {
+                decode(source.bytes, source.name, uses[i], decoded[i], said[i]);
             } else {
-                decoded[i].rgba_float = to_rgba(std::get<Image>(image));
+                decode(read_file(source.path), source.path.string(), uses[i], decoded[i], said[i]);
             }
         } catch (const Error& error) {
             faults[i] = error.what();

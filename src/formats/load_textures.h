@@ -36,14 +36,15 @@ public:
 private:
     struct Source {
         std::string name;
-        std::filesystem::path path;        // or
-        std::span<const std::byte> bytes;  // embedded
+        std::filesystem::path path;       // or
+        std::span<const std::byte> bytes; // embedded
     };
 
     const FileAccess& access_;
     Messages& messages_;
     std::vector<Source> sources_;
     std::map<std::filesystem::path, int32_t> by_path_;
+    std::size_t missing_ = 0; // only the first few are named
 };
 
 } // namespace pertev

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/read_file.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/place_nodes.h"
@@ -12,8 +13,13 @@ namespace pertev {
 
 Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                 Messages& messages) {
+    return read_gltf(path, read_file(path), access, options, messages);
+}
+
+Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
+                const ReadOptions& options, Messages& messages) {
     Scene scene;
-    const gltf::Document document(path, messages);
+    const gltf::Document document(path, std::move(bytes), messages);
     gltf::Buffers buffers(document, access);
     const gltf::NodeGraph nodes(document, messages);
 

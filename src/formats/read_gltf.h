@@ -6,7 +6,9 @@
 // KHR_mesh_quantization, EXT_meshopt_compression, EXT_mesh_gpu_instancing. Others are an error where the file requires
 // them and a warning where it only uses them.
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 #include "base/messages.h"
 #include "formats/file_access.h"
@@ -19,5 +21,8 @@ namespace pertev {
 /// pointer. Normal maps without tangents leave Mesh::tangents empty: the renderer derives them.
 Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                 Messages& messages);
+/// The same for a file whose bytes are at hand; `path` names it and is what references are relative to.
+Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
+                const ReadOptions& options, Messages& messages);
 
 } // namespace pertev

@@ -27,7 +27,8 @@ namespace {
 
 class MemoryStream : public Imf::IStream {
 public:
-    explicit MemoryStream(std::span<const std::byte> bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+    MemoryStream(std::span<const std::byte> bytes, const std::string& name)
+        : Imf::IStream(name.c_str()), bytes_(bytes) {}
 
     bool read(char to[], int count) override {
         if (count < 0 || static_cast<uint64_t>(count) > bytes_.size() - offset_)
@@ -74,9 +75,11 @@ std::vector<T> place(std::vector<T> from, const Window& data, const Window& disp
 
 struct ExrReader::State {
     std::string name;
-    std::size_t byte_count;
     MemoryStream stream;
     std::optional<Imf::MultiPartInputFile> file;
+
+    State(std::span<const std::byte> bytes, std::string name_of_file)
+        : name(std::move(name_of_file)), stream(bytes, name) {}
 
     [[noreturn]] void fail(const std::exception& error) const {
         throw Error(ErrorCode::BadInput, fmt::format("{}: not a readable EXR ({})", name, error.what()));
@@ -86,7 +89,7 @@ struct ExrReader::State {
 
 ExrReader::ExrReader(std::span<const std::byte> bytes, std::string name) {
     check_exr_header(bytes, name);
-    state_.reset(new State{std::move(name), bytes.size(), MemoryStream(bytes), std::nullopt});
+    state_ = std::make_unique<State>(bytes, std::move(name));
     try {
         // No worker threads, and no repair of a broken chunk table: a file cut short is an error.
         state_->file.emplace(state_->stream, 0, false);

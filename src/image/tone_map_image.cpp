@@ -5,10 +5,10 @@
 
 namespace pertev {
 
-Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops) {
+Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops, bool keep_alpha) {
     PERTEV_CHECK(linear.channels >= 1 && linear.channels <= 4);
     const float scale = exposure_scale(exposure_stops);
-    const bool is_grey = linear.channels < 3, has_alpha = linear.channels % 2 == 0;
+    const bool is_grey = linear.channels < 3, has_alpha = keep_alpha && linear.channels % 2 == 0;
     Rgba8Image result{linear.width, linear.height, {}};
     result.pixels.resize(std::size_t(linear.width) * linear.height * 4);
     parallel_for(linear.height, 8, [&](uint64_t y) {

@@ -12,8 +12,9 @@ namespace pertev {
 
 /// `linear` times 2^exposure_stops, tone-mapped and rounded to the nearest byte. One or two channels are grey; alpha
 /// is the second or fourth channel, clamped, not tone-mapped, and 255 where there is none. Colour that comes with
-/// alpha is taken as premultiplied, as in EXR, and divided by it: PNG stores it unmultiplied.
-Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops = 0);
+/// alpha is taken as premultiplied, as in EXR, and divided by it: PNG stores it unmultiplied. Without `keep_alpha` the
+/// result is opaque: the picture over black.
+Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops = 0, bool keep_alpha = true);
 
 /// The kind of a name on the command line: srgb, agx, aces, neutral.
 std::optional<ToneMap> tone_map_named(std::string_view name);

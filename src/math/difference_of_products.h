@@ -18,12 +18,10 @@ HD inline float difference_of_products(float a, float b, float c, float d) {
     return fma(a, b, -cd) + error;
 }
 
-/// The same where float products may underflow: the products are exact in double, so the sign is right or, where the
-/// result underflows, the result is 0. Rounded twice. Swapping (a, b) with (c, d) changes the sign and nothing else.
-HD inline float difference_of_products_in_double(float a, float b, float c, float d) {
-    const double ab = static_cast<double>(a) * static_cast<double>(b);
-    const double cd = static_cast<double>(c) * static_cast<double>(d);
-    return static_cast<float>(ab - cd);
+/// a b - c d as a double: both products are exact in it, whatever underflows in float, so the sign is right; rounded
+/// once. Swapping (a, b) with (c, d) changes the sign and nothing else.
+HD inline double difference_of_products_in_double(float a, float b, float c, float d) {
+    return static_cast<double>(a) * static_cast<double>(b) - static_cast<double>(c) * static_cast<double>(d);
 }
 
 } // namespace pertev

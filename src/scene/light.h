@@ -16,20 +16,20 @@ enum class LightKind : uint8_t { Point, Spot, Directional };
 struct Light {
     std::string name;
     LightKind kind = LightKind::Point;
-    Vec3 position;                // Point, Spot: metres, world space
-    Vec3 direction = {0, -1, 0};  // Spot, Directional: unit, the way the light travels, world space
-    Rgb intensity = {1, 1, 1};    // Point, Spot: W/sr; Directional: irradiance on a surface that faces it, W/m2
-    float cos_inner = 1;          // Spot: full intensity within, falling to 0 at cos_outer (< cos_inner)
+    Vec3 position;               // Point, Spot: metres, world space
+    Vec3 direction = {0, -1, 0}; // Spot, Directional: unit, the way the light travels, world space
+    Rgb intensity = {1, 1, 1};   // Point, Spot: W/sr; Directional: irradiance on a surface that faces it, W/m2
+    float cos_inner = 1;         // Spot: full intensity within, falling to 0 at cos_outer (< cos_inner)
     float cos_outer = 0.70710678f;
-    float range = 0;              // Point, Spot: metres past which it gives no light; 0 = no end
+    float range = 0; // Point, Spot: metres past which it gives no light; 0 = no end
 };
 
 /// Light from infinitely far away. Image columns run with longitude: the middle column looks along -z, +x is a quarter
 /// to the right of it; row 0 is +y.
 struct Environment {
-    Image image;            // 3 channels, equirectangular, W/(sr m2); empty: `scale` alone, from everywhere
-    Rgb scale = {1, 1, 1};  // times the image
-    float rotation = 0;     // radians about +y, counter-clockwise seen from above
+    Image image;           // 3 channels, equirectangular, W/(sr m2); empty: `scale` alone, from everywhere
+    Rgb scale = {1, 1, 1}; // times the image
+    float rotation = 0;    // radians about +y, counter-clockwise seen from above
 };
 
 } // namespace pertev

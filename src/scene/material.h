@@ -27,7 +27,7 @@ struct Material {
     Rgb base_color = {0.8f, 0.8f, 0.8f}; // [0, 1], linear; times the texture (alpha in .w of the texture)
     TextureRef base_color_texture;
 
-    float alpha = 1; // [0, 1]; times the base colour texture's alpha, the vertex colour's, and alpha_texture
+    float alpha = 1;          // [0, 1]; times the base colour texture's alpha, the vertex colour's, and alpha_texture
     TextureRef alpha_texture; // one channel, for OBJ map_d; none for glTF
     AlphaMode alpha_mode = AlphaMode::Opaque;
     float alpha_cutoff = 0.5f; // Mask: hit where alpha >= cutoff
@@ -36,7 +36,7 @@ struct Material {
     float roughness = 1; // [0, 1], perceptual: alpha_ggx = roughness^2; times roughness_texture's channel
     TextureRef metallic_texture, roughness_texture;
 
-    float ior = 1.5f;            // Dielectric and MetallicRoughness: inside over outside, >= 1
+    float ior = 1.5f; // Dielectric and MetallicRoughness: inside over outside, >= 1
     Rgb eta = {0.2f, 0.92f, 1.1f}, k = {3.9f, 2.45f, 2.14f}; // Conductor; default gold
 
     Rgb emission = {0, 0, 0}; // W/(sr m2), both faces; times the texture

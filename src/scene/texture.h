@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/host_device.h"
 #include "image/image.h"
 
 namespace pertev {
@@ -28,13 +29,13 @@ struct TextureRef {
     int32_t image = kNoImage; // index into Scene::images; kNoImage: the slot's factor alone counts
     Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
     TextureFilter filter = TextureFilter::Linear;
-    uint8_t uv_set = 0;  // 0 or 1
+    uint8_t uv_set = 0;   // 0 or 1
     bool is_srgb = false; // colour channels of an 8-bit image are sRGB-encoded
-    uint8_t channel = 0; // 0 to 3, for slots that read one number
+    uint8_t channel = 0;  // 0 to 3, for slots that read one number
     // uv' = (m00 u + m01 v + m02, m10 u + m11 v + m12), KHR_texture_transform as one matrix
     float m00 = 1, m01 = 0, m02 = 0, m10 = 0, m11 = 1, m12 = 0;
 
-    bool has_image() const { return image != kNoImage; }
+    HD bool has_image() const { return image != kNoImage; }
 };
 
 } // namespace pertev

@@ -1,12 +1,25 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "base/messages.h"
 #include "base/version.h"
 #include "formats/builtin_scenes.h"
+#include "formats/read_scene.h"
 
 using namespace pertev;
+
+namespace {
+
+const Instance& instance_named(const Scene& scene, const std::string& name) {
+    const auto found = std::ranges::find(scene.instances, name, &Instance::name);
+    REQUIRE(found != scene.instances.end());
+    return *found;
+}
+
+} // namespace
 
 TEST_CASE("the Cornell box is part of the program, whole") {
     const auto bytes = builtin_scene("cornell-box");
@@ -16,6 +29,43 @@ TEST_CASE("the Cornell box is part of the program, whole") {
     CHECK(text.ends_with("}\n"));
     CHECK(text.find("\"KHR_materials_emissive_strength\"") != std::string::npos);
     CHECK(std::ranges::count(builtin_scene_names(), "cornell-box") == 1);
+}
+
+TEST_CASE("the Cornell box reads without a warning, and its surfaces are Lambertian") {
+    Messages messages;
+    const Scene scene = read_builtin_scene("cornell-box", messages);
+    CHECK(messages.all().empty());
+    CHECK(scene.instances.size() == 8);
+    for (const Material& material : scene.materials) CHECK(material.kind == MaterialKind::Diffuse);
+    uint32_t triangles = 0;
+    for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
+    CHECK(triangles == 5 * 2 + 8 + 2 * 10);
+    const Material& light = scene.materials[instance_named(scene, "light").material];
+    CHECK(light.is_emissive());
+    CHECK(light.emission.r > light.emission.g);
+    CHECK(light.emission.g > light.emission.b); // a warm lamp
+}
+
+TEST_CASE("in the Cornell box the red wall is on the camera's left and the green one on its right") {
+    Messages messages;
+    const Scene scene = read_builtin_scene("cornell-box", messages);
+    REQUIRE(scene.cameras.size() == 1);
+    const Camera& camera = scene.cameras[0];
+    CHECK(camera.fov_y == doctest::Approx(2 * std::atan(12.5 / 35)));
+    const Vec3 right = column(camera.world_from_camera, 0), forward = -column(camera.world_from_camera, 2);
+    const auto centre = [&](const char* name) {
+        const Bounds3 box = bounds_of(scene.meshes[instance_named(scene, name).mesh]);
+        return 0.5f * (box.lo + box.hi) - camera.world_from_camera.translation;
+    };
+    const auto color = [&](const char* name) {
+        return scene.materials[instance_named(scene, name).material].base_color;
+    };
+    CHECK(dot(right, centre("left wall")) < 0);
+    CHECK(color("left wall").r > 5 * color("left wall").g);
+    CHECK(dot(right, centre("right wall")) > 0);
+    CHECK(color("right wall").g > 5 * color("right wall").r);
+    CHECK(dot(forward, centre("back wall")) > dot(forward, centre("tall block")));
+    CHECK(dot(forward, centre("short block")) > 0);
 }
 
 TEST_CASE("a name that is no built-in scene finds nothing") {

@@ -3,17 +3,18 @@
 // The long setting (--long) goes through all 2^32 floats.
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include "base/parallel_for.h"
 #include "math/portable_math.h"
+#include "math/random.h"
+#include "math/sampler.h"
 #include "tests/support/options.h"
 #include "tests/support/portable_math_digest.h"
 
@@ -103,6 +104,13 @@ struct Worst {
     uint32_t input = 0;
 };
 
+void add_error(Worst& worst, int function, uint32_t input) {
+    const float x = float_of(input), y = test::portable_second_argument(input);
+    const float ours = float_of(test::portable_math_value(function, input));
+    const double error = error_in_ulp(ours, reference(function, x, y, input));
+    if (error > worst.error) worst = {error, input};
+}
+
 /// Greatest error over every `step`th of the 2^32 inputs from `offset` on.
 Worst worst_error(int function, uint64_t step, uint64_t offset) {
     constexpr uint32_t kChunks = 256;
@@ -111,10 +119,7 @@ Worst worst_error(int function, uint64_t step, uint64_t offset) {
         Worst& w = worst[chunk];
         for (uint64_t i = (chunk << 24) + offset; i < (chunk + 1) << 24; i += step) {
             const auto input = static_cast<uint32_t>(i);
-            const float x = float_of(input), y = test::portable_second_argument(input);
-            const float ours = float_of(test::portable_math_value(function, input));
-            const double error = error_in_ulp(ours, reference(function, x, y, input));
-            if (error > w.error) w = {error, input};
+            add_error(w, function, input);
         }
     });
     return *std::max_element(worst, worst + kChunks, [](const Worst& a, const Worst& b) { return a.error < b.error; });
@@ -123,12 +128,95 @@ Worst worst_error(int function, uint64_t step, uint64_t offset) {
 } // namespace
 
 TEST_CASE("elementary functions keep their stated error bounds") {
-    const uint64_t step = test::effort(251, 1);
+    const uint64_t step = test::effort(509, 1);
     for (int function = 0; function < test::kPortableFunctionCount; function++) {
         const Worst worst = worst_error(function, step, 0);
         const std::string name = test::portable_function_name(function);
         MESSAGE(name << ": at most " << worst.error << " ulp off, at " << worst.input);
         CHECK_MESSAGE(worst.error <= stated_bound(function), name);
+    }
+}
+
+TEST_CASE("elementary functions are right at structured inputs") {
+    std::vector<uint32_t> inputs = {bits_of(0x1.f37f4ap95f)}; // of all floats the nearest to a multiple of pi/2
+    for (uint32_t exponent = 0; exponent < 256; exponent++) {
+        for (const uint32_t mantissa :
+             {0u, 1u, 2u, 0x3504f2u, 0x3504f3u, 0x3504f4u, 0x3fffffu, 0x400000u, 0x7ffffeu, 0x7fffffu}) {
+            for (const uint32_t sign : {0u, 1u}) inputs.push_back(sign << 31 | exponent << 23 | mantissa);
+        }
+    }
+    for (int k = 1; k < 200'000; k += 1 + k / 1000) { // next to multiples of pi/4, to halves and to logarithms of 2
+        for (const double x : {k * 0.78539816339744831, k * 0.5, k * 0.34657359027997264}) {
+            const uint32_t bits = bits_of(static_cast<float>(x));
+            for (uint32_t step = 0; step < 5; step++) inputs.push_back(bits + step - 2);
+        }
+    }
+    for (int function = 0; function < test::kPortableFunctionCount; function++) {
+        Worst worst;
+        for (const uint32_t input : inputs) {
+            for (const uint32_t sign : {0u, 0x80000000u}) add_error(worst, function, input ^ sign);
+        }
+        const std::string name = test::portable_function_name(function);
+        CHECK_MESSAGE(worst.error <= stated_bound(function), name << ": " << worst.error << " at " << worst.input);
+    }
+}
+
+TEST_CASE("pow and atan2 treat zeros, infinities, integers and NaN as C does") {
+    std::vector<float> values;
+    for (const float x :
+         {0.0f,   0x1p-149f,      0x1p-126f, 0x1p-24f,       0.5f,    0x1.fffffep-1f,  1.0f,      0x1.000002p0f,
+          1.5f,   2.0f,           2.5f,      3.0f,           4.0f,    127.0f,          128.0f,    149.0f,
+          150.0f, 0x1.fffffep23f, 0x1p24f,   0x1.000002p24f, 0x1p31f, 0x1.fffffep127f, kInfinity, kNaN}) {
+        values.insert(values.end(), {x, -x});
+    }
+    for (const float x : values) {
+        for (const float y : values) {
+            const double a = static_cast<double>(x), b = static_cast<double>(y);
+            CHECK_MESSAGE(error_in_ulp(pow(x, y), std::pow(a, b)) <= 1, "pow " << x << " " << y);
+            CHECK_MESSAGE(error_in_ulp(atan2(x, y), std::atan2(a, b)) <= 2, "atan2 " << x << " " << y);
+        }
+    }
+}
+
+TEST_CASE("pow keeps its bound where the result neither overflows nor vanishes, atan2 at every angle") {
+    double worst_pow = 0, worst_atan2 = 0;
+    const auto count = static_cast<uint32_t>(test::effort(500'000, 1u << 30));
+    for (uint32_t i = 0; i < count; i++) {
+        const Hash4 random = hash_words(i, 1, 2, 3);
+        // A base from anywhere, or next to 1; an exponent that takes it somewhere into [2^-150, 2^128].
+        const float x = (random.x & 1) != 0 ? float_of(random.y >> 1) : 1 + (unit_interval(random.y) - 0.5f) * 0x1p-6f;
+        if (x == 1 || x == 0 || !is_finite(x)) continue;
+        const double y_wanted =
+            (static_cast<double>(unit_interval(random.z)) * 278 - 150) / std::log2(static_cast<double>(x));
+        const auto y = static_cast<float>(y_wanted);
+        worst_pow =
+            std::max(worst_pow, error_in_ulp(pow(x, y), std::pow(static_cast<double>(x), static_cast<double>(y))));
+
+        const float a = float_of(random.w), b = a * (0x1p-8f / unit_interval(random.z));
+        worst_atan2 = std::max(worst_atan2,
+                               error_in_ulp(atan2(a, b), std::atan2(static_cast<double>(a), static_cast<double>(b))));
+        worst_atan2 = std::max(worst_atan2,
+                               error_in_ulp(atan2(b, a), std::atan2(static_cast<double>(b), static_cast<double>(a))));
+    }
+    MESSAGE("pow: at most " << worst_pow << " ulp off, atan2: " << worst_atan2);
+    CHECK(worst_pow <= 1);
+    CHECK(worst_atan2 <= 2);
+}
+
+TEST_CASE("elementary functions give the recorded bits") {
+    constexpr uint64_t kRecorded[test::kPortableFunctionCount] = {
+        2645070944921282402u,  1579937183022329890u,  9121272813130977225u,  3069567710282377022u,
+        17761287196637901388u, 7302687037153846410u,  8560155338072438269u,  5167895523107141205u,
+        6838568821189206300u,  16369352005732446227u, 2645070944921282402u,  1579937183022329890u,
+        7318184199271632635u,  11186434658400745954u, 14463278490676515255u, 4131289334840734658u};
+    for (int function = 0; function < test::kPortableFunctionCount; function++) {
+        uint64_t sum = 0;
+        for (uint64_t i = 0; i < (uint64_t{1} << 32); i += 8191) {
+            const auto input = static_cast<uint32_t>(i);
+            sum += test::portable_math_term(input, test::portable_math_value(function, input));
+        }
+        const std::string name = test::portable_function_name(function);
+        CHECK_MESSAGE(sum == kRecorded[function], name);
     }
 }
 

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/read_file.h"
+#include "base/error.h"
 
 namespace pertev::gltf {
 namespace {
@@ -16,6 +16,9 @@ namespace {
 constexpr std::array<std::string_view, 8> kSupportedExtensions = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
+
+// Of this one only what turns the dielectric coat off (materials.cpp): a file that requires it is refused.
+constexpr std::string_view kSupportedInPart = "KHR_materials_specular";
 
 constexpr std::array<std::string_view, 12> kTables = {"accessors", "bufferViews", "buffers", "cameras",
                                                       "images",    "materials",   "meshes",  "nodes",
@@ -38,8 +41,8 @@ bool is_supported(std::string_view extension) {
 
 } // namespace
 
-Document::Document(const std::filesystem::path& path, Messages& messages)
-    : path_(path), file_(path.string()), bytes_(read_file(path)), json_chunk_(bytes_) {
+Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
+    : path_(path), file_(path.string()), bytes_(std::move(bytes)), json_chunk_(bytes_) {
     if (bytes_.empty()) {
         throw Error(ErrorCode::BadInput, fmt::format("{}: the file is empty; expected a glTF 2.0 document", file_));
     }
@@ -138,7 +141,7 @@ void Document::check_extensions(Messages& messages) const {
     }
     std::string left_out;
     for (const JsonValue& name : root().elements_of("extensionsUsed")) {
-        if (is_supported(name.to_string())) continue;
+        if (is_supported(name.to_string()) || name.to_string() == kSupportedInPart) continue;
         left_out += fmt::format("{}{}", left_out.empty() ? "" : ", ", name.to_string());
     }
     if (left_out.empty()) return;

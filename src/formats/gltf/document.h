@@ -25,7 +25,7 @@ class Document {
 public:
     /// Parses the file. Throws Error(BadInput) when it is not glTF 2 or requires an extension that is not supported;
     /// warns of each extension that the file uses without requiring it and that is not supported.
-    Document(const std::filesystem::path& path, Messages& messages);
+    Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages);
     Document(const Document&) = delete; // its values point into it
     Document& operator=(const Document&) = delete;
 

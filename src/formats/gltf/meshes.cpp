@@ -71,7 +71,6 @@ std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, const std::v
             fmt::format("{}: skinned meshes are drawn in their rest pose; animation is not played", document_.file()));
         apply_skin(document_, buffers_, primitive.at("attributes"), joints_of(*skin), *mesh);
     }
-    finish_normals(*mesh);
     buffers_.charge(name.size(), primitive);
     mesh->name = name;
     scene_.meshes.push_back(*std::move(mesh));

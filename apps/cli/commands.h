@@ -1,0 +1,16 @@
+#pragma once
+
+// One function a verb: adds it to the command line; what it does runs while the line is parsed. `status` becomes the
+// process's exit status.
+
+namespace CLI {
+class App;
+}
+
+namespace pertev {
+
+void add_render_command(CLI::App& app, int& status);
+void add_compare_command(CLI::App& app, int& status);
+void add_info_command(CLI::App& app, int& status);
+
+} // namespace pertev

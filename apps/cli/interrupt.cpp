@@ -1,0 +1,24 @@
+#include "apps/cli/interrupt.h"
+
+#include <csignal>
+
+namespace pertev {
+namespace {
+
+volatile std::sig_atomic_t g_interrupted = 0;
+
+extern "C" void handle_interrupt(int signal) {
+    g_interrupted = 1;
+    std::signal(signal, SIG_DFL); // a second one ends the process
+}
+
+} // namespace
+
+void listen_for_interrupt() {
+    std::signal(SIGINT, handle_interrupt);
+    std::signal(SIGTERM, handle_interrupt);
+}
+
+bool interrupted() { return g_interrupted != 0; }
+
+} // namespace pertev

@@ -1,0 +1,43 @@
+#pragma once
+
+// What a verb says: messages and a progress line for people on stderr, or one JSON object a line on stdout.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/messages.h"
+
+namespace pertev {
+
+/// Text as a JSON string, quotes included.
+std::string json_string(std::string_view text);
+
+class Reporter {
+public:
+    /// `quiet` silences all but errors; `json` turns everything into JSON lines on stdout.
+    Reporter(bool quiet, bool json);
+    ~Reporter();
+    Reporter(const Reporter&) = delete;
+    Reporter& operator=(const Reporter&) = delete;
+
+    /// Says what was not said before.
+    void say(const Messages& messages);
+    /// One line for people, on stderr.
+    void say(const std::string& line);
+    /// Share done in [0, 1], and what stands behind the bar. Redrawn in place, only on a terminal.
+    void progress(double share, const std::string& detail);
+    /// A JSON object ("{...}") of the given event; only with --json.
+    void event(const std::string& object);
+    void end_progress();
+
+    bool json() const { return json_; }
+    bool quiet() const { return quiet_; }
+
+private:
+    bool quiet_, json_, terminal_;
+    bool drawn_ = false;
+    std::size_t said_ = 0;
+};
+
+} // namespace pertev

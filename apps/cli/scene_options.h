@@ -1,0 +1,41 @@
+#pragma once
+
+// What every verb that takes a scene shares: the scene itself, its camera and its environment, as flags.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/messages.h"
+#include "scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pertev {
+
+struct SceneOptions {
+    std::string scene;
+    std::vector<std::filesystem::path> allowed_paths;
+    std::string camera; // name or number
+    std::string eye, target, up;
+    float fov_deg = 0; // 0: the camera's own
+    float aperture_m = -1, focus_m = 0;
+    std::string projection; // "", "perspective", "orthographic"
+    float view_height_m = 0;
+    std::string environment; // file or "r,g,b"
+    float environment_rotation_deg = 0, environment_scale = 1;
+};
+
+void add_scene_options(CLI::App& verb, SceneOptions& options);
+
+/// The scene read, with the environment that the flags or the defaults give it. Throws Error.
+Scene load_scene(const SceneOptions& options, Messages& messages);
+
+/// The camera that the flags or the scene or the defaults give, for a picture of this shape. Throws Error(BadInput).
+Camera choose_camera(const SceneOptions& options, const Scene& scene, uint32_t width, uint32_t height,
+                     Messages& messages);
+
+} // namespace pertev

@@ -1,0 +1,191 @@
+// trace_bench [FILE.obj] [RAYS]: builds the tree of a mesh (a torus without a file) and measures single rays on one
+// thread, primary and after one and two diffuse bounces, beside Embree's robust single-ray functions in the same run.
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "accel/bvh/build_bvh.h"
+#include "math/frame.h"
+#include "tests/support/meshes.h"
+#include "trace/trace_any.h"
+#include "trace/trace_closest.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Seconds of the fastest of some runs.
+template <class F>
+double fastest(int runs, const F& f) {
+    double best = 1e30;
+    for (int i = 0; i < runs; ++i) {
+        const double start = now_s();
+        f();
+        best = std::min(best, now_s() - start);
+    }
+    return best;
+}
+
+struct EmbreeScene {
+    RTCDevice device = rtcNewDevice("threads=1");
+    RTCScene scene = rtcNewScene(device);
+
+    explicit EmbreeScene(const TriangleMesh& mesh) {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* v = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                             sizeof(Vec3), mesh.positions.size()));
+        std::copy(mesh.positions.begin(), mesh.positions.end(), v);
+        auto* k = static_cast<uint32_t*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangle_count()));
+        std::copy(mesh.indices.begin(), mesh.indices.end(), k);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+        rtcCommitScene(scene);
+    }
+    ~EmbreeScene() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+};
+
+std::vector<Ray> primary_rays(uint32_t count, const Bounds3& bounds, bool is_sponza) {
+    const Vec3 centre = bounds.centre(), size = bounds.size();
+    const Vec3 eye = is_sponza ? Vec3{-110, 18, -2} : centre + Vec3{1.1f * size.x, 0.9f * size.y, 1.2f * size.z};
+    const Vec3 target = is_sponza ? Vec3{60, 32, -4} : centre;
+    const Vec3 forward = normalize(target - eye), right = normalize(cross(forward, {0, 1, 0}));
+    const Vec3 up = cross(right, forward);
+    std::vector<Ray> rays(count);
+    const auto width = static_cast<uint32_t>(std::sqrt(static_cast<float>(count) * 16.0f / 9.0f));
+    Random random(1);
+    for (uint32_t i = 0; i < count; ++i) {
+        const float w = static_cast<float>(width), h = static_cast<float>(count / width);
+        const float x = (static_cast<float>(i % width) + random.unit()) / w * 2 - 1;
+        const float y = 1 - (static_cast<float>(i / width) + random.unit()) / h * 2;
+        const float tan_half = 0.57735f;
+        rays[i].origin = eye;
+        rays[i].direction = normalize(forward + x * tan_half * 16 / 9 * right + y * tan_half * up);
+    }
+    return rays;
+}
+
+std::vector<Ray> bounce(const std::vector<Ray>& rays, const std::vector<Hit>& hits, const TriangleMesh& mesh, float eps,
+                        uint32_t seed) {
+    std::vector<Ray> next;
+    Random random(seed);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (hits[i].instance == kNoHit) continue;
+        const Vec3 a = mesh.corner(hits[i].primitive, 0), b = mesh.corner(hits[i].primitive, 1),
+                   c = mesh.corner(hits[i].primitive, 2);
+        Vec3 n = normalize(cross(b - a, c - a));
+        if (!is_finite(n)) continue;
+        if (dot(n, rays[i].direction) > 0) n = -n;
+        const float r2 = random.unit(), phi = kTwoPi * random.unit(), r = sqrt(r2);
+        Ray ray;
+        ray.origin = rays[i].origin + hits[i].t * rays[i].direction + eps * n;
+        ray.direction = normalize(make_frame(n).to_world({r * std::cos(phi), r * std::sin(phi), sqrt(1 - r2)}));
+        next.push_back(ray);
+    }
+    return next;
+}
+
+void measure(const char* name, const SceneBvhView& scene, const EmbreeScene& embree, const std::vector<Ray>& rays,
+             std::vector<Hit>& hits) {
+    const double m = static_cast<double>(rays.size()) * 1e-6;
+    hits.resize(rays.size());
+    const double closest_s = fastest(3, [&] {
+        for (std::size_t i = 0; i < rays.size(); ++i) trace_closest(scene, rays[i], AcceptAll{}, hits[i]);
+    });
+    uint64_t any = 0;
+    const double any_s = fastest(3, [&] {
+        any = 0;
+        for (const Ray& ray : rays) any += trace_any(scene, ray, AcceptAll{}) ? 1 : 0;
+    });
+    std::vector<RTCRayHit> results(rays.size());
+    const auto ray_of = [](const Ray& r) {
+        return RTCRay{r.origin.x, r.origin.y,  r.origin.z, r.t_min, r.direction.x, r.direction.y, r.direction.z, 0,
+                      r.t_max,    0xffffffffu, 0,          0};
+    };
+    const double embree_closest_s = fastest(3, [&] {
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            results[i].ray = ray_of(rays[i]);
+            results[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            rtcIntersect1(embree.scene, &context, &results[i]);
+        }
+    });
+    uint64_t embree_any = 0;
+    const double embree_any_s = fastest(3, [&] {
+        embree_any = 0;
+        for (const Ray& r : rays) {
+            RTCRay ray = ray_of(r);
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            rtcOccluded1(embree.scene, &context, &ray);
+            embree_any += ray.tfar < 0 ? 1 : 0;
+        }
+    });
+    uint64_t nodes = 0, triangles = 0, other = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        Hit hit;
+        trace_closest(scene, rays[i], AcceptAll{}, hit, WalkCounter{&nodes, &triangles});
+        other += (results[i].hit.geomID == RTC_INVALID_GEOMETRY_ID) != (hit.instance == kNoHit) ||
+                         (hit.instance != kNoHit && results[i].hit.primID != hit.primitive)
+                     ? 1
+                     : 0;
+    }
+    const double n = static_cast<double>(rays.size());
+    std::printf(
+        "%-9s %7zu rays  closest %6.2f  Embree %6.2f Mrays/s  ratio %.2f | any %6.2f  Embree %6.2f  ratio %.2f | "
+        "%.1f nodes, %.1f triangles a ray; hit share %.3f; %llu other primitives\n",
+        name, rays.size(), m / closest_s, m / embree_closest_s, embree_closest_s / closest_s, m / any_s,
+        m / embree_any_s, embree_any_s / any_s, static_cast<double>(nodes) / n, static_cast<double>(triangles) / n,
+        static_cast<double>(any) / n, static_cast<unsigned long long>(other));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const bool has_file = argc > 1;
+    const TriangleMesh mesh = has_file ? read_obj_geometry(argv[1]) : make_torus(600, 300);
+    const auto count = static_cast<uint32_t>(argc > 2 ? std::atoi(argv[2]) : 500000);
+    BvhBuildSettings settings;
+    if (argc > 3) settings.bins = std::atoi(argv[3]);
+    if (argc > 4) settings.max_leaf = std::atoi(argv[4]);
+    if (argc > 5) settings.leaf_cost = static_cast<float>(std::atof(argv[5]));
+
+    const std::vector<BvhTriangle> triangles = triangles_of(mesh);
+    Bvh bvh;
+    const double build_s = fastest(3, [&] { bvh = build_bvh(triangles, settings); });
+    std::printf("%zu triangles: built in %.1f ms, %zu nodes, depth %d, cost %.2f, %.0f bytes a triangle\n",
+                triangles.size(), build_s * 1e3, bvh.nodes.size(), bvh.depth, static_cast<double>(bvh.sah_cost),
+                static_cast<double>(bvh.nodes.size() * sizeof(BvhNode) + triangles.size() * sizeof(BvhTriangle)) /
+                    static_cast<double>(triangles.size()));
+    const EmbreeScene embree(mesh);
+    SceneBvhView scene;
+    scene.baked = view_of(bvh);
+
+    const float eps = 2e-5f * length(bvh.bounds.size());
+    std::vector<Hit> hits;
+    std::vector<Ray> rays = primary_rays(count, bvh.bounds, has_file);
+    measure("primary", scene, embree, rays, hits);
+    rays = bounce(rays, hits, mesh, eps, 22);
+    measure("diffuse1", scene, embree, rays, hits);
+    rays = bounce(rays, hits, mesh, eps, 44);
+    measure("diffuse2", scene, embree, rays, hits);
+    return 0;
+}

@@ -1,0 +1,213 @@
+#include "accel/bvh/bvh_cache.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "accel/bvh/check_bvh.h"
+#include "base/error.h"
+#include "base/write_file_atomically.h"
+
+namespace pertev {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMagic[8] = {'P', 'e', 'r', 't', 'e', 'v', 'B', '2'};
+constexpr uint32_t kVersion = 1; // of the file's layout and of the builder: raised when either changes
+constexpr uint32_t kByteOrder = 0x01020304;
+constexpr uint32_t kEndOfLeaf = 0x80000000u; // in the order's words
+
+struct Header {
+    char magic[8];
+    uint32_t byte_order, version;
+    Hash128 key;
+    Hash128 checksum; // of the header with 0 here, and of all that follows it
+    uint64_t node_count, triangle_count;
+    Bounds3 bounds;
+    uint32_t root;
+    int32_t depth;
+    float sah_cost;
+    uint32_t unused;
+};
+static_assert(sizeof(Header) == 104, "no padding: its bytes are hashed");
+
+Hash128 checksum_of(Header header, std::span<const BvhNode> nodes, std::span<const uint32_t> order) {
+    header.checksum = {};
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(&header, 1)));
+    hasher.add(std::as_bytes(nodes));
+    hasher.add(std::as_bytes(order));
+    return hasher.result();
+}
+
+fs::path file_of(const Hash128& key, const fs::path& folder) { return folder / (key.hex() + ".bvh"); }
+
+struct Unusable {
+    std::string why;
+};
+
+template <class T>
+void read_values(std::ifstream& file, std::span<T> values) {
+    file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+    if (!file) throw Unusable{"it cannot be read to its end"};
+}
+
+/// Every number of the file is checked before it is used.
+BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triangle_count) {
+    const uint64_t size = fs::file_size(path);
+    std::ifstream file(path, std::ios::binary);
+    Header header;
+    if (size < sizeof header) throw Unusable{"it is cut short"};
+    read_values(file, std::span(&header, 1));
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) throw Unusable{"it is not a tree of Pertev's"};
+    if (header.byte_order != kByteOrder || header.version != kVersion) throw Unusable{"another version wrote it"};
+    if (!(header.key == key) || header.triangle_count != triangle_count) throw Unusable{"it is of another mesh"};
+    if (header.node_count >= kMaxBvhTriangles ||
+        size != sizeof header + header.node_count * sizeof(BvhNode) + header.triangle_count * sizeof(uint32_t)) {
+        throw Unusable{"its size is not what it says"};
+    }
+    BuiltTree tree;
+    tree.nodes.resize(header.node_count);
+    tree.order.resize(triangle_count);
+    read_values(file, std::span(tree.nodes));
+    read_values(file, std::span(tree.order));
+    if (!(checksum_of(header, tree.nodes, tree.order) == header.checksum)) throw Unusable{"its checksum is wrong"};
+
+    tree.is_last.resize(triangle_count);
+    std::vector<bool> seen(triangle_count);
+    for (std::size_t i = 0; i < triangle_count; ++i) {
+        tree.is_last[i] = (tree.order[i] & kEndOfLeaf) != 0;
+        tree.order[i] &= ~kEndOfLeaf;
+        if (tree.order[i] >= triangle_count || seen[tree.order[i]]) throw Unusable{"its order of triangles is broken"};
+        seen[tree.order[i]] = true;
+    }
+    tree.root = header.root;
+    tree.bounds = header.bounds;
+    tree.depth = header.depth;
+    tree.sah_cost = header.sah_cost;
+    return tree;
+}
+
+/// Removes the files used longest ago. Another process may do the same at the same time: what is gone is gone.
+void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
+    struct Entry {
+        fs::path path;
+        fs::file_time_type used;
+        uint64_t size;
+    };
+    std::vector<Entry> entries;
+    uint64_t total = 0;
+    std::error_code error;
+    for (const fs::directory_entry& found : fs::directory_iterator(folder, error)) {
+        if (found.path().extension() != ".bvh" || !found.is_regular_file(error)) continue;
+        const uint64_t size = found.file_size(error);
+        if (error) continue;
+        entries.push_back({found.path(), found.last_write_time(error), size});
+        total += size;
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+    for (const Entry& entry : entries) {
+        if (total <= max_bytes) break;
+        fs::remove(entry.path, error);
+        total -= entry.size;
+    }
+}
+
+} // namespace
+
+std::optional<fs::path> bvh_cache_folder() {
+    const auto absolute = [](const char* name) -> std::optional<fs::path> {
+        const char* value = std::getenv(name);
+        if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
+        return fs::path(value);
+    };
+    if (const auto cache = absolute("XDG_CACHE_HOME")) return *cache / "pertev";
+    if (const auto home = absolute("HOME")) return *home / ".cache" / "pertev";
+    return std::nullopt;
+}
+
+Hash128 bvh_cache_key(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
+    Hasher hasher;
+    hasher.add_value(kVersion);
+    hasher.add_value(settings.bins);
+    hasher.add_value(settings.max_leaf);
+    hasher.add_value(settings.max_depth);
+    hasher.add_value(settings.node_cost);
+    hasher.add_value(settings.leaf_cost);
+    hasher.add(std::as_bytes(std::span(triangles)));
+    return hasher.result();
+}
+
+std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
+                                   const std::vector<BvhTriangle>& triangles, Messages& messages) {
+    const fs::path path = file_of(key, folder);
+    try {
+        if (!fs::exists(path)) return std::nullopt;
+        if (!fs::is_regular_file(path)) throw Unusable{"it is not a regular file"};
+        Bvh bvh = make_bvh(read_tree(path, key, triangles.size()), triangles);
+        if (const auto fault = find_broken_link(bvh)) throw Unusable{*fault};
+        std::error_code ignored; // a read-only cache still serves
+        fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
+        return bvh;
+    } catch (const Unusable& unusable) {
+        messages.warn(fmt::format("{}: ignored and built anew: {}", path.string(), unusable.why));
+    } catch (const fs::filesystem_error& error) {
+        messages.warn(fmt::format("{}: ignored and built anew: {}", path.string(), error.code().message()));
+    }
+    return std::nullopt;
+}
+
+void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTree& tree, Messages& messages,
+                      uint64_t max_bytes) {
+    std::vector<uint32_t> order(tree.order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = tree.order[i] | (tree.is_last[i] ? kEndOfLeaf : 0u);
+    Header header = {.magic = {},
+                     .byte_order = kByteOrder,
+                     .version = kVersion,
+                     .key = key,
+                     .checksum = {},
+                     .node_count = tree.nodes.size(),
+                     .triangle_count = order.size(),
+                     .bounds = tree.bounds,
+                     .root = tree.root,
+                     .depth = tree.depth,
+                     .sah_cost = tree.sah_cost,
+                     .unused = 0};
+    std::memcpy(header.magic, kMagic, sizeof kMagic);
+    header.checksum = checksum_of(header, tree.nodes, order);
+
+    std::vector<std::byte> bytes;
+    bytes.reserve(sizeof header + tree.nodes.size() * sizeof(BvhNode) + order.size() * sizeof(uint32_t));
+    for (const std::span<const std::byte> part :
+         {std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(tree.nodes)),
+          std::as_bytes(std::span(order))}) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+    }
+    try {
+        fs::create_directories(folder);
+        write_file_atomically(file_of(key, folder), bytes);
+        remove_oldest(folder, max_bytes);
+    } catch (const fs::filesystem_error& error) {
+        messages.warn(
+            fmt::format("{}: the structure cache cannot be written: {}", folder.string(), error.code().message()));
+    } catch (const Error& error) {
+        messages.warn(fmt::format("{}: the structure cache cannot be written: {}", folder.string(), error.what()));
+    }
+}
+
+Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings,
+                      const std::optional<fs::path>& folder, Messages& messages) {
+    if (!folder || triangles.size() < kMinCachedTriangles) return build_bvh(triangles, settings);
+    const Hash128 key = bvh_cache_key(triangles, settings);
+    if (std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, messages)) return std::move(*bvh);
+    BuiltTree tree = build_triangle_tree(triangles, settings);
+    store_cached_bvh(key, *folder, tree, messages);
+    return make_bvh(std::move(tree), triangles);
+}
+
+} // namespace pertev

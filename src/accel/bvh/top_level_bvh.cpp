@@ -1,0 +1,63 @@
+#include "accel/bvh/top_level_bvh.h"
+
+#include <cmath>
+
+#include "accel/bvh/build_tree.h"
+
+namespace pertev {
+namespace {
+
+struct WorldBox {
+    Bounds3 bounds;
+    float reach;
+};
+
+/// Box of the eight moved corners, rounded outwards, by centre and half size along each axis.
+WorldBox move_box(const Transform& m, const Bounds3& local) {
+    WorldBox world{{}, 0};
+    const auto axis = [&](Vec3 row, float translation, float& lo, float& hi) {
+        double centre = static_cast<double>(translation), half = 0, reach = std::fabs(centre);
+        for (int k = 0; k < 3; ++k) {
+            const double r = static_cast<double>(component(row, k));
+            const double a = static_cast<double>(component(local.lo, k)),
+                         b = static_cast<double>(component(local.hi, k));
+            centre += r * 0.5 * (a + b);
+            half += std::fabs(r) * 0.5 * (b - a);
+            reach += std::fabs(r) * std::fmax(std::fabs(a), std::fabs(b));
+        }
+        lo = std::nextafterf(static_cast<float>(centre - half), -kInfinity) + 0.0f;
+        hi = std::nextafterf(static_cast<float>(centre + half), kInfinity) + 0.0f;
+        world.reach = max(world.reach, std::nextafterf(static_cast<float>(reach), kInfinity));
+    };
+    axis(m.row0, m.translation.x, world.bounds.lo.x, world.bounds.hi.x);
+    axis(m.row1, m.translation.y, world.bounds.lo.y, world.bounds.hi.y);
+    axis(m.row2, m.translation.z, world.bounds.lo.z, world.bounds.hi.z);
+    return world;
+}
+
+} // namespace
+
+TopLevelBvh build_top_level_bvh(std::span<const PlacedBvh> instances) {
+    TopLevelBvh top;
+    std::vector<BuildReference> references;
+    for (const PlacedBvh& placed : instances) {
+        if (placed.local_bounds.is_empty()) continue;
+        const WorldBox world = move_box(placed.world_from_local, placed.local_bounds);
+        references.push_back({world.bounds.lo, static_cast<uint32_t>(references.size()), world.bounds.hi});
+        top.instances.push_back({inverse(placed.world_from_local), placed.mesh_bvh, placed.instance});
+        top.reach = max(top.reach, world.reach);
+        top.growth = max(top.growth, 2 * condition_number(placed.world_from_local));
+    }
+    BuiltTree tree = build_tree(std::move(references), {.max_leaf = 1, .max_depth = kMaxTopLevelDepth});
+    top.nodes = std::move(tree.nodes);
+    top.bounds = tree.bounds;
+    top.root = tree.root;
+    top.depth = tree.depth;
+    // In the tree's order: one instance a leaf, so a leaf link is a position.
+    std::vector<InstanceRecord> ordered;
+    for (const uint32_t id : tree.order) ordered.push_back(top.instances[id]);
+    top.instances = std::move(ordered);
+    return top;
+}
+
+} // namespace pertev

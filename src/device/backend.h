@@ -1,0 +1,41 @@
+#pragma once
+
+// What a kind of device must offer: the few calls that move memory and wait. Two exist, the CPU (queue.cpp) and CUDA
+// (cuda/cuda_backend.cpp); a queue calls through this table.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace pertev {
+
+class DeviceBackend {
+public:
+    virtual ~DeviceBackend() = default;
+
+    virtual std::string name() const = 0;
+    virtual bool is_cuda() const = 0;
+    virtual void* stream() const = 0; // cudaStream_t; null on the CPU
+    virtual std::size_t free_bytes() const = 0;
+
+    /// Null when there is not enough memory; throws Error(DeviceFault) for anything else.
+    virtual void* allocate(std::size_t bytes) = 0;
+    virtual void free(void* memory) noexcept = 0;
+    virtual void copy_to_device(void* device, const void* host, std::size_t bytes) = 0;
+    virtual void copy_to_host(void* host, const void* device, std::size_t bytes) = 0;
+    virtual void zero(void* device, std::size_t bytes) = 0;
+    /// Waits for all work given so far. Throws Error(DeviceFault) that names `stage`, the last one launched.
+    virtual void wait(const char* stage) = 0;
+    /// Throws Error(DeviceFault) when the launch just made was refused.
+    virtual void check_launch(const char* stage) = 0;
+};
+
+/// Why no CUDA device can be used, or empty when device `index` can: no support compiled in, no driver, no such
+/// device, or an architecture that the binary holds no code for.
+std::string why_no_cuda(int index);
+int cuda_device_count();
+/// Throws Error(BadInput) with why_no_cuda's reason.
+std::unique_ptr<DeviceBackend> make_cuda_backend(int index);
+
+} // namespace pertev

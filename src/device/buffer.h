@@ -1,0 +1,65 @@
+#pragma once
+
+// An array in device memory. Owned here, passed on as a plain pointer in views.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "device/queue.h"
+
+namespace pertev {
+
+template <class T>
+class Buffer {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+public:
+    Buffer() = default;
+    /// `count` elements, not initialised. `name` stands in the message of Error(OutOfMemory).
+    Buffer(Queue& queue, std::size_t count, const std::string& name)
+        : queue_(&queue), data_(static_cast<T*>(queue.allocate(count * sizeof(T), name))), count_(count) {}
+    /// A copy of `values`.
+    Buffer(Queue& queue, std::span<const T> values, const std::string& name) : Buffer(queue, values.size(), name) {
+        upload(values);
+    }
+    ~Buffer() {
+        if (queue_ != nullptr) queue_->free(data_);
+    }
+    Buffer(Buffer&& other) noexcept
+        : queue_(std::exchange(other.queue_, nullptr)), data_(std::exchange(other.data_, nullptr)),
+          count_(std::exchange(other.count_, 0)) {}
+    Buffer& operator=(Buffer&& other) noexcept {
+        std::swap(queue_, other.queue_);
+        std::swap(data_, other.data_);
+        std::swap(count_, other.count_);
+        return *this;
+    }
+
+    T* data() const { return data_; }
+    std::size_t size() const { return count_; }
+
+    /// Copies values to the start of the buffer; at most size() of them.
+    void upload(std::span<const T> values) {
+        if (!values.empty()) queue_->copy_to_device(data_, values.data(), values.size_bytes());
+    }
+    std::vector<T> download() const {
+        std::vector<T> values(count_);
+        if (count_ > 0) queue_->copy_to_host(values.data(), data_, count_ * sizeof(T));
+        return values;
+    }
+    void zero() {
+        if (count_ > 0) queue_->zero(data_, count_ * sizeof(T));
+    }
+
+private:
+    Queue* queue_ = nullptr;
+    T* data_ = nullptr;
+    std::size_t count_ = 0;
+};
+
+} // namespace pertev

@@ -1,0 +1,106 @@
+#include "device/backend.h"
+
+#include <cuda_runtime.h>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "device/cuda/probe_architecture.h"
+
+namespace pertev {
+namespace {
+
+void check(cudaError_t error, const char* stage) {
+    if (error == cudaSuccess) return;
+    throw Error(ErrorCode::DeviceFault,
+                fmt::format("CUDA failed in {}: {} ({})", stage, cudaGetErrorString(error), cudaGetErrorName(error)));
+}
+
+class CudaBackend final : public DeviceBackend {
+public:
+    explicit CudaBackend(int index) {
+        check(cudaSetDevice(index), "cudaSetDevice");
+        cudaDeviceProp properties{};
+        check(cudaGetDeviceProperties(&properties, index), "cudaGetDeviceProperties");
+        name_ = properties.name;
+        check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
+    }
+    ~CudaBackend() override { cudaStreamDestroy(stream_); }
+    CudaBackend(const CudaBackend&) = delete;
+    CudaBackend& operator=(const CudaBackend&) = delete;
+
+    std::string name() const override { return name_; }
+    bool is_cuda() const override { return true; }
+    void* stream() const override { return stream_; }
+    std::size_t free_bytes() const override {
+        std::size_t free = 0, total = 0;
+        check(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
+        return free;
+    }
+    void* allocate(std::size_t bytes) override {
+        void* memory = nullptr;
+        const cudaError_t error = cudaMalloc(&memory, bytes);
+        if (error == cudaErrorMemoryAllocation) {
+            cudaGetLastError(); // clears it: the context is still good
+            return nullptr;
+        }
+        check(error, "cudaMalloc");
+        return memory;
+    }
+    void free(void* memory) noexcept override { cudaFree(memory); }
+    void copy_to_device(void* device, const void* host, std::size_t bytes) override {
+        check(cudaMemcpyAsync(device, host, bytes, cudaMemcpyHostToDevice, stream_), "copy to device");
+        wait("copy to device"); // the host memory may go away after the call
+    }
+    void copy_to_host(void* host, const void* device, std::size_t bytes) override {
+        check(cudaMemcpyAsync(host, device, bytes, cudaMemcpyDeviceToHost, stream_), "copy to host");
+        wait("copy to host");
+    }
+    void zero(void* device, std::size_t bytes) override { check(cudaMemsetAsync(device, 0, bytes, stream_), "zero"); }
+    void wait(const char* stage) override { check(cudaStreamSynchronize(stream_), stage); }
+    void check_launch(const char* stage) override { check(cudaGetLastError(), stage); }
+
+private:
+    std::string name_;
+    cudaStream_t stream_ = nullptr;
+};
+
+} // namespace
+
+int cuda_device_count() {
+    int count = 0;
+    const cudaError_t error = cudaGetDeviceCount(&count); // without a driver it does not write its argument
+    return error == cudaSuccess ? count : 0;
+}
+
+std::string why_no_cuda(int index) {
+    int count = 0;
+    const cudaError_t error = cudaGetDeviceCount(&count);
+    if (error == cudaErrorInsufficientDriver) {
+        int driver = 0;
+        cudaDriverGetVersion(&driver);
+        if (driver == 0) return "no NVIDIA driver was found";
+        return fmt::format("the NVIDIA driver supports CUDA {}.{}, the binary was built with {}.{}", driver / 1000,
+                           driver % 1000 / 10, CUDART_VERSION / 1000, CUDART_VERSION % 1000 / 10);
+    }
+    if (error != cudaSuccess) return fmt::format("no CUDA device: {}", cudaGetErrorString(error));
+    if (index < 0 || index >= count) {
+        return fmt::format("there is no CUDA device {}; this machine has {}", index, count);
+    }
+    cudaDeviceProp properties{};
+    if (cudaGetDeviceProperties(&properties, index) != cudaSuccess) return "the device does not answer";
+    cudaSetDevice(index);
+    if (!has_code_for_current_device()) {
+        return fmt::format("{} is of architecture {}.{}, which this binary holds no code for; configure with "
+                           "CMAKE_CUDA_ARCHITECTURES={}{}",
+                           properties.name, properties.major, properties.minor, properties.major, properties.minor);
+    }
+    return {};
+}
+
+std::unique_ptr<DeviceBackend> make_cuda_backend(int index) {
+    if (const std::string reason = why_no_cuda(index); !reason.empty()) throw Error(ErrorCode::BadInput, reason);
+    return std::make_unique<CudaBackend>(index);
+}
+
+} // namespace pertev

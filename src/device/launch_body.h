@@ -1,0 +1,35 @@
+#pragma once
+
+// The body of launch(): included by the .cu files that instantiate stages, and by nothing else. A .cpp that saw it
+// would make a second, CPU-only copy of the same weak symbol, and the linker may pick that one.
+
+#include "base/parallel_for.h"
+#include "device/launch.h"
+
+namespace pertev {
+
+#if defined(__CUDACC__)
+template <class Stage>
+__global__ void __launch_bounds__(128) run_stage(Stage stage, uint32_t count) {
+    // 64-bit on purpose: blocks * threads passes 2^32 for large queues.
+    const uint64_t i = uint64_t(blockIdx.x) * blockDim.x + threadIdx.x;
+    if (i < count) stage(uint32_t(i));
+}
+#endif
+
+template <class Stage>
+void launch(Queue& queue, const char* name, uint32_t count, const Stage& stage) {
+    if (count == 0) return;
+    const Queue::Scope scope(queue, name);
+#if defined(__CUDACC__)
+    if (queue.is_cuda()) {
+        constexpr uint32_t threads = 128;
+        const uint32_t blocks = uint32_t((uint64_t(count) + threads - 1) / threads);
+        run_stage<<<blocks, threads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count);
+        return queue.check_launch();
+    }
+#endif
+    parallel_for(count, 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+}
+
+} // namespace pertev

@@ -1,0 +1,87 @@
+#include "device/queue.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace pertev {
+namespace {
+
+constexpr std::size_t kAlignment = 128; // a cache line pair; more than any vector load needs
+
+class CpuBackend final : public DeviceBackend {
+public:
+    std::string name() const override { return "CPU"; }
+    bool is_cuda() const override { return false; }
+    void* stream() const override { return nullptr; }
+    std::size_t free_bytes() const override {
+        return static_cast<std::size_t>(::sysconf(_SC_AVPHYS_PAGES)) *
+               static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    }
+    void* allocate(std::size_t bytes) override {
+        return std::aligned_alloc(kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment);
+    }
+    void free(void* memory) noexcept override { std::free(memory); }
+    void copy_to_device(void* device, const void* host, std::size_t bytes) override {
+        std::memcpy(device, host, bytes);
+    }
+    void copy_to_host(void* host, const void* device, std::size_t bytes) override { std::memcpy(host, device, bytes); }
+    void zero(void* device, std::size_t bytes) override { std::memset(device, 0, bytes); }
+    void wait(const char*) override {}
+    void check_launch(const char*) override {}
+};
+
+double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
+
+} // namespace
+
+Queue Queue::make_cpu() { return Queue(std::make_unique<CpuBackend>()); }
+
+Queue Queue::make_cuda(int index) { return Queue(make_cuda_backend(index)); }
+
+void* Queue::allocate(std::size_t bytes, const std::string& name) {
+    if (bytes == 0) return nullptr;
+    void* memory = backend_->allocate(bytes);
+    if (memory == nullptr) {
+        std::vector<Allocation> largest = allocations_;
+        std::ranges::sort(largest, [](const Allocation& a, const Allocation& b) { return a.bytes > b.bytes; });
+        std::string list;
+        for (std::size_t i = 0; i < std::min<std::size_t>(largest.size(), 5); ++i) {
+            list += fmt::format("\n  {:10.1f} MiB  {}", mebibytes(largest[i].bytes), largest[i].name);
+        }
+        throw Error(ErrorCode::OutOfMemory,
+                    fmt::format("{}: out of memory: {} needs {:.1f} MiB, {:.1f} MiB are free; the largest buffers:{}",
+                                device_name(), name, mebibytes(bytes), mebibytes(free_bytes()),
+                                list.empty() ? "\n  (none)" : list));
+    }
+    allocations_.push_back({memory, bytes, name});
+    allocated_ += bytes;
+    peak_ = std::max(peak_, allocated_);
+    return memory;
+}
+
+void Queue::free(void* memory) noexcept {
+    if (memory == nullptr) return;
+    const auto found = std::ranges::find(allocations_, memory, &Allocation::memory);
+    if (found == allocations_.end()) return;
+    allocated_ -= found->bytes;
+    *found = std::move(allocations_.back());
+    allocations_.pop_back();
+    backend_->free(memory);
+}
+
+#if !defined(PERTEV_HAS_CUDA)
+
+std::string why_no_cuda(int) { return "this binary was built without CUDA (./setup.sh --cuda builds with it)"; }
+int cuda_device_count() { return 0; }
+std::unique_ptr<DeviceBackend> make_cuda_backend(int index) { throw Error(ErrorCode::BadInput, why_no_cuda(index)); }
+
+#endif
+
+} // namespace pertev

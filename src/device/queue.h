@@ -1,0 +1,66 @@
+#pragma once
+
+// A queue of work on one device, and the owner of that device's memory. Work runs in the order given. On the CPU each
+// call returns when it is done; in CUDA it runs behind, and wait() meets it.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "device/backend.h"
+
+namespace pertev {
+
+class Queue {
+public:
+    static Queue make_cpu();
+    /// Throws Error(BadInput) that says why when the device cannot be used.
+    static Queue make_cuda(int index);
+
+    bool is_cuda() const { return backend_->is_cuda(); }
+    void* stream() const { return backend_->stream(); }
+    std::string device_name() const { return backend_->name(); }
+
+    /// Waits for all work given. Throws Error(DeviceFault) that names the last stage launched when one failed.
+    void wait() { backend_->wait(stage_); }
+    void check_launch() { backend_->check_launch(stage_); }
+
+    /// Device memory, never null for bytes > 0. Throws Error(OutOfMemory) that lists the largest buffers.
+    void* allocate(std::size_t bytes, const std::string& name);
+    void free(void* memory) noexcept;
+    void copy_to_device(void* device, const void* host, std::size_t bytes) {
+        backend_->copy_to_device(device, host, bytes);
+    }
+    void copy_to_host(void* host, const void* device, std::size_t bytes) {
+        backend_->copy_to_host(host, device, bytes);
+    }
+    void zero(void* device, std::size_t bytes) { backend_->zero(device, bytes); }
+
+    std::size_t allocated_bytes() const { return allocated_; }
+    std::size_t peak_bytes() const { return peak_; }
+    std::size_t free_bytes() const { return backend_->free_bytes(); }
+
+    /// Names the stage being launched, for errors.
+    class Scope {
+    public:
+        Scope(Queue& queue, const char* stage) { queue.stage_ = stage; }
+    };
+
+private:
+    struct Allocation {
+        void* memory;
+        std::size_t bytes;
+        std::string name;
+    };
+
+    explicit Queue(std::unique_ptr<DeviceBackend> backend) : backend_(std::move(backend)) {}
+
+    std::unique_ptr<DeviceBackend> backend_;
+    const char* stage_ = "start";
+    std::vector<Allocation> allocations_;
+    std::size_t allocated_ = 0, peak_ = 0;
+};
+
+} // namespace pertev

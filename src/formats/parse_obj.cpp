@@ -1,0 +1,346 @@
+#include "formats/parse_obj.h"
+
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "formats/parse_number.h"
+#include "formats/triangulate_polygon.h"
+#include "image/srgb.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// A backslash joins a line with the next, so line ends inside a statement are space.
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\\' || c == '\0'; }
+
+void skip_space(std::string_view& text) {
+    std::size_t n = 0;
+    while (n < text.size() && is_space(text[n])) ++n;
+    text.remove_prefix(n);
+}
+
+std::string_view take_word(std::string_view& text) {
+    skip_space(text);
+    std::size_t n = 0;
+    while (n < text.size() && !is_space(text[n])) ++n;
+    const std::string_view word = text.substr(0, n);
+    text.remove_prefix(n);
+    return word;
+}
+
+/// The rest of a line without the space around it: names may hold spaces.
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+/// Statements with their line numbers.
+class Lines {
+public:
+    explicit Lines(std::string_view text)
+        : text_(text), end_of_line_(text.find('\n') == text.npos ? '\r' : '\n') {} // lone CR: old Macintosh files
+
+    bool next(std::string_view& line) {
+        if (at_ >= text_.size()) return false;
+        number_ += joined_;
+        joined_ = 0;
+        const std::size_t begin = at_;
+        std::size_t end;
+        do {
+            const void* found = std::memchr(text_.data() + at_, end_of_line_, text_.size() - at_);
+            end = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : text_.size();
+            at_ = end + 1;
+            ++joined_;
+        } while (at_ < text_.size() && is_joined(begin, end));
+        line = text_.substr(begin, end - begin);
+        return true;
+    }
+    /// Of the statement's first line; 1 is the file's first.
+    uint32_t number() const { return number_; }
+
+private:
+    bool is_joined(std::size_t begin, std::size_t end) const {
+        if (end > begin && text_[end - 1] == '\r') --end;
+        return end > begin && text_[end - 1] == '\\';
+    }
+
+    std::string_view text_;
+    char end_of_line_;
+    std::size_t at_ = 0;
+    uint32_t number_ = 1, joined_ = 0;
+};
+
+/// Something that happens on many lines: said once, with the first line.
+struct Counted {
+    std::size_t times = 0;
+    uint32_t first_line = 0;
+
+    void add(uint32_t line) {
+        if (times++ == 0) first_line = line;
+    }
+};
+
+struct Face {
+    uint32_t corner_count, line;
+};
+
+struct RawGroup {
+    std::string material;
+    std::vector<ObjCorner> corners; // of all faces, one after the other
+    std::vector<Face> faces;
+};
+
+class Parser {
+public:
+    Parser(std::string_view text, const std::string& file, Messages& messages)
+        : lines_(text), file_(file), messages_(messages) {}
+
+    ObjData run() {
+        std::string_view line;
+        while (lines_.next(line)) statement(line);
+        check_counts();
+        data_.groups.resize(groups_.size());
+        std::vector<Counted> without_uv(groups_.size());
+        parallel_for(groups_.size(), 1, [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i]); });
+        std::erase_if(data_.groups, [](const ObjGroup& group) { return group.corners.empty(); });
+        Counted missing;
+        for (const Counted& of_group : without_uv) {
+            if (of_group.times == 0) continue;
+            missing = {missing.times + of_group.times,
+                       missing.times == 0 ? of_group.first_line : std::min(missing.first_line, of_group.first_line)};
+        }
+        say(missing, "corners of faces name a texture coordinate or normal that is not in the file; they go without");
+        say(bad_numbers_, "lines have numbers that are missing or cannot be read");
+        say(short_faces_, "faces have fewer than three corners; they are left out");
+        say(points_and_lines_, "points and lines are left out");
+        say(free_form_, "statements of curves and free-form surfaces are left out");
+        say(unknown_, "lines cannot be understood; they are left out");
+        return std::move(data_);
+    }
+
+private:
+    Error fault(uint32_t line, const std::string& what) const {
+        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file_, line, what));
+    }
+
+    void say(const Counted& what, const char* text) const {
+        if (what.times == 0) return;
+        messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, what.times, text));
+    }
+
+    void statement(std::string_view line) {
+        const std::string_view key = take_word(line);
+        if (key.empty() || key[0] == '#') return;
+        if (key == "v") return vertex(line);
+        if (key == "f" || key == "fo") return face(line);
+        if (key == "vn") {
+            const auto n = numbers<3>(line);
+            data_.normals.push_back({n[0], n[1], n[2]});
+            return;
+        }
+        if (key == "vt") {
+            const auto t = numbers<1>(line);
+            data_.uvs.push_back({t[0], next_number(line).value_or(0)});
+            return;
+        }
+        if (key == "usemtl") {
+            current_ = nullptr;
+            material_ = trimmed(line);
+            return;
+        }
+        if (key == "mtllib") {
+            data_.material_files.emplace_back(trimmed(line));
+            return;
+        }
+        if (key == "p" || key == "l") return points_and_lines_.add(lines_.number());
+        other(key);
+    }
+
+    void other(std::string_view key) {
+        // Grouping, smoothing groups (files that want smooth normals give them) and display hints change nothing.
+        for (const char* harmless : {"g", "o", "s", "mg", "lod", "bevel", "c_interp", "d_interp", "usemap", "maplib",
+                                     "shadow_obj", "trace_obj"}) {
+            if (key == harmless) return;
+        }
+        for (const char* curved :
+             {"vp",   "deg", "bmat", "step", "cstype", "curv",  "curv2", "surf", "parm", "trim", "hole",
+              "scrv", "sp",  "end",  "con",  "ctech",  "stech", "bsp",   "bzp",  "cdc",  "res"}) {
+            if (key == curved) return free_form_.add(lines_.number());
+        }
+        unknown_.add(lines_.number());
+    }
+
+    std::optional<float> next_number(std::string_view& line) {
+        skip_space(line);
+        if (line.empty() || line[0] == '#') return std::nullopt;
+        const std::optional<float> value = parse_float(line);
+        if (value && (line.empty() || is_space(line[0]))) return value;
+        bad_numbers_.add(lines_.number());
+        take_word(line);
+        return kNan;
+    }
+
+    template <std::size_t count>
+    std::array<float, count> numbers(std::string_view& line) {
+        std::array<float, count> values;
+        for (float& value : values) {
+            const std::optional<float> number = next_number(line);
+            if (!number) bad_numbers_.add(lines_.number());
+            value = number.value_or(kNan);
+        }
+        return values;
+    }
+
+    void vertex(std::string_view line) {
+        const auto p = numbers<3>(line);
+        data_.positions.push_back({p[0], p[1], p[2]});
+        std::array<float, 3> rgb;
+        std::size_t found = 0;
+        while (found < 3) {
+            const std::optional<float> value = next_number(line);
+            if (!value) break;
+            rgb[found++] = *value;
+        }
+        const Vec4 white = {1, 1, 1, 1};
+        if (found == 3) { // one more alone is a weight for rational curves
+            data_.colors.resize(data_.positions.size() - 1, white);
+            data_.colors.push_back({srgb_decode(rgb[0]), srgb_decode(rgb[1]), srgb_decode(rgb[2]), 1});
+        } else if (!data_.colors.empty()) {
+            data_.colors.push_back(white);
+        }
+    }
+
+    /// One of v, vt, vn: 1 is the first, -1 the last so far.
+    uint32_t index(std::string_view& text, std::size_t count_so_far, const char* of) {
+        int64_t number = 0;
+        const char* end = text.data() + text.size();
+        const auto [after, ec] = std::from_chars(text.data(), end, number);
+        if (ec == std::errc::invalid_argument) {
+            throw fault(lines_.number(), "a face's corner is v, v/vt, v//vn or v/vt/vn, all whole numbers");
+        }
+        const int64_t zero_based = number < 0 ? static_cast<int64_t>(count_so_far) + number : number - 1;
+        // An index may lead to what stands further down, so the upper end is checked when all is read.
+        if (ec != std::errc{} || number == 0 || zero_based < 0 || zero_based >= int64_t(kNoIndex)) {
+            throw fault(lines_.number(),
+                        fmt::format("{} index {} is out of range; {} stand above, the first has index 1", of,
+                                    std::string_view(text.data(), static_cast<std::size_t>(after - text.data())),
+                                    count_so_far));
+        }
+        text.remove_prefix(static_cast<std::size_t>(after - text.data()));
+        return static_cast<uint32_t>(zero_based);
+    }
+
+    ObjCorner corner(std::string_view word) {
+        ObjCorner corner = {kNoIndex, kNoIndex, kNoIndex};
+        corner.position = index(word, data_.positions.size(), "vertex");
+        if (word.starts_with('/')) {
+            word.remove_prefix(1);
+            if (!word.empty() && word[0] != '/') corner.uv = index(word, data_.uvs.size(), "texture coordinate");
+            if (word.starts_with('/')) {
+                word.remove_prefix(1);
+                if (!word.empty()) corner.normal = index(word, data_.normals.size(), "normal");
+            }
+        }
+        if (!word.empty()) {
+            throw fault(lines_.number(), "a face's corner is v, v/vt, v//vn or v/vt/vn, all whole numbers");
+        }
+        return corner;
+    }
+
+    void face(std::string_view line) {
+        if (current_ == nullptr) {
+            const auto [found, is_new] = by_material_.try_emplace(material_, groups_.size());
+            if (is_new) groups_.push_back({material_, {}, {}});
+            current_ = &groups_[found->second];
+        }
+        const std::size_t before = current_->corners.size();
+        for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
+            current_->corners.push_back(corner(word));
+        }
+        const std::size_t count = current_->corners.size() - before;
+        if (count < 3) {
+            current_->corners.resize(before);
+            short_faces_.add(lines_.number());
+            return;
+        }
+        current_->faces.push_back({static_cast<uint32_t>(count), lines_.number()});
+    }
+
+    void check_counts() const {
+        if (data_.positions.size() >= kNoIndex || data_.uvs.size() >= kNoIndex || data_.normals.size() >= kNoIndex) {
+            throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
+        }
+    }
+
+    /// Checks a group's indices and cuts its faces into triangles.
+    void finish(RawGroup& raw, ObjGroup& group, Counted& without) const {
+        group.material = raw.material;
+        std::size_t triangles = 0;
+        for (const Face& face : raw.faces) triangles += face.corner_count - 2;
+        group.corners.reserve(3 * triangles);
+        std::vector<Vec3> polygon;
+        std::vector<uint32_t> cut;
+        ObjCorner* corners = raw.corners.data();
+        for (const Face& face : raw.faces) {
+            for (uint32_t i = 0; i < face.corner_count; ++i) check(corners[i], face.line, without);
+            if (face.corner_count == 3) {
+                group.corners.insert(group.corners.end(), corners, corners + 3);
+            } else {
+                polygon.clear();
+                cut.clear();
+                for (uint32_t i = 0; i < face.corner_count; ++i)
+                    polygon.push_back(data_.positions[corners[i].position]);
+                triangulate_polygon(polygon, cut);
+                for (const uint32_t i : cut) group.corners.push_back(corners[i]);
+            }
+            corners += face.corner_count;
+        }
+        raw = {};
+    }
+
+    void check(ObjCorner& corner, uint32_t line, Counted& without) const {
+        if (corner.position >= data_.positions.size()) {
+            throw fault(line, fmt::format("vertex index {} is out of range; the file has {} vertices",
+                                          uint64_t(corner.position) + 1, data_.positions.size()));
+        }
+        if (corner.uv != kNoIndex && corner.uv >= data_.uvs.size()) {
+            without.add(line);
+            corner.uv = kNoIndex;
+        }
+        if (corner.normal != kNoIndex && corner.normal >= data_.normals.size()) {
+            without.add(line);
+            corner.normal = kNoIndex;
+        }
+    }
+
+    Lines lines_;
+    const std::string& file_;
+    Messages& messages_;
+    ObjData data_;
+    std::vector<RawGroup> groups_;
+    std::unordered_map<std::string, std::size_t> by_material_;
+    std::string material_;
+    RawGroup* current_ = nullptr; // of material_; null until a face needs it
+    Counted bad_numbers_, short_faces_, points_and_lines_, free_form_, unknown_;
+};
+
+} // namespace
+
+ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages) {
+    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3); // byte order mark
+    return Parser(text, file, messages).run();
+}
+
+} // namespace pertev

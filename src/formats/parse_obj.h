@@ -1,0 +1,49 @@
+#pragma once
+
+// The text of a Wavefront OBJ file as arrays: vertices, and triangles by material. Wavefront's "Object Files (.obj)",
+// appendix B1 of the Advanced Visualizer manual; vertex colours as MeshLab and Blender write them.
+//
+// Why not tinyobjloader here (read_mtl uses it for .mtl): its 2.0rc10 reads a number that it cannot parse, `nan` too,
+// as 0 without a word; takes a minute for one polygon of 200 000 corners; rounds numbers through libm's pow; and knows
+// no line for an index out of range.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/messages.h"
+#include "math/vec2.h"
+#include "math/vec3.h"
+#include "math/vec4.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kNoIndex = 0xffffffffu;
+
+/// Zero-based; texture coordinate and normal may be kNoIndex.
+struct ObjCorner {
+    uint32_t position, uv, normal;
+};
+
+struct ObjGroup {
+    std::string material;           // of usemtl; empty before the first
+    std::vector<ObjCorner> corners; // [3 * triangles], in file order, every index in range
+};
+
+struct ObjData {
+    std::vector<Vec3> positions;
+    std::vector<Vec4> colors; // [positions], linear; or empty
+    std::vector<Vec3> normals;
+    std::vector<Vec2> uvs;        // v as in the file: upwards
+    std::vector<ObjGroup> groups; // by material, in the order of first use; none is empty
+    std::vector<std::string> material_files;
+};
+
+/// Throws Error(BadInput) that names `file` and the line for a face that cannot be understood or whose vertex does not
+/// exist. A number that cannot be read becomes NaN, with a warning: validate() drops its triangles.
+ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages);
+
+} // namespace pertev

@@ -1,0 +1,31 @@
+#include "formats/read_environment.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "image/read_image.h"
+
+namespace pertev {
+
+Image read_environment_image(const std::filesystem::path& path, Messages& messages) {
+    Image image = read_image(path, &messages);
+    if (image.width != 2 * image.height) {
+        messages.warn(fmt::format("{}: {}x{} is not twice as wide as high; it is taken as a full panorama all the same",
+                                  path.string(), image.width, image.height));
+    }
+    if (image.channels == 4) { // alpha means nothing here
+        std::vector<float> rgb(image.pixels.size() / 4 * 3);
+        for (std::size_t i = 0; i < rgb.size() / 3; ++i) std::copy_n(&image.pixels[4 * i], 3, &rgb[3 * i]);
+        image.pixels = std::move(rgb);
+        image.channels = 3;
+    }
+    const std::string extension = path.extension().string();
+    if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
+        messages.warn(fmt::format("{}: 8-bit pictures cut bright light off; an .hdr or .exr gives its full range",
+                                  path.string()));
+    }
+    return image;
+}
+
+} // namespace pertev

@@ -1,0 +1,171 @@
+#include "formats/read_obj.h"
+
+#include <bit>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/read_file.h"
+#include "formats/load_textures.h"
+#include "formats/parse_obj.h"
+#include "formats/read_mtl.h"
+
+namespace fs = std::filesystem;
+
+namespace pertev {
+namespace {
+
+/// Gives each different (position, uv, normal) of a group one vertex, in the order of first use. Open addressing: time
+/// and memory follow the group's own size, whatever its indices are.
+class VertexTable {
+public:
+    explicit VertexTable(std::size_t corners) : slots_(std::bit_ceil(2 * corners + 1), kNoIndex) {}
+
+    uint32_t vertex_of(const ObjCorner& corner) {
+        const std::size_t mask = slots_.size() - 1;
+        uint64_t hash = corner.position * 0x9e3779b97f4a7c15u;
+        hash = (hash ^ (hash >> 29) ^ corner.uv) * 0xbf58476d1ce4e5b9u;
+        hash = (hash ^ (hash >> 32) ^ corner.normal) * 0x94d049bb133111ebu;
+        for (std::size_t at = (hash >> 20) & mask;; at = (at + 1) & mask) {
+            if (slots_[at] == kNoIndex) {
+                slots_[at] = static_cast<uint32_t>(vertices_.size());
+                vertices_.push_back(corner);
+                return slots_[at];
+            }
+            const ObjCorner& known = vertices_[slots_[at]];
+            if (known.position == corner.position && known.uv == corner.uv && known.normal == corner.normal) {
+                return slots_[at];
+            }
+        }
+    }
+    const std::vector<ObjCorner>& vertices() const { return vertices_; }
+
+private:
+    std::vector<uint32_t> slots_;
+    std::vector<ObjCorner> vertices_;
+};
+
+Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
+    Mesh mesh;
+    mesh.name = group.material;
+    VertexTable table(group.corners.size());
+    mesh.indices.reserve(group.corners.size());
+    bool has_uv = false, has_normal = false;
+    for (const ObjCorner& corner : group.corners) {
+        mesh.indices.push_back(table.vertex_of(corner));
+        has_uv |= corner.uv != kNoIndex;
+        has_normal |= corner.normal != kNoIndex;
+    }
+    const std::vector<ObjCorner>& vertices = table.vertices();
+    mesh.positions.reserve(vertices.size());
+    for (const ObjCorner& v : vertices) mesh.positions.push_back(data.positions[v.position]);
+    if (!data.colors.empty()) {
+        mesh.colors.reserve(vertices.size());
+        for (const ObjCorner& v : vertices) mesh.colors.push_back(data.colors[v.position]);
+    }
+    if (has_normal) { // zero where there is none: validate() puts the geometric one
+        mesh.normals.reserve(vertices.size());
+        for (const ObjCorner& v : vertices) {
+            mesh.normals.push_back(v.normal == kNoIndex ? Vec3{} : data.normals[v.normal]);
+        }
+    }
+    if (has_uv) {
+        mesh.uv[0].reserve(vertices.size());
+        for (const ObjCorner& v : vertices) {
+            const Vec2 uv = v.uv == kNoIndex ? Vec2{0, 1} : data.uvs[v.uv];
+            mesh.uv[0].push_back({uv.x, 1 - uv.y});
+        }
+    }
+    return mesh;
+}
+
+/// Names on a mtllib line: one that may hold spaces, or several apart by spaces.
+std::vector<fs::path> material_files(const std::string& line, const fs::path& obj, const FileAccess& access,
+                                     Messages& messages) {
+    if (const std::optional<fs::path> whole = access.find(obj, line)) return {*whole};
+    std::vector<fs::path> found;
+    std::istringstream names(line);
+    for (std::string name; names >> name;) {
+        if (const std::optional<fs::path> path = access.find(obj, name)) {
+            found.push_back(*path);
+        } else {
+            messages.warn(
+                fmt::format("{}: there is no material file {}; what it describes is grey", obj.string(), name));
+        }
+    }
+    return found;
+}
+
+std::map<std::string, MtlMaterial> read_materials(const ObjData& data, const fs::path& obj, const FileAccess& access,
+                                                  TextureLoader& loader, Messages& messages) {
+    std::map<std::string, MtlMaterial> materials;
+    std::set<fs::path> seen;
+    for (const std::string& line : data.material_files) {
+        if (line.empty()) continue;
+        for (const fs::path& path : material_files(line, obj, access, messages)) {
+            if (seen.insert(path).second) materials.merge(read_mtl(path, loader, messages));
+        }
+    }
+    return materials;
+}
+
+Material grey_material(const std::string& name, const ObjData& data) {
+    Material material;
+    material.name = name;
+    if (!data.colors.empty()) material.base_color = grey(1); // the vertex colours tell
+    return material;
+}
+
+} // namespace
+
+Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
+    const std::string file = path.string();
+    const ObjData data = parse_obj(read_file(path), file, messages);
+
+    Scene scene;
+    scene.meshes.resize(data.groups.size());
+    TextureLoader loader(access, messages);
+    std::map<std::string, MtlMaterial> materials;
+    if (!options.geometry_only) materials = read_materials(data, path, access, loader, messages);
+    std::size_t unknown = 0;
+    std::string first_unknown;
+    for (uint32_t i = 0; i < data.groups.size(); ++i) {
+        const std::string& name = data.groups[i].material;
+        const auto known = materials.find(name);
+        if (known != materials.end()) {
+            scene.materials.push_back(known->second.material);
+        } else {
+            scene.materials.push_back(grey_material(name, data));
+            if (!name.empty() && unknown++ == 0) first_unknown = name;
+        }
+        scene.instances.push_back({.name = name, .mesh = i, .material = i, .world_from_local = {}});
+    }
+
+    if (unknown > 0 && !options.geometry_only) {
+        messages.warn(fmt::format("{}: {} materials are in no .mtl file ({} is the first); they are grey", file,
+                                  unknown, first_unknown));
+    }
+
+    parallel_invoke([&] { loader.load_into(scene); },
+                    [&] {
+                        parallel_for(data.groups.size(), 1,
+                                     [&](uint64_t i) { scene.meshes[i] = make_mesh(data.groups[i], data); });
+                    });
+
+    for (Material& material : scene.materials) {
+        const auto known = materials.find(material.name);
+        if (known == materials.end()) continue;
+        MtlMaterial finished = known->second;
+        finished.material = material;
+        finish_mtl_material(finished, scene.images, file, messages);
+        material = finished.material;
+    }
+    return scene;
+}
+
+} // namespace pertev

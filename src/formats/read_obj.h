@@ -1,0 +1,19 @@
+#pragma once
+
+// Wavefront OBJ with its .mtl files. One mesh and one instance for each material, in the order of first use. See
+// parse_obj.h and read_mtl.h for what is read and how it is converted.
+
+#include <filesystem>
+
+#include "base/messages.h"
+#include "formats/file_access.h"
+#include "formats/read_scene.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// Not yet validated. Throws Error(BadInput) that names the file and the line. A missing .mtl or texture is a warning.
+Scene read_obj(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
+               Messages& messages);
+
+} // namespace pertev

@@ -1,0 +1,406 @@
+#include "formats/read_ply.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/read_file.h"
+#include "formats/parse_number.h"
+#include "formats/ply_header.h"
+#include "formats/triangulate_polygon.h"
+#include "image/srgb.h"
+
+namespace fs = std::filesystem;
+
+namespace pertev {
+namespace {
+
+/// The body as a row of values; where it stands is known for messages.
+class Body {
+public:
+    Body(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file)
+        : begin_(reinterpret_cast<const char*>(bytes.data())), at_(begin_ + header.size), end_(begin_ + bytes.size()),
+          format_(header.format), file_(file) {}
+
+    Error fault(const std::string& what) const {
+        return Error(ErrorCode::BadInput,
+                     fmt::format("{}: byte {}: {} {}: {}", file_, at_ - begin_, element_, number_, what));
+    }
+    void set_place(const std::string& element, uint64_t number) {
+        element_ = element;
+        number_ = number;
+    }
+    void set_number(uint64_t number) { number_ = number; }
+
+    /// The fewest bytes that a value takes: in text a digit and a space.
+    std::size_t least_size(PlyType type) const { return format_ == PlyFormat::Ascii ? 2 : size_of(type); }
+
+    /// Throws unless `count` things of `least` bytes each may still follow.
+    void expect(uint64_t count, std::size_t least, const char* what) const {
+        // The last value of a text may stand without a space after it.
+        const uint64_t left = static_cast<uint64_t>(end_ - at_) + (format_ == PlyFormat::Ascii ? 1 : 0);
+        if (count > left / least) {
+            throw fault(fmt::format("{} {} do not fit into the {} bytes that are left", count, what, end_ - at_));
+        }
+    }
+
+    double value(PlyType type) {
+        switch (format_) {
+        case PlyFormat::Ascii:
+            return text_value(type);
+        case PlyFormat::LittleEndian:
+            return binary_value<false>(type);
+        case PlyFormat::BigEndian:
+            return binary_value<true>(type);
+        }
+        return 0;
+    }
+
+    /// Count of a list, checked against what is left.
+    uint64_t list_count(const PlyProperty& property) {
+        const double count = value(property.count_type);
+        if (!(count >= 0 && count < 0x1p32)) throw fault("a list's count is not within 0 and 2^32 - 1");
+        const auto whole = static_cast<uint64_t>(count);
+        expect(whole, least_size(property.type), "entries of a list");
+        return whole;
+    }
+
+    void skip(const PlyProperty& property) {
+        uint64_t values = property.is_list ? list_count(property) : 1;
+        if (format_ != PlyFormat::Ascii) {
+            if (!property.is_list) expect(1, size_of(property.type), "values");
+            at_ += values * size_of(property.type);
+            return;
+        }
+        for (; values > 0; --values) word();
+    }
+
+private:
+    std::string_view word() {
+        const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+        while (at_ != end_ && is_space(*at_)) ++at_;
+        const char* begin = at_;
+        while (at_ != end_ && !is_space(*at_)) ++at_;
+        if (begin == at_) throw fault("the file ends here");
+        return {begin, static_cast<std::size_t>(at_ - begin)};
+    }
+
+    double text_value(PlyType type) {
+        const std::string_view text = word();
+        std::string_view rest = text;
+        if (type == PlyType::Float32 || type == PlyType::Float64) {
+            const std::optional<float> number = parse_float(rest);
+            if (number && rest.empty()) return static_cast<double>(*number);
+        } else {
+            int64_t number = 0;
+            const auto [after, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
+            if (ec == std::errc{} && after == text.data() + text.size()) return static_cast<double>(number);
+        }
+        throw fault(fmt::format("\"{}\" is not a number of the property's type", text.substr(0, 40)));
+    }
+
+    template <class T, bool big_endian>
+    double load() {
+        if (static_cast<std::size_t>(end_ - at_) < sizeof(T)) throw fault("the file ends here");
+        std::array<char, sizeof(T)> bytes;
+        std::memcpy(bytes.data(), at_, sizeof(T));
+        if constexpr (big_endian) std::reverse(bytes.begin(), bytes.end());
+        at_ += sizeof(T);
+        return static_cast<double>(std::bit_cast<T>(bytes));
+    }
+
+    template <bool big_endian>
+    double binary_value(PlyType type) {
+        static_assert(std::endian::native == std::endian::little);
+        switch (type) {
+        case PlyType::Int8:
+            return load<int8_t, big_endian>();
+        case PlyType::UInt8:
+            return load<uint8_t, big_endian>();
+        case PlyType::Int16:
+            return load<int16_t, big_endian>();
+        case PlyType::UInt16:
+            return load<uint16_t, big_endian>();
+        case PlyType::Int32:
+            return load<int32_t, big_endian>();
+        case PlyType::UInt32:
+            return load<uint32_t, big_endian>();
+        case PlyType::Float32:
+            return load<float, big_endian>();
+        case PlyType::Float64:
+            return load<double, big_endian>();
+        }
+        return 0;
+    }
+
+    const char* begin_;
+    const char* at_;
+    const char* end_;
+    PlyFormat format_;
+    const std::string& file_;
+    std::string element_ = "header";
+    uint64_t number_ = 0;
+};
+
+enum Slot : std::size_t { X, Y, Z, NormalX, NormalY, NormalZ, Red, Green, Blue, Alpha, U, V, kSlots };
+
+std::size_t slot_of(const std::string& name) {
+    struct Name {
+        std::string_view name;
+        Slot slot;
+    };
+    static constexpr Name names[] = {
+        {"x", X},
+        {"y", Y},
+        {"z", Z},
+        {"nx", NormalX},
+        {"ny", NormalY},
+        {"nz", NormalZ},
+        {"red", Red},
+        {"green", Green},
+        {"blue", Blue},
+        {"alpha", Alpha},
+        {"r", Red},
+        {"g", Green},
+        {"b", Blue},
+        {"a", Alpha},
+        {"diffuse_red", Red},
+        {"diffuse_green", Green},
+        {"diffuse_blue", Blue},
+        {"u", U},
+        {"v", V},
+        {"s", U},
+        {"t", V},
+        {"texture_u", U},
+        {"texture_v", V},
+        {"texture_s", U},
+        {"texture_t", V},
+        {"texcoord_u", U},
+        {"texcoord_v", V},
+        {"s0", U},
+        {"t0", V},
+    };
+    for (const Name& known : names) {
+        if (known.name == name) return known.slot;
+    }
+    return kSlots;
+}
+
+/// Colour channel of a file's type to [0, 1]; integers are display values.
+float colour(double value, PlyType type, bool is_alpha) {
+    if (type == PlyType::Float32 || type == PlyType::Float64) return static_cast<float>(value);
+    const double full = type == PlyType::UInt16 ? 65535.0 : 255.0;
+    const float encoded = static_cast<float>(value / full);
+    return is_alpha ? encoded : srgb_decode(encoded);
+}
+
+class Reader {
+public:
+    Reader(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file)
+        : body_(bytes, header, file), header_(header), file_(file) {
+        for (const PlyElement& element : header.elements) {
+            if (element.name == "vertex") vertex_count_ = std::min<uint64_t>(element.count, 0xffffffffu);
+        }
+    }
+
+    Mesh run(Messages& messages) {
+        if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
+            throw Error(ErrorCode::BadInput, file_ +
+                                                 ": no faces: a cloud of points, or nothing; a surface has an element "
+                                                 "face with a list vertex_indices");
+        }
+        for (const PlyElement& element : header_.elements) {
+            body_.set_place(element.name, 0);
+            if (element.properties.empty() && element.name != "vertex") continue; // takes no bytes, whatever its count
+            std::size_t least = 0;
+            for (const PlyProperty& p : element.properties)
+                least += body_.least_size(p.is_list ? p.count_type : p.type);
+            body_.expect(element.count, std::max<std::size_t>(least, 1), "elements");
+            if (element.name == "vertex") {
+                vertices(element);
+            } else {
+                lists(element);
+            }
+        }
+        triangulate();
+        if (strays_ > 0) {
+            messages.warn(fmt::format("{}: {} faces have fewer than three corners; they are left out", file_, strays_));
+        }
+        return std::move(mesh_);
+    }
+
+private:
+    static bool is_indices(const PlyProperty& p) {
+        return p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index");
+    }
+    static bool is_surface(const PlyElement& element) {
+        return (element.name == "face" || element.name == "tristrips") && element.count > 0 &&
+               std::any_of(element.properties.begin(), element.properties.end(), is_indices);
+    }
+
+    void vertices(const PlyElement& element) {
+        if (element.count > std::numeric_limits<uint32_t>::max()) {
+            throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
+        }
+        std::vector<std::size_t> slots;
+        std::array<bool, kSlots + 1> has = {};
+        std::array<PlyType, kSlots + 1> types = {};
+        for (const PlyProperty& p : element.properties) {
+            // The first of a name counts: `s` and `u` may both be there.
+            std::size_t slot = p.is_list ? kSlots : slot_of(p.name);
+            if (has[slot]) slot = kSlots;
+            slots.push_back(slot);
+            has[slot] = true;
+            types[slot] = p.type;
+        }
+        if (!has[X] || !has[Y] || !has[Z]) throw body_.fault("a vertex needs the properties x, y and z");
+        const bool has_normal = has[NormalX] && has[NormalY] && has[NormalZ];
+        const bool has_colour = has[Red] && has[Green] && has[Blue], has_uv = has[U] && has[V];
+        const auto count = static_cast<std::size_t>(element.count);
+        mesh_.positions.resize(count);
+        if (has_normal) mesh_.normals.resize(count);
+        if (has_colour) mesh_.colors.resize(count);
+        if (has_uv) mesh_.uv[0].resize(count);
+
+        std::array<double, kSlots + 1> values = {};
+        values[Alpha] = 1;
+        const auto number = [&](Slot slot) { return static_cast<float>(values[slot]); };
+        const auto channel = [&](Slot slot) { return colour(values[slot], types[slot], slot == Alpha); };
+        for (std::size_t i = 0; i < count; ++i) {
+            body_.set_number(i);
+            for (std::size_t k = 0; k < slots.size(); ++k) {
+                if (slots[k] == kSlots) {
+                    body_.skip(element.properties[k]);
+                } else {
+                    values[slots[k]] = body_.value(element.properties[k].type);
+                }
+            }
+            mesh_.positions[i] = {number(X), number(Y), number(Z)};
+            if (has_normal) mesh_.normals[i] = {number(NormalX), number(NormalY), number(NormalZ)};
+            if (has_colour) {
+                mesh_.colors[i] = {channel(Red), channel(Green), channel(Blue), has[Alpha] ? channel(Alpha) : 1.0f};
+            }
+            if (has_uv) mesh_.uv[0][i] = {number(U), 1 - number(V)};
+        }
+    }
+
+    /// Faces and triangle strips; every other element is skipped.
+    void lists(const PlyElement& element) {
+        const bool is_face = element.name == "face", is_strip = element.name == "tristrips";
+        for (uint64_t i = 0; i < element.count; ++i) {
+            body_.set_number(i);
+            bool taken = false;
+            for (const PlyProperty& p : element.properties) {
+                if ((is_face || is_strip) && !taken && is_indices(p)) {
+                    taken = true;
+                    is_face ? face(p) : strip(p);
+                } else {
+                    body_.skip(p);
+                }
+            }
+        }
+    }
+
+    uint32_t checked(double value) const {
+        if (!(value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value))) {
+            throw body_.fault(fmt::format("vertex index {} is out of range; there are {} vertices, counted from 0",
+                                          value, vertex_count_));
+        }
+        return static_cast<uint32_t>(value);
+    }
+
+    void face(const PlyProperty& property) {
+        const uint64_t count = body_.list_count(property);
+        if (count < 3) ++strays_;
+        for (uint64_t i = 0; i < count; ++i) {
+            const uint32_t corner = checked(body_.value(property.type));
+            if (count >= 3) corners_.push_back(corner);
+        }
+        if (count >= 3) sizes_.push_back(static_cast<uint32_t>(count));
+    }
+
+    void strip(const PlyProperty& property) {
+        const uint64_t count = body_.list_count(property);
+        uint32_t before[2] = {};
+        uint64_t length = 0; // since the strip began; -1 begins a new one
+        for (uint64_t i = 0; i < count; ++i) {
+            const double value = body_.value(property.type);
+            if (value == -1) {
+                length = 0;
+                continue;
+            }
+            const uint32_t corner = checked(value);
+            if (length >= 2) {
+                const bool is_odd = length % 2 != 0;
+                corners_.insert(corners_.end(), {before[is_odd ? 1 : 0], before[is_odd ? 0 : 1], corner});
+                sizes_.push_back(3);
+            }
+            before[0] = before[1];
+            before[1] = corner;
+            ++length;
+        }
+    }
+
+    void triangulate() {
+        std::size_t triangles = 0;
+        for (const uint32_t size : sizes_) triangles += size - 2;
+        if (triangles > kMaxTrianglesPerMesh) {
+            throw Error(ErrorCode::OverLimit,
+                        fmt::format("{}: {} triangles; a mesh has at most {}", file_, triangles, kMaxTrianglesPerMesh));
+        }
+        if (triangles == sizes_.size()) {
+            mesh_.indices = std::move(corners_);
+            return;
+        }
+        mesh_.indices.reserve(3 * triangles);
+        std::vector<Vec3> polygon;
+        std::vector<uint32_t> cut;
+        const uint32_t* corners = corners_.data();
+        for (const uint32_t size : sizes_) {
+            polygon.clear();
+            cut.clear();
+            for (uint32_t i = 0; i < size; ++i) polygon.push_back(mesh_.positions[corners[i]]);
+            triangulate_polygon(polygon, cut);
+            for (const uint32_t i : cut) mesh_.indices.push_back(corners[i]);
+            corners += size;
+        }
+    }
+
+    Body body_;
+    const PlyHeader& header_;
+    const std::string& file_;
+    uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
+    Mesh mesh_;
+    std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
+    uint64_t strays_ = 0;
+};
+
+} // namespace
+
+Scene read_ply(const fs::path& path, const FileAccess&, const ReadOptions& options, Messages& messages) {
+    const std::string file = path.string();
+    const std::vector<std::byte> bytes = read_file(path);
+    const PlyHeader header = parse_ply_header(bytes, file);
+    Scene scene;
+    scene.meshes.push_back(Reader(bytes, header, file).run(messages));
+    Mesh& mesh = scene.meshes.back();
+    mesh.name = path.stem().string();
+    if (options.geometry_only) mesh.colors.clear();
+    Material material;
+    material.name = mesh.name;
+    if (!mesh.colors.empty()) material.base_color = grey(1);
+    scene.materials.push_back(std::move(material));
+    scene.instances.push_back({.name = mesh.name, .mesh = 0, .material = 0, .world_from_local = {}});
+    return scene;
+}
+
+} // namespace pertev

@@ -1,0 +1,22 @@
+#pragma once
+
+// PLY, Stanford's polygon file format (Greg Turk, 1994), ascii and binary of both byte orders: vertex positions,
+// normals, colours and texture coordinates, faces and triangle strips; everything else in it is skipped. No count is
+// believed before it is held against the bytes that are left.
+
+#include <filesystem>
+
+#include "base/messages.h"
+#include "formats/file_access.h"
+#include "formats/read_scene.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// One mesh, one grey material (white where there are vertex colours). Integer colours are taken as sRGB, float ones as
+/// linear; v of texture coordinates points up. Not yet validated. Throws Error(BadInput) that names the file and the
+/// header line, or the element, its number and the byte offset.
+Scene read_ply(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
+               Messages& messages);
+
+} // namespace pertev

@@ -1,0 +1,98 @@
+#include "image/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+Rgb pixel(const Image& image, std::size_t i) {
+    const float* p = image.pixels.data() + i * image.channels;
+    return {p[0], p[1], p[2]};
+}
+
+double square_of_difference(float x, float r) {
+    const double difference = double(x) - double(r);
+    return difference * difference;
+}
+
+double relative_square(float x, float r) { return square_of_difference(x, r) / (double(r) * double(r) + 0.01); }
+
+} // namespace
+
+void check_comparable(const Image& picture, const Image& reference) {
+    for (const Image* image : {&picture, &reference}) {
+        PERTEV_CHECK(image->channels == 3 || image->channels == 4);
+        PERTEV_CHECK(image->pixels.size() == std::size_t(image->width) * image->height * image->channels);
+        PERTEV_CHECK(!image->pixels.empty());
+    }
+    if (picture.width != reference.width || picture.height != reference.height)
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("pictures of {} x {} and {} x {} pixels cannot be compared; the sizes must be equal",
+                                picture.width, picture.height, reference.width, reference.height));
+}
+
+TrimmedError relative_error(const Image& picture, const Image& reference, double keep) {
+    check_comparable(picture, reference);
+    PERTEV_CHECK(keep > 0 && keep <= 1);
+    const std::size_t count = std::size_t(picture.width) * picture.height;
+    std::vector<double> errors(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Rgb x = pixel(picture, i), r = pixel(reference, i);
+        errors[i] = is_finite(x) && is_finite(r)
+                        ? (relative_square(x.r, r.r) + relative_square(x.g, r.g) + relative_square(x.b, r.b)) / 3
+                        : kInfinite;
+    }
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return errors[a] != errors[b] ? errors[a] < errors[b] : a < b; // equal ones in one order everywhere
+    });
+    const auto kept = static_cast<std::size_t>(std::floor(keep * static_cast<double>(count)));
+    order.resize(std::max<std::size_t>(kept, 1));
+
+    TrimmedError result;
+    result.pixels = order.size();
+    for (const std::size_t i : order) {
+        const Rgb x = pixel(picture, i), r = pixel(reference, i);
+        result.rel_mse += errors[i];
+        const float values[3] = {x.r, x.g, x.b}, reference_values[3] = {r.r, r.g, r.b};
+        for (int c = 0; c < 3; ++c) {
+            result.mean[c] += double(values[c]);
+            result.reference_mean[c] += double(reference_values[c]);
+        }
+    }
+    const double n = static_cast<double>(order.size());
+    result.rel_mse /= n;
+    for (int c = 0; c < 3; ++c) {
+        result.mean[c] /= n;
+        result.reference_mean[c] /= n;
+    }
+    return result;
+}
+
+double mean_squared_error(const Image& picture, const Image& reference) {
+    check_comparable(picture, reference);
+    const std::size_t count = std::size_t(picture.width) * picture.height;
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Rgb x = pixel(picture, i), r = pixel(reference, i);
+        if (!is_finite(x) || !is_finite(r)) return kInfinite;
+        sum += square_of_difference(x.r, r.r) + square_of_difference(x.g, r.g) + square_of_difference(x.b, r.b);
+    }
+    return sum / (3 * static_cast<double>(count));
+}
+
+double peak_signal_to_noise(double mean_squared_error, double peak) {
+    return mean_squared_error == 0 ? kInfinite : 10 * std::log10(peak * peak / mean_squared_error);
+}
+
+} // namespace pertev

@@ -1,0 +1,32 @@
+#pragma once
+
+// How far a picture is from its reference, as numbers: what `pertev compare` prints and the tests hold bounds on.
+// FLIP is in image/flip.h. Sums are in double and in one fixed order.
+
+#include "image/image.h"
+#include "math/rgb.h"
+
+namespace pertev {
+
+struct TrimmedError {
+    double rel_mse = 0;            // mean over the kept pixels and their channels of (x - r)^2 / (r^2 + 0.01)
+    double mean[3] = {};           // of the picture's R, G, B over the kept pixels
+    double reference_mean[3] = {}; // of the reference's
+    uint64_t pixels = 0;           // how many were kept
+};
+
+/// relMSE over the `keep` part (0, 1] of the pixels with the least error, at least one: fireflies do not drown the
+/// rest. A pixel with a value that is not finite counts as the worst, and makes rel_mse infinite where it is kept.
+/// Both pictures have 3 or 4 channels (alpha is not compared). Throws Error(BadInput) when their sizes differ.
+TrimmedError relative_error(const Image& picture, const Image& reference, double keep = 0.98);
+
+/// Mean of (x - r)^2 over pixels and R, G, B. Infinite where a value is not finite. Throws as relative_error.
+double mean_squared_error(const Image& picture, const Image& reference);
+
+/// Peak signal-to-noise ratio in dB for values up to `peak`; infinite for equal pictures.
+double peak_signal_to_noise(double mean_squared_error, double peak = 1);
+
+/// Throws Error(BadInput) that tells both sizes, unless they are equal and each picture has 3 or 4 channels.
+void check_comparable(const Image& picture, const Image& reference);
+
+} // namespace pertev

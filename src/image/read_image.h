@@ -1,0 +1,22 @@
+#pragma once
+
+// Any picture file as one linear float picture: for comparing pictures and for environment maps.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "base/messages.h"
+#include "image/image.h"
+
+namespace pertev {
+
+/// The picture at `path`, linear Rec. 709. PNG and JPEG are taken as sRGB and decoded; their alpha is kept (4 channels)
+/// where some pixel is not opaque. Grey becomes RGB, so the result has 3 or 4 channels. Throws as read_file and
+/// decode_image do.
+Image read_image(const std::filesystem::path& path, Messages* messages = nullptr);
+/// The same from memory; `name` starts every message.
+Image read_image(std::span<const std::byte> bytes, const std::string& name, Messages* messages = nullptr);
+
+} // namespace pertev

@@ -1,0 +1,43 @@
+#include "image/write_image.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "image/tone_map_image.h"
+#include "image/write_hdr.h"
+#include "image/write_jpeg.h"
+#include "image/write_png.h"
+
+namespace pertev {
+
+ImageFormat image_format_for(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (extension == ".exr") return ImageFormat::Exr;
+    if (extension == ".png") return ImageFormat::Png;
+    if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::Jpeg;
+    if (extension == ".hdr") return ImageFormat::Hdr;
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("{}: {}; a picture is written as .exr, .png, .jpg (.jpeg) or .hdr", path.string(),
+                    extension.empty() ? "the name has no extension" : fmt::format("unknown extension {}", extension)));
+}
+
+void write_image(const std::filesystem::path& path, const Image& linear, const WriteImageOptions& options) {
+    switch (image_format_for(path)) {
+    case ImageFormat::Exr:
+        return write_exr(path, linear, options.layers, options.metadata);
+    case ImageFormat::Hdr:
+        return write_hdr(path, linear);
+    case ImageFormat::Png:
+        return write_png(path, tone_map_image(linear, options.tone_map, options.exposure_stops, options.transparent),
+                         options.transparent && linear.channels % 2 == 0);
+    case ImageFormat::Jpeg:
+        return write_jpeg(path, tone_map_image(linear, options.tone_map, options.exposure_stops, false));
+    }
+}
+
+} // namespace pertev

@@ -1,0 +1,31 @@
+#pragma once
+
+// What a path-traced render is asked for, beside scene and camera.
+
+#include <cstdint>
+
+#include "math/sampler.h"
+#include "math/vec3.h"
+
+namespace pertev {
+
+/// Which light paths count. With D = scatterings that are not mirror-like: Path all, Direct those with at most one D
+/// (the thesis's local illumination), Indirect the rest (its figure 3.6); Path = Direct + Indirect.
+enum class PathLight : uint8_t { Path, Direct, Indirect };
+
+/// How a light is found: next-event estimation and BSDF sampling, weighted by the power heuristic, or one alone. All
+/// three converge to one picture (where lights can be hit at all); the single ones are for tests.
+enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
+
+struct PathSettings {
+    uint32_t max_depth = 16;     // scattering vertices: 0 emission only, 1 direct light
+    uint32_t roulette_depth = 2; // first vertex (counted from 1) at which Russian roulette may end the path
+    PathLight light = PathLight::Path;
+    LightStrategy strategy = LightStrategy::Mis;
+    float clamp = 0; // largest channel of one contribution after the first scattering, W/(sr m2); 0 = off
+    SamplerKind sampler = SamplerKind::Sobol;
+    uint32_t seed = 0;
+    Vec3 camera_axis = {0, 0, -1}; // unit, world space; PathRenderer sets it: depth is measured along it
+};
+
+} // namespace pertev

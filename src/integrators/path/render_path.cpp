@@ -1,0 +1,118 @@
+#include "integrators/path/render_path.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "base/parallel_for.h"
+#include "device/launch.h"
+#include "integrators/path/path_stages.h"
+
+namespace pertev {
+
+PathRenderer::PathRenderer(Queue& queue, const SceneView& scene, const Camera& camera, PixelFilter filter,
+                           float filter_radius, const PathSettings& settings, uint32_t width, uint32_t height,
+                           PathBody body, uint32_t batch)
+    : queue_(queue), scene_(scene), settings_(settings), width_(width), height_(height), body_(body),
+      filter_table_(queue, make_filter_table(filter), "pixel filter"),
+      camera_{make_camera_view(camera, width, height), {filter, filter_radius, filter_table_.data()}, width} {
+    settings_.camera_axis = normalize(transform_vector(camera.world_from_camera, {0, 0, -1}));
+    if (body == PathBody::Loop) return;
+    capacity_ = batch;
+    for (auto& floats : path_floats_) floats = Buffer<Float4>(queue, batch, "path queue");
+    for (auto& floats : shadow_floats_) floats = Buffer<Float4>(queue, batch, "shadow ray queue");
+    hit_floats_ = Buffer<Float4>(queue, batch, "hit queue");
+    path_ids_ = Buffer<Uint4>(queue, batch, "path queue");
+    shadow_ids_ = Buffer<Uint4>(queue, batch, "shadow ray queue");
+    hit_ids_ = Buffer<Uint4>(queue, batch, "hit queue");
+    for (auto& list : active_) list = Buffer<uint32_t>(queue, batch, "active paths");
+    counts_ = Buffer<uint32_t>(queue, 2, "queue lengths");
+}
+
+void PathRenderer::render(uint32_t first, uint32_t count, Film& film) {
+    const FilmView view = film.view();
+    if (body_ == PathBody::Loop) {
+        render_loop(first, count, view);
+    } else {
+        render_wavefront(first, count, view);
+    }
+}
+
+void PathRenderer::render_loop(uint32_t first, uint32_t count, const FilmView& film) {
+    std::atomic<uint64_t> bounces{0}, shadows{0};
+    parallel_for_ranges(uint64_t(width_) * height_, 64, [&](uint64_t begin, uint64_t end) {
+        RayCounts counts;
+        for (uint64_t i = begin; i < end; ++i) {
+            const uint32_t pixel = tiled_pixel(static_cast<uint32_t>(i), width_, height_);
+            for (uint32_t sample = first; sample < first + count; ++sample) {
+                PathState path = generate_path(camera_, settings_, pixel, sample);
+                for (bool goes_on = true; goes_on;) {
+                    const Hit hit = find_hit(scene_, path, settings_.seed);
+                    const uint32_t key = path_key(path, settings_.seed, true);
+                    ShadowRay shadow;
+                    bool wants_shadow = false;
+                    goes_on = shade_hit(scene_, settings_, film, path, hit, shadow, wants_shadow);
+                    counts.bounce += goes_on ? 1 : 0;
+                    if (!wants_shadow) continue;
+                    ++counts.shadow;
+                    if (!is_occluded(scene_, shadow.origin, shadow.direction, shadow.t_max,
+                                     {hit.instance, hit.primitive}, shadow.target, key)) {
+                        path.radiance += shadow.contribution;
+                    }
+                }
+                add_radiance(film, pixel, path.radiance);
+            }
+        }
+        bounces += counts.bounce;
+        shadows += counts.shadow;
+    });
+    rays_.camera += uint64_t(width_) * height_ * count;
+    rays_.bounce += bounces;
+    rays_.shadow += shadows;
+}
+
+void PathRenderer::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
+    const uint32_t picture = width_ * height_;
+    const uint32_t pixels = std::min(picture, capacity_);
+    const uint32_t samples = std::min(count, capacity_ / pixels);
+    const PathQueueView paths = {path_floats_[0].data(), path_floats_[1].data(), path_floats_[2].data(),
+                                 path_floats_[3].data(), path_ids_.data()};
+    for (uint32_t sample = 0; sample < count; sample += samples) {
+        for (uint32_t pixel = 0; pixel < picture; pixel += pixels) {
+            const uint32_t batch_pixels = std::min(pixels, picture - pixel);
+            const uint32_t batch = batch_pixels * std::min(samples, count - sample);
+            launch(queue_, "generate_paths", batch,
+                   GeneratePaths{camera_, settings_, height_, pixel, batch_pixels, first + sample, paths});
+            rays_.camera += batch;
+            trace_batch(batch, film);
+        }
+    }
+    queue_.wait();
+}
+
+void PathRenderer::trace_batch(uint32_t batch, const FilmView& film) {
+    const PathQueueView paths = {path_floats_[0].data(), path_floats_[1].data(), path_floats_[2].data(),
+                                 path_floats_[3].data(), path_ids_.data()};
+    const HitQueueView hits = {hit_floats_.data(), hit_ids_.data()};
+    const ShadowQueueView shadows = {shadow_floats_[0].data(), shadow_floats_[1].data(), shadow_floats_[2].data(),
+                                     shadow_ids_.data()};
+    const uint32_t* active = nullptr; // at first every slot
+    int next = 0;
+    for (uint32_t count = batch; count > 0;) {
+        const SlotListView going_on = {active_[next].data(), counts_.data()};
+        counts_.zero();
+        launch(queue_, "find_hits", count, FindHits{scene_, settings_.seed, paths, active, hits});
+        launch(queue_, "shade_hits", count,
+               ShadeHits{scene_, settings_, film, paths, active, hits, going_on, shadows, counts_.data() + 1});
+        const std::vector<uint32_t> counts = counts_.download();
+        launch(queue_, "trace_shadows", counts[1], TraceShadows{scene_, shadows, paths});
+        rays_.bounce += counts[0];
+        rays_.shadow += counts[1];
+        active = active_[next].data();
+        next = 1 - next;
+        count = counts[0];
+    }
+    launch(queue_, "add_to_film", batch, AddToFilm{film, paths});
+}
+
+} // namespace pertev

@@ -1,0 +1,165 @@
+#pragma once
+
+// Third step of a path: what happens where its ray has hit (or left the scene). Adds emission, asks for a shadow ray
+// towards one light (next-event estimation), and scatters the path onwards. The same function on both devices.
+//
+// Source: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapter 9 (multiple importance
+// sampling, power heuristic) and 10.4 (Russian roulette).
+
+#include "integrators/path/path_settings.h"
+#include "integrators/path/path_state.h"
+#include "render/film_view.h"
+#include "render/ray_origin.h"
+#include "render/surface.h"
+
+namespace pertev {
+
+HD inline float power_heuristic(float pdf, float other_pdf) {
+    const float ratio = other_pdf / pdf;
+    return 1.0f / (1.0f + ratio * ratio);
+}
+
+/// Contribution after the user's clamp on everything that was scattered at least once before its last vertex.
+HD inline Rgb clamp_contribution(const PathSettings& settings, uint32_t depth, Rgb contribution) {
+    const float largest = max_component(contribution);
+    if (!(settings.clamp > 0) || depth == 0 || !(largest > settings.clamp)) return contribution;
+    return (settings.clamp / largest) * contribution;
+}
+
+/// Adds light that the path's own ray ran into. `light_pdf`: density with which next-event estimation at the previous
+/// vertex would have drawn this direction, 1/sr; 0 for light that it cannot find.
+HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb emission, float light_pdf) {
+    if (settings.light == PathLight::Indirect && path.rough_depth < 2) return;
+    float weight = 1;
+    if (path.bsdf_pdf > 0 && light_pdf > 0) {
+        if (settings.strategy == LightStrategy::NeeOnly) return;
+        if (settings.strategy == LightStrategy::Mis) weight = power_heuristic(path.bsdf_pdf, light_pdf);
+    }
+    path.radiance += clamp_contribution(settings, path.depth, path.throughput * (weight * emission));
+}
+
+/// Draws one point of one light. True when `shadow` is to be traced.
+HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
+                             const Surface& surface, Vec3 wo, ShadowRay& shadow) {
+    if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
+    if (settings.light == PathLight::Indirect && path.rough_depth + 1 < 2) return false;
+    const SampleKey key = {path.pixel, path.sample, settings.seed};
+    const float choice = sample_1d(settings.sampler, key, vertex_slot(path, kSlotLight));
+    const Vec2 place = sample_2d(settings.sampler, key, vertex_slot(path, kSlotOnLight));
+    LightSample light;
+    if (!sample_light(scene.lights, surface.position, choice, place, light)) return false;
+    const Vec3 wo_local = surface.frame.to_local(wo), wi_local = surface.frame.to_local(light.wi);
+    if (!surface.is_consistent(wo, light.wi, wo_local, wi_local)) return false;
+    const BsdfValue scattered = surface.bsdf.evaluate(wo_local, wi_local);
+    if (is_black(scattered.f)) return false;
+    if (light.instance != kNoLight && scene.any_alpha != 0 &&
+        !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
+                                                                                  light.b1, light.b2)) {
+        return false; // a hole in the light
+    }
+    float weight = 1;
+    if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
+        weight = power_heuristic(light.pdf, scattered.pdf);
+    }
+    shadow.contribution = clamp_contribution(
+        settings, path.depth, path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
+    shadow.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, light.wi);
+    shadow.target = {light.instance, light.primitive};
+    if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
+        Vec3 end = light.light_point;
+        if (light.instance != kNoLight) {
+            end = offset_ray_origin(end, light_point_error(end), light.light_normal, -light.wi);
+        }
+        shadow.direction = end - shadow.origin;
+        shadow.t_max = 1;
+    } else {
+        shadow.direction = light.wi;
+        shadow.t_max = kInfinity;
+    }
+    return true;
+}
+
+/// Draws where the path goes on. False when it ends here.
+HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo) {
+    const SampleKey key = {path.pixel, path.sample, settings.seed};
+    const float lobe = sample_1d(settings.sampler, key, vertex_slot(path, kSlotLobe));
+    const Vec2 u = sample_2d(settings.sampler, key, vertex_slot(path, kSlotBsdf));
+    const Vec3 wo_local = surface.frame.to_local(wo);
+    const BsdfSample sample = surface.bsdf.sample(wo_local, lobe, u);
+    if (!(sample.pdf > 0) || is_black(sample.weight)) return false;
+    const Vec3 wi = normalize(surface.frame.to_world(sample.wi));
+    if (!surface.is_consistent(wo, wi, wo_local, sample.wi)) return false;
+
+    path.throughput = path.throughput * sample.weight;
+    path.bsdf_pdf = sample.is_delta ? 0.0f : sample.pdf;
+    path.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
+    path.direction = wi;
+    path.start = surface.triangle;
+    path.rough_depth += sample.is_delta ? 0 : 1;
+    const uint32_t vertex = path.depth + 1;
+    if (vertex >= settings.roulette_depth) {
+        const float survival = max_component(path.throughput);
+        if (survival < 1) {
+            const float u_roulette = sample_1d(settings.sampler, key, vertex_slot(path, kSlotRoulette));
+            if (!(u_roulette < survival)) return false;
+            path.throughput = (1.0f / survival) * path.throughput;
+        }
+    }
+    path.depth = vertex;
+    return true;
+}
+
+/// Auxiliary channels of what a camera ray hit first.
+HD inline void add_first_hit(const FilmView& film, const PathState& path, const Hit& hit, const Surface& surface,
+                             Vec3 camera_axis) {
+    add_channel(film, path.pixel, 3, 1.0f);
+    uint32_t channel = kFilmColorChannels;
+    if ((film.aovs & kAovAlbedo) != 0) {
+        add_channels(film, path.pixel, channel, {surface.albedo.r, surface.albedo.g, surface.albedo.b});
+        channel += 3;
+    }
+    if ((film.aovs & kAovNormal) != 0) {
+        const Vec3 normal = surface.frame.normal;
+        add_channels(film, path.pixel, channel, dot(normal, path.direction) > 0 ? -normal : normal);
+        channel += 3;
+    }
+    if ((film.aovs & kAovDepth) != 0) {
+        add_channel(film, path.pixel, channel, dot(surface.position - path.origin, camera_axis));
+        channel += 1;
+    }
+    if ((film.aovs & kAovPosition) != 0) add_channels(film, path.pixel, channel, surface.position);
+    if ((film.aovs & kAovIds) != 0 && path.sample == 0) {
+        film.ids[path.pixel] = {hit.instance, hit.primitive, surface.material};
+    }
+}
+
+/// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
+/// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
+HD inline bool shade_hit(const SceneView& scene, const PathSettings& settings, const FilmView& film, PathState& path,
+                         const Hit& hit, ShadowRay& shadow, bool& wants_shadow) {
+    wants_shadow = false;
+    if (hit.instance == kNoHit) {
+        if (path.depth == 0 && (film.aovs & kAovIds) != 0 && path.sample == 0) {
+            film.ids[path.pixel] = {kNoHit, kNoHit, kNoHit};
+        }
+        if (scene.lights.environment_light != kNoLight) {
+            add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction),
+                         path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f);
+        }
+        return false;
+    }
+    const Surface surface = make_surface(scene, hit, path.direction);
+    if (path.depth == 0) add_first_hit(film, path, hit, surface, settings.camera_axis);
+    if (!is_black(surface.emission)) {
+        const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
+        add_emission(settings, path, surface.emission,
+                     light != kNoLight ? pdf_light_hit(scene.lights, light, path.origin, surface.position) : 0.0f);
+    }
+    if (surface.is_unlit || path.depth >= settings.max_depth) return false;
+    if (settings.light == PathLight::Direct && path.rough_depth >= 1) return false;
+    const Vec3 wo = -path.direction;
+    wants_shadow = ask_for_light(scene, settings, path, surface, wo, shadow);
+    return scatter(settings, path, surface, wo);
+}
+
+} // namespace pertev

@@ -1,0 +1,21 @@
+#include "render/camera_view.h"
+
+#include "math/portable_math.h"
+
+namespace pertev {
+
+CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height) {
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    const float half_height =
+        camera.projection == Projection::Perspective ? tan(0.5f * camera.fov_y) : 0.5f * camera.ortho_height;
+    return {camera.world_from_camera,
+            camera.projection,
+            half_height * aspect,
+            half_height,
+            1.0f / static_cast<float>(width),
+            1.0f / static_cast<float>(height),
+            camera.aperture_radius,
+            camera.focus_distance};
+}
+
+} // namespace pertev

@@ -1,0 +1,47 @@
+#pragma once
+
+// Camera rays: pinhole, thin lens and orthographic. A pixel position is in pixels from the picture's upper left corner.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/sampling.h"
+#include "math/transform.h"
+#include "math/vec2.h"
+#include "scene/camera.h"
+#include "trace/ray.h"
+
+namespace pertev {
+
+struct CameraView {
+    Transform world_from_camera;
+    Projection projection;
+    float half_width, half_height; // of the view: at distance 1 (perspective) or in metres (orthographic)
+    float inv_width, inv_height;   // 1 / pixels
+    float aperture_radius;         // metres
+    float focus_distance;          // metres
+};
+
+/// `fov_y` etc. of the camera with the picture's own shape: the height keeps its angle, the width follows.
+CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height);
+
+/// Ray through `pixel`, starting on the lens at `lens` (unit square). Unit direction.
+HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
+    const float x = (2.0f * (pixel.x * camera.inv_width) - 1.0f) * camera.half_width;
+    const float y = (1.0f - 2.0f * (pixel.y * camera.inv_height)) * camera.half_height;
+    Vec3 origin = {0, 0, 0}, direction = {x, y, -1};
+    if (camera.projection == Projection::Orthographic) {
+        origin = {x, y, 0};
+        direction = {0, 0, -1};
+    }
+    if (camera.aperture_radius > 0) {
+        const Vec2 on_lens = camera.aperture_radius * sample_uniform_disk_concentric(lens);
+        const Vec3 focus = origin + camera.focus_distance * direction; // z = -focus_distance
+        origin = {origin.x + on_lens.x, origin.y + on_lens.y, 0};
+        direction = focus - origin;
+    }
+    return {transform_point(camera.world_from_camera, origin), 0.0f,
+            normalize(transform_vector(camera.world_from_camera, direction)), kInfinity};
+}
+
+} // namespace pertev

@@ -1,0 +1,67 @@
+#pragma once
+
+// Where samples are added, on the device. Channels of a pixel lie together: R, G, B, then hits (1 a sample whose
+// camera ray hit something), then whatever auxiliary channels the render was asked for.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/rgb.h"
+#include "math/vec3.h"
+#include "render/fixed_sum.h"
+
+namespace pertev {
+
+/// Groups of auxiliary channels, in the order in which they follow R, G, B, hits.
+enum AovBits : uint32_t {
+    kAovAlbedo = 1,   // 3 channels: reflectance of the first surface
+    kAovNormal = 2,   // 3: its shading normal, world space
+    kAovDepth = 4,    // 1: distance along the camera's axis, metres
+    kAovPosition = 8, // 3: world space, metres
+    kAovIds = 16,     // no sums: ids of sample 0, see FilmView::ids
+};
+
+inline constexpr uint32_t kFilmColorChannels = 4;
+
+/// Ids of what sample 0 of a pixel hit first; each kNoHit where it hit nothing.
+struct PixelIds {
+    uint32_t instance, primitive, material;
+};
+
+struct FilmView {
+    FixedSum* sums;    // [pixels * channels]
+    PixelIds* ids;     // [pixels], or null
+    uint64_t* invalid; // one count of samples that were not finite or over kMaxSampleValue
+    uint32_t channels;
+    uint32_t aovs; // AovBits
+    uint32_t width, height;
+
+    HD FixedSum* pixel(uint32_t index) const { return sums + static_cast<uint64_t>(index) * channels; }
+};
+
+HD inline bool is_valid_sample(float x) { return abs(x) <= kMaxSampleValue; } // false for NaN
+
+/// Adds one sample's radiance to a pixel. A sample with an invalid channel adds 0 and is counted.
+HD inline void add_radiance(const FilmView& film, uint32_t pixel, Rgb radiance) {
+    if (!(is_valid_sample(radiance.r) && is_valid_sample(radiance.g) && is_valid_sample(radiance.b))) {
+        atomic_add(film.invalid, 1);
+        return;
+    }
+    FixedSum* sums = film.pixel(pixel);
+    atomic_add(&sums[0], to_fixed(radiance.r));
+    atomic_add(&sums[1], to_fixed(radiance.g));
+    atomic_add(&sums[2], to_fixed(radiance.b));
+}
+
+/// Adds a value to an auxiliary channel; an invalid one adds 0.
+HD inline void add_channel(const FilmView& film, uint32_t pixel, uint32_t channel, float value) {
+    if (is_valid_sample(value)) atomic_add(&film.pixel(pixel)[channel], to_fixed(value));
+}
+
+HD inline void add_channels(const FilmView& film, uint32_t pixel, uint32_t channel, Vec3 value) {
+    add_channel(film, pixel, channel, value.x);
+    add_channel(film, pixel, channel + 1, value.y);
+    add_channel(film, pixel, channel + 2, value.z);
+}
+
+} // namespace pertev

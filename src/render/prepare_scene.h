@@ -1,0 +1,39 @@
+#pragma once
+
+// From a validated Scene to what a render needs on the host: which meshes are baked into world space, the trees over
+// them (built, or loaded from the cache), the lights. The same for every device and every structure.
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "accel/bvh/build_bvh.h"
+#include "accel/bvh/top_level_bvh.h"
+#include "base/messages.h"
+#include "scene/scene.h"
+#include "shading/build_light_set.h"
+
+namespace pertev {
+
+struct PrepareOptions {
+    BvhBuildSettings bvh;
+    std::optional<std::filesystem::path> bvh_cache; // folder of the on-disk cache; none = always build
+};
+
+struct PreparedScene {
+    const Scene* scene = nullptr; // outlives this
+    Bvh baked;                    // all baked instances, world space
+    std::vector<Bvh> mesh_bvhs;   // of the meshes that are not baked everywhere, local space
+    TopLevelBvh top_level;        // over the instances that are not baked
+    LightSetData lights;
+    uint64_t triangles = 0;        // in all trees
+    uint64_t unique_triangles = 0; // of all meshes used
+    double build_seconds = 0;      // trees alone, built or read from the cache
+};
+
+/// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local
+/// space so skewed would cost the boxes of a top level more than the triangles cost memory.
+PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);
+
+} // namespace pertev

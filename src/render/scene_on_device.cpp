@@ -1,0 +1,129 @@
+#include "render/scene_on_device.h"
+
+#include <span>
+
+#include "image/srgb_table.h"
+
+namespace pertev {
+
+template <class T>
+const T* SceneOnDevice::keep(Queue& queue, std::span<const T> values, const std::string& name) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (values.empty()) return nullptr;
+    buffers_.emplace_back(queue, std::as_bytes(values), name);
+    return reinterpret_cast<const T*>(buffers_.back().data());
+}
+
+SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) {
+    const Scene& scene = *prepared.scene;
+    upload_trees(queue, prepared);
+    upload_meshes(queue, scene);
+    upload_instances(queue, scene);
+    upload_images(queue, scene);
+    upload_lights(queue, prepared.lights);
+}
+
+BvhView SceneOnDevice::upload(Queue& queue, const Bvh& bvh, const std::string& name) {
+    BvhView view = view_of(bvh);
+    view.nodes = keep(queue, std::span(bvh.nodes), name + " nodes");
+    view.triangles = keep(queue, std::span(bvh.triangles), name + " triangles");
+    return view;
+}
+
+void SceneOnDevice::upload_trees(Queue& queue, const PreparedScene& prepared) {
+    SceneBvhView& view = view_.bvh;
+    view.top_root = prepared.top_level.root;
+    view.top_reach = prepared.top_level.reach;
+    view.top_growth = prepared.top_level.growth;
+    view.baked = upload(queue, prepared.baked, "tree");
+    std::vector<BvhView> meshes;
+    for (const Bvh& bvh : prepared.mesh_bvhs) meshes.push_back(upload(queue, bvh, "mesh tree"));
+    view.meshes = keep(queue, std::span<const BvhView>(meshes), "mesh trees");
+    view.top_nodes = keep(queue, std::span(prepared.top_level.nodes), "top level nodes");
+    view.instances = keep(queue, std::span(prepared.top_level.instances), "top level instances");
+}
+
+void SceneOnDevice::upload_meshes(Queue& queue, const Scene& scene) {
+    std::vector<MeshView> views;
+    for (const Mesh& mesh : scene.meshes) {
+        views.push_back({keep(queue, std::span(mesh.positions), "positions"),
+                         keep(queue, std::span(mesh.normals), "normals"),
+                         keep(queue, std::span(mesh.tangents), "tangents"),
+                         {keep(queue, std::span(mesh.uv[0]), "texture coordinates"),
+                          keep(queue, std::span(mesh.uv[1]), "texture coordinates")},
+                         keep(queue, std::span(mesh.colors), "vertex colours"),
+                         keep(queue, std::span(mesh.indices), "indices")});
+    }
+    view_.meshes = keep(queue, std::span<const MeshView>(views), "meshes");
+}
+
+void SceneOnDevice::upload_instances(Queue& queue, const Scene& scene) {
+    std::vector<MaterialView> materials;
+    for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
+    view_.materials = keep(queue, std::span<const MaterialView>(materials), "materials");
+
+    std::vector<InstanceView> instances;
+    for (const Instance& instance : scene.instances) {
+        const bool has_alpha = scene.materials[instance.material].alpha_mode != AlphaMode::Opaque;
+        view_.any_alpha |= has_alpha ? 1 : 0;
+        instances.push_back({instance.world_from_local, inverse(instance.world_from_local), instance.mesh,
+                             instance.material, has_alpha ? 1u : 0u,
+                             determinant(instance.world_from_local) < 0 ? 1u : 0u});
+    }
+    view_.instances = keep(queue, std::span<const InstanceView>(instances), "instances");
+}
+
+void SceneOnDevice::upload_images(Queue& queue, const Scene& scene) {
+    std::vector<TextureImageView> images;
+    for (const TextureImage& image : scene.images) {
+        TextureImageView view = view_of(image);
+        view.rgba8 = keep(queue, std::span(image.rgba8.pixels), image.name);
+        view.rgba_float = keep(queue, std::span(image.rgba_float.pixels), image.name);
+        images.push_back(view);
+    }
+    view_.images = keep(queue, std::span<const TextureImageView>(images), "images");
+    view_.linear_from_srgb = keep(queue, std::span<const float>(srgb_decode_table()), "sRGB table");
+}
+
+AliasTableView SceneOnDevice::upload(Queue& queue, const AliasTable& table) {
+    AliasTableView view = view_of(table);
+    view.blocks = keep(queue, std::span(table.blocks), "light table");
+    view.entries = keep(queue, std::span(table.entries), "light table");
+    return view;
+}
+
+void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
+    LightSetView& view = view_.lights;
+    view = view_of(lights, view_.images, view_.linear_from_srgb);
+    view.choice = upload(queue, lights.choice);
+    view.triangles = keep(queue, std::span(lights.triangles), "emissive triangles");
+    view.punctual = keep(queue, std::span(lights.punctual), "punctual lights");
+    view.first_light = keep(queue, std::span(lights.first_light), "lights of instances");
+    view.emissions = keep(queue, std::span(lights.emissions), "emissions");
+    if (!lights.has_environment) return;
+    view.environment.pixels = keep(queue, std::span(lights.environment.pixels), "environment");
+    view.environment.row_bounds = keep(queue, std::span(lights.environment.row_bounds), "environment rows");
+    view.environment.table = upload(queue, lights.environment.table);
+}
+
+std::size_t predicted_bytes(const PreparedScene& prepared) {
+    const auto bytes_of = [](const auto& values) { return values.size() * sizeof(values[0]); };
+    std::size_t bytes = bytes_of(prepared.top_level.nodes) + bytes_of(prepared.top_level.instances);
+    const auto add_tree = [&](const Bvh& bvh) { bytes += bytes_of(bvh.nodes) + bytes_of(bvh.triangles); };
+    add_tree(prepared.baked);
+    for (const Bvh& bvh : prepared.mesh_bvhs) add_tree(bvh);
+    const Scene& scene = *prepared.scene;
+    for (const Mesh& mesh : scene.meshes) {
+        bytes += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.tangents) + bytes_of(mesh.uv[0]) +
+                 bytes_of(mesh.uv[1]) + bytes_of(mesh.colors) + bytes_of(mesh.indices);
+    }
+    for (const TextureImage& image : scene.images) bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
+    bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
+    const LightSetData& lights = prepared.lights;
+    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.choice.blocks) +
+             bytes_of(lights.choice.entries) + bytes_of(lights.environment.pixels) +
+             bytes_of(lights.environment.table.blocks) + bytes_of(lights.environment.table.entries);
+    return bytes;
+}
+
+} // namespace pertev

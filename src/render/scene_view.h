@@ -1,0 +1,64 @@
+#pragma once
+
+// The whole scene as device code sees it: plain pointers into buffers that render/scene_on_device.h owns.
+
+#include <cstdint>
+
+#include "math/transform.h"
+#include "math/vec2.h"
+#include "math/vec3.h"
+#include "math/vec4.h"
+#include "shading/light_set.h"
+#include "shading/material_view.h"
+#include "shading/texture_lookup.h"
+#include "trace/scene_bvh.h"
+
+namespace pertev {
+
+/// Geometry of one mesh, local space. Optional arrays are null.
+struct MeshView {
+    const Vec3* positions;
+    const Vec3* normals;
+    const Vec4* tangents;
+    const Vec2* uv[2];
+    const Vec4* colors;
+    const uint32_t* indices; // [3 * triangles]
+};
+
+struct InstanceView {
+    Transform world_from_local;
+    Transform local_from_world;
+    uint32_t mesh;
+    uint32_t material;
+    uint32_t has_alpha;   // 1 where a hit may be refused by its alpha
+    uint32_t is_mirrored; // 1 where world_from_local turns winding over
+};
+
+struct SceneView {
+    SceneBvhView bvh;
+    const InstanceView* instances;
+    const MeshView* meshes;
+    const MaterialView* materials;
+    const TextureImageView* images;
+    const float* linear_from_srgb; // [256]
+    LightSetView lights;
+    uint32_t any_alpha; // 0 lets every hit skip the look at its instance
+};
+
+/// The three vertex numbers of a triangle.
+struct TriangleIndices {
+    uint32_t a, b, c;
+};
+
+HD inline TriangleIndices triangle_indices(const MeshView& mesh, uint32_t primitive) {
+    const uint32_t* i = mesh.indices + 3 * static_cast<uint64_t>(primitive);
+    return {i[0], i[1], i[2]};
+}
+
+/// Value of a vertex attribute at barycentrics (u, v): weights of the second and third vertex.
+template <class T>
+HD T interpolate(const T* values, TriangleIndices i, float u, float v) {
+    return (1.0f - u - v) * values[i.a] + u * values[i.b] + v * values[i.c];
+}
+
+} // namespace pertev

@@ -1,0 +1,143 @@
+#pragma once
+
+// What a ray has hit, ready for shading: place, geometric and shading normal, BSDF and emission, with textures and
+// vertex colours applied. One function for baked and instanced geometry: both read the mesh through its instance.
+
+#include "math/frame.h"
+#include "render/accept_hit.h"
+#include "render/make_bsdf.h"
+#include "shading/shading_frame.h"
+
+namespace pertev {
+
+struct Surface {
+    Vec3 position;         // world space, metres
+    Vec3 error;            // bound of its rounding, per component
+    Vec3 geometric_normal; // unit, out of the front; wo may lie on either side
+    Frame frame;           // shading frame, its normal within a quarter turn of it
+    Bsdf bsdf;
+    Rgb emission; // W/(sr m2); of an unlit surface its colour
+    Rgb albedo;   // base colour, for the auxiliary channel
+    TriangleId triangle;
+    uint32_t material;
+    bool is_unlit;
+
+    /// Both directions before the triangle, or both behind it.
+    HD bool same_side(Vec3 wo, Vec3 wi) const {
+        return (dot(wo, geometric_normal) > 0) == (dot(wi, geometric_normal) > 0);
+    }
+    /// Whether the shading frame takes the pair for what the triangle says it is, reflection or transmission. Where
+    /// they disagree (near the horizon of an interpolated normal) no light is carried: it would leak through.
+    HD bool is_consistent(Vec3 wo, Vec3 wi, Vec3 wo_local, Vec3 wi_local) const {
+        return same_side(wo, wi) == (wo_local.z * wi_local.z > 0);
+    }
+};
+
+/// Rounding of a world-space point computed from a triangle's corners, relative to the size of the terms it is summed
+/// from: 7 units of 2^-24 for barycentric interpolation (Pharr et al. 6.8.4), 4 for the move into the world, twice over
+/// for a hit that was found in an instance's own space; rounded up.
+inline constexpr float kPointError = 0x1p-20f;
+
+HD inline Vec3 light_point_error(Vec3 point) { return kPointError * abs(point); }
+
+/// Corners and everything else of a triangle that make_surface looks at twice.
+struct PlacedTriangle {
+    TriangleIndices i;
+    Vec3 a, b, c;  // world space
+    Vec3 position; // of the hit
+    Vec3 error;
+};
+
+HD inline PlacedTriangle place_triangle(const InstanceView& instance, const MeshView& mesh, const Hit& hit) {
+    PlacedTriangle triangle;
+    triangle.i = triangle_indices(mesh, hit.primitive);
+    const Vec3 a = mesh.positions[triangle.i.a], b = mesh.positions[triangle.i.b], c = mesh.positions[triangle.i.c];
+    const Transform& m = instance.world_from_local;
+    triangle.a = transform_point(m, a);
+    triangle.b = transform_point(m, b);
+    triangle.c = transform_point(m, c);
+    triangle.position = interpolate(triangle.a, triangle.b, triangle.c, hit.u, hit.v);
+    const Vec3 terms = interpolate(abs(a), abs(b), abs(c), hit.u, hit.v);
+    triangle.error = kPointError * (Vec3{dot(abs(m.row0), terms), dot(abs(m.row1), terms), dot(abs(m.row2), terms)} +
+                                    abs(m.translation));
+    return triangle;
+}
+
+/// Unit normal of the side that the winding (in the mesh's own space) or, where there are any, the vertex normals call
+/// the front.
+HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle) {
+    const Vec3 ab = triangle.b - triangle.a, ac = triangle.c - triangle.a;
+    const float size = max(max_component(abs(ab)), max_component(abs(ac)));
+    const Vec3 across = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+    const float sign = instance.is_mirrored != 0 ? -1.0f : 1.0f;
+    const Vec3 normal = normalize_or((sign / size) * across, Vec3{0, 0, 1});
+    if (mesh.normals == nullptr) return normal;
+    const Vec3 sum = mesh.normals[triangle.i.a] + mesh.normals[triangle.i.b] + mesh.normals[triangle.i.c];
+    return dot(transform_transposed(instance.local_from_world, sum), normal) < 0 ? -normal : normal;
+}
+
+/// The frame before the normal map: interpolated normal, tangent given or from the texture coordinates.
+HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle,
+                              const Hit& hit, Vec3 normal, Vec3 geometric_normal, uint8_t uv_set) {
+    Vec4 tangent = {0, 0, 0, 1};
+    if (mesh.tangents != nullptr) {
+        const Vec4 local = interpolate(mesh.tangents, triangle.i, hit.u, hit.v);
+        const Vec3 world = transform_vector(instance.world_from_local, {local.x, local.y, local.z});
+        tangent = {world.x, world.y, world.z, instance.is_mirrored != 0 ? -local.w : local.w};
+    } else if (const Vec2* uv = mesh.uv[uv_set]) {
+        const Vec2 first = uv[triangle.i.a];
+        tangent = tangent_from_uv(triangle.b - triangle.a, triangle.c - triangle.a, uv[triangle.i.b] - first,
+                                  uv[triangle.i.c] - first, geometric_normal);
+    }
+    return frame_with_tangent(normal, tangent);
+}
+
+/// The shading frame at the hit, seen from `wo` (unit).
+HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
+                              const MaterialView& material, const PlacedTriangle& triangle, const Hit& hit,
+                              Vec3 geometric_normal, Vec3 wo) {
+    if (mesh.normals == nullptr && !material.normal_texture.has_image()) return make_frame(geometric_normal);
+    const Vec3 local =
+        mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
+    Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
+    if (material.normal_texture.has_image()) {
+        const TextureRef& ref = material.normal_texture;
+        const Frame frame =
+            tangent_frame(instance, mesh, triangle, hit, normal, geometric_normal, ref.uv_set);
+        const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
+                                          scene.linear_from_srgb);
+        normal = mapped_normal(frame, {texel.x, texel.y, texel.z}, material.normal_scale);
+    }
+    const bool behind = dot(wo, geometric_normal) < 0; // valid_normal looks from the front
+    const float side = behind ? -1.0f : 1.0f;
+    return make_frame(side * valid_normal(side * normal, side * geometric_normal, wo));
+}
+
+/// The surface at `hit` of a ray that arrives along `direction` (unit).
+HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
+    const InstanceView& instance = scene.instances[hit.instance];
+    const MeshView& mesh = scene.meshes[instance.mesh];
+    const MaterialView& material = scene.materials[instance.material];
+    const PlacedTriangle triangle = place_triangle(instance, mesh, hit);
+
+    Surface surface;
+    surface.position = triangle.position;
+    surface.error = triangle.error;
+    surface.geometric_normal = front_normal(instance, mesh, triangle);
+    surface.triangle = {hit.instance, hit.primitive};
+    surface.material = instance.material;
+    surface.frame = shading_frame(scene, instance, mesh, material, triangle, hit, surface.geometric_normal, -direction);
+    surface.albedo = base_color_at(scene, material, mesh, triangle.i, hit.u, hit.v);
+    surface.is_unlit = material.kind == MaterialKind::Unlit;
+    if (surface.is_unlit) {
+        surface.emission = surface.albedo;
+    } else if (material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) {
+        surface.emission =
+            surface_emission(scene.lights, instance.material,
+                             texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
+    }
+    surface.bsdf = make_bsdf(scene, material, mesh, triangle.i, hit.u, hit.v, surface.albedo);
+    return surface;
+}
+
+} // namespace pertev

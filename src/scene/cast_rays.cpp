@@ -1,0 +1,107 @@
+#include "scene/cast_rays.h"
+
+#include <mutex>
+
+#include "base/parallel_for.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint64_t kGrain = 4096;
+
+struct LocalRay {
+    Vec3 origin, direction;
+    std::size_t index; // of the world ray; the direction keeps the world's unit of distance
+};
+
+/// Rays side by side, eight to a vector register, and the nearest hit of each.
+struct RayPack {
+    static constexpr std::size_t width = 8;
+    float ox[width], oy[width], oz[width], dx[width], dy[width], dz[width];
+    float distance[width], facing[width]; // facing: above 0 on the front side
+};
+
+bool meets(const Bounds3& box, const LocalRay& ray) {
+    float from = 0, to = kInfinity;
+    for (int k = 0; k < 3; ++k) {
+        const float o = component(ray.origin, k), d = component(ray.direction, k);
+        const float lo = component(box.lo, k) - o, hi = component(box.hi, k) - o;
+        if (d == 0) {
+            if (lo > 0 || hi < 0) return false;
+            continue;
+        }
+        from = max(from, min(lo / d, hi / d));
+        to = min(to, max(lo / d, hi / d));
+    }
+    return from <= to * 1.0001f; // boxes may be flat
+}
+
+/// Branchless, so that the compiler makes one loop of vector instructions of it.
+void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, RayPack& rays) {
+    for (std::size_t k = 0; k < RayPack::width; ++k) {
+        const Vec3 direction = {rays.dx[k], rays.dy[k], rays.dz[k]};
+        const Vec3 p = cross(direction, ac);
+        const float det = dot(ab, p), inv = 1.0f / det; // not finite for det = 0: no comparison below holds
+        const Vec3 s = Vec3{rays.ox[k], rays.oy[k], rays.oz[k]} - a, q = cross(s, ab);
+        const float u = dot(s, p) * inv, v = dot(direction, q) * inv, t = dot(ac, q) * inv;
+        const bool is_nearer = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & (t < rays.distance[k]);
+        rays.distance[k] = is_nearer ? t : rays.distance[k];
+        rays.facing[k] = is_nearer ? det : rays.facing[k];
+    }
+}
+
+std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
+    std::vector<RayPack> packs((rays.size() + RayPack::width - 1) / RayPack::width);
+    for (std::size_t i = 0; i < packs.size() * RayPack::width; ++i) {
+        const LocalRay& ray = rays[min(i, rays.size() - 1)]; // the last fills up its pack
+        RayPack& to = packs[i / RayPack::width];
+        const std::size_t k = i % RayPack::width;
+        to.ox[k] = ray.origin.x, to.oy[k] = ray.origin.y, to.oz[k] = ray.origin.z;
+        to.dx[k] = ray.direction.x, to.dy[k] = ray.direction.y, to.dz[k] = ray.direction.z;
+        to.distance[k] = kInfinity, to.facing[k] = 0;
+    }
+    return packs;
+}
+
+void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, bool is_mirrored, std::vector<LookHit>& hits) {
+    const std::vector<RayPack> start = pack(rays);
+    std::mutex merging;
+    parallel_for_ranges(mesh.triangle_count(), kGrain, [&](uint64_t begin, uint64_t end) {
+        std::vector<RayPack> packs = start;
+        for (uint64_t i = 3 * begin; i < 3 * end; i += 3) {
+            const Vec3 a = mesh.positions[mesh.indices[i]];
+            const Vec3 ab = mesh.positions[mesh.indices[i + 1]] - a, ac = mesh.positions[mesh.indices[i + 2]] - a;
+            for (RayPack& of_eight : packs) meet_triangle(a, ab, ac, of_eight);
+        }
+        const std::lock_guard lock(merging);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const RayPack& from = packs[i / RayPack::width];
+            const std::size_t k = i % RayPack::width;
+            LookHit& hit = hits[rays[i].index];
+            if (from.distance[k] < hit.distance) hit = {from.distance[k], (from.facing[k] > 0) != is_mirrored};
+        }
+    });
+}
+
+} // namespace
+
+std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays) {
+    std::vector<LookHit> hits(rays.size());
+    std::vector<Bounds3> bounds;
+    for (const Mesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh));
+    std::vector<LocalRay> local;
+    for (const Instance& instance : scene.instances) {
+        const Transform local_from_world = inverse(instance.world_from_local);
+        local.clear();
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const LocalRay ray = {transform_point(local_from_world, rays[i].origin),
+                                  transform_vector(local_from_world, rays[i].direction), i};
+            if (meets(bounds[instance.mesh], ray)) local.push_back(ray);
+        }
+        if (local.empty()) continue;
+        cast_at_mesh(scene.meshes[instance.mesh], local, determinant(instance.world_from_local) < 0, hits);
+    }
+    return hits;
+}
+
+} // namespace pertev

@@ -1,0 +1,28 @@
+#pragma once
+
+// A few dozen rays against every triangle of a scene, without any acceleration structure: to look around in it before
+// one is built. Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997. Not watertight
+// and not exact: for guesses, never for the picture.
+
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace pertev {
+
+struct LookRay {
+    Vec3 origin, direction; // world space; the direction is unit
+};
+
+struct LookHit {
+    float distance = kInfinity; // metres; infinite: nothing there
+    bool is_front = false;      // the surface's front side is met
+    bool is_hit() const { return distance < kInfinity; }
+};
+
+/// The nearest hit of each ray. Time: rays times triangles of all instances whose box some ray meets. The scene has
+/// been through validate().
+std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays);
+
+} // namespace pertev

@@ -1,0 +1,103 @@
+#include "scene/surroundings.h"
+
+#include <array>
+
+#include "scene/cast_rays.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint64_t kMostTriangles = 8'000'000; // half a second on one core
+constexpr int kAxes = 6;                       // +x -x +y -y +z -z
+constexpr int kUp = 2;
+
+Vec3 axis_direction(int axis) {
+    const float sign = axis % 2 == 0 ? 1.0f : -1.0f;
+    return {axis / 2 == 0 ? sign : 0, axis / 2 == 1 ? sign : 0, axis / 2 == 2 ? sign : 0};
+}
+
+/// Along the axis, and half-way to its four neighbours, a little turned so that no ray runs along an edge of a box.
+std::array<Vec3, 5> bundle(int axis) {
+    const Vec3 d = axis_direction(axis);
+    const Vec3 side = {d.y, d.z, d.x}, up = {d.z, d.x, d.y};
+    return {normalize(d + 0.02f * side + 0.013f * up), normalize(d + 0.41f * side + 0.05f * up),
+            normalize(d - 0.38f * side - 0.07f * up), normalize(d + 0.43f * up - 0.06f * side),
+            normalize(d - 0.37f * up + 0.04f * side)};
+}
+
+/// What a point sees along each axis.
+struct Sight {
+    std::array<int, kAxes> hits = {}; // of 5 rays
+    int all = 0, front = 0;
+
+    bool is_closed(int axis) const { return hits[static_cast<std::size_t>(axis)] >= 4; }
+    bool is_open(int axis) const { return hits[static_cast<std::size_t>(axis)] <= 1; }
+    int closed_sides() const {
+        int count = 0;
+        for (int axis = 0; axis < kAxes; ++axis) count += is_closed(axis);
+        return count;
+    }
+    /// Within something solid every surface shows its back.
+    bool is_in_the_open() const { return 2 * front >= all; }
+};
+
+std::vector<Sight> look_from(const Scene& scene, const std::vector<Vec3>& points) {
+    std::vector<LookRay> rays;
+    for (const Vec3 point : points) {
+        for (int axis = 0; axis < kAxes; ++axis) {
+            for (const Vec3 direction : bundle(axis)) rays.push_back({point, direction});
+        }
+    }
+    const std::vector<LookHit> hits = cast_rays(scene, rays);
+    std::vector<Sight> sights(points.size());
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        Sight& sight = sights[i / (5 * kAxes)];
+        if (!hits[i].is_hit()) continue;
+        ++sight.hits[i / 5 % kAxes];
+        ++sight.all;
+        sight.front += hits[i].is_front;
+    }
+    return sights;
+}
+
+bool is_long(Vec3 size) { return max(size.x, size.z) > 1.25f * min(size.x, size.z); }
+
+} // namespace
+
+Surroundings look_around(const Scene& scene) {
+    Surroundings result;
+    result.bounds = bounds_of(scene);
+    uint64_t triangles = 0;
+    for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
+    if (triangles > kMostTriangles) return result;
+
+    const Vec3 centre = result.bounds.centre(), size = result.bounds.size();
+    const Vec3 along = size.x >= size.z ? Vec3{0.2f * size.x, 0, 0} : Vec3{0, 0, 0.2f * size.z};
+    const Vec3 down = {0, 0.2f * size.y, 0};
+    const std::vector<Vec3> points = {centre, centre - down, centre - down + along, centre - down - along};
+    const std::vector<Sight> sights = look_from(scene, points);
+
+    int rooms = 0, ways_out = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Sight& sight = sights[i];
+        if (!sight.is_in_the_open()) continue;
+        const int closed = sight.closed_sides();
+        if (closed == kAxes || (closed == kAxes - 1 && !sight.is_closed(kUp) && is_long(size))) {
+            if (rooms++ == 0) result.inside = points[i];
+            ways_out += 5 * kAxes - sight.all;
+        }
+        for (int axis = 0; axis < kAxes; ++axis) {
+            if (axis / 2 != 1 && closed == kAxes - 1 && sight.is_open(axis)) {
+                result.kind = SurroundingsKind::Stage;
+                result.open_side = axis_direction(axis);
+            }
+        }
+    }
+    if (rooms >= 2) {
+        result.kind = SurroundingsKind::Room;
+        result.is_dark = ways_out == 0;
+    }
+    return result;
+}
+
+} // namespace pertev

@@ -1,0 +1,202 @@
+#include "scene/validate_mesh.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/parallel_for.h"
+#include "math/frame.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint64_t kGrain = 1 << 14;
+
+struct Double3 {
+    double x, y, z;
+};
+
+Double3 difference(Vec3 a, Vec3 b) {
+    return {static_cast<double>(a.x) - static_cast<double>(b.x), static_cast<double>(a.y) - static_cast<double>(b.y),
+            static_cast<double>(a.z) - static_cast<double>(b.z)};
+}
+
+/// Twice the area times the normal; in double, where neither tiny nor huge triangles leave the range.
+Double3 area_vector(Vec3 a, Vec3 b, Vec3 c) {
+    const Double3 u = difference(b, a), v = difference(c, a);
+    return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+Vec3 unit(Double3 v) {
+    const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return {static_cast<float>(v.x / length), static_cast<float>(v.y / length), static_cast<float>(v.z / length)};
+}
+
+/// Counts body(i) == true over [0, count).
+template <class Body>
+uint64_t count_in_parallel(uint64_t count, const Body& body) {
+    std::atomic<uint64_t> total{0};
+    parallel_for_ranges(count, kGrain, [&](uint64_t begin, uint64_t end) {
+        uint64_t found = 0;
+        for (uint64_t i = begin; i < end; ++i) found += body(i) ? 1 : 0;
+        total += found;
+    });
+    return total;
+}
+
+void check_sizes(const Mesh& mesh, const std::string& of) {
+    const std::size_t count = mesh.positions.size();
+    const auto check = [&](std::size_t size, const char* what) {
+        if (size != 0 && size != count) {
+            throw Error(ErrorCode::BadInput, fmt::format("{}: {} {} for {} vertices", of, size, what, count));
+        }
+    };
+    check(mesh.normals.size(), "normals");
+    check(mesh.tangents.size(), "tangents");
+    check(mesh.uv[0].size(), "texture coordinates");
+    check(mesh.uv[1].size(), "texture coordinates (second set)");
+    check(mesh.colors.size(), "colours");
+    if (mesh.indices.size() % 3 != 0) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: {} indices; a triangle takes three", of, mesh.indices.size()));
+    }
+    if (mesh.indices.size() / 3 > kMaxTrianglesPerMesh) {
+        throw Error(ErrorCode::OverLimit, fmt::format("{}: {} triangles; the limit is {}", of, mesh.indices.size() / 3,
+                                                      kMaxTrianglesPerMesh));
+    }
+    parallel_for(mesh.indices.size(), kGrain, [&](uint64_t i) {
+        if (mesh.indices[i] < count) return;
+        throw Error(ErrorCode::BadInput, fmt::format("{}: triangle {}: vertex index {} is out of range; there are {} "
+                                                     "vertices",
+                                                     of, i / 3, mesh.indices[i], count));
+    });
+}
+
+enum class Fault : uint8_t { None, NotFinite, TooFar, WithoutArea };
+
+Fault fault_of(const Mesh& mesh, uint64_t triangle) {
+    const uint32_t* i = mesh.indices.data() + 3 * triangle;
+    const Vec3 a = mesh.positions[i[0]], b = mesh.positions[i[1]], c = mesh.positions[i[2]];
+    if (!(is_finite(a) && is_finite(b) && is_finite(c))) return Fault::NotFinite;
+    if (max_component(max(abs(a), max(abs(b), abs(c)))) > kMaxCoordinate) return Fault::TooFar;
+    const Double3 area = area_vector(a, b, c);
+    return area.x == 0 && area.y == 0 && area.z == 0 ? Fault::WithoutArea : Fault::None;
+}
+
+void drop_triangles(Mesh& mesh, const std::string& of, MeshRepairs& repairs) {
+    const uint64_t count = mesh.indices.size() / 3;
+    std::vector<Fault> faults(count);
+    const uint64_t bad = count_in_parallel(count, [&](uint64_t i) {
+        faults[i] = fault_of(mesh, i);
+        return faults[i] != Fault::None;
+    });
+    if (bad == 0) return;
+    uint64_t kept = 0;
+    for (uint64_t i = 0; i < count; ++i) {
+        if (faults[i] == Fault::TooFar) {
+            throw Error(ErrorCode::OverLimit,
+                        fmt::format("{}: triangle {} lies further out than 2^40 metres; scale the scene down", of, i));
+        }
+        repairs.not_finite += faults[i] == Fault::NotFinite;
+        repairs.without_area += faults[i] == Fault::WithoutArea;
+        if (faults[i] != Fault::None) continue;
+        for (int k = 0; k < 3; ++k) mesh.indices[3 * kept + k] = mesh.indices[3 * i + k];
+        ++kept;
+    }
+    mesh.indices.resize(3 * kept);
+}
+
+/// Area-weighted mean of the triangles at each vertex of `wanted`; +z where there is none.
+void put_geometric_normals(Mesh& mesh, const std::vector<bool>& wanted) {
+    std::vector<Double3> sums(mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const uint32_t* corner = mesh.indices.data() + i;
+        if (!wanted[corner[0]] && !wanted[corner[1]] && !wanted[corner[2]]) continue;
+        const Double3 area =
+            area_vector(mesh.positions[corner[0]], mesh.positions[corner[1]], mesh.positions[corner[2]]);
+        for (int k = 0; k < 3; ++k) {
+            Double3& sum = sums[corner[k]];
+            sum = {sum.x + area.x, sum.y + area.y, sum.z + area.z};
+        }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (!wanted[i]) continue;
+        const Vec3 normal = unit(sums[i]);
+        mesh.normals[i] = is_finite(normal) ? normal : Vec3{0, 0, 1};
+    }
+}
+
+uint64_t repair_normals(Mesh& mesh) {
+    const uint64_t bad = count_in_parallel(mesh.normals.size(), [&](uint64_t i) {
+        mesh.normals[i] = normalize_safely(mesh.normals[i]);
+        return !is_finite(mesh.normals[i]);
+    });
+    if (bad == 0) return 0;
+    std::vector<bool> wanted(mesh.normals.size());
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) wanted[i] = !is_finite(mesh.normals[i]);
+    put_geometric_normals(mesh, wanted);
+    return bad;
+}
+
+uint64_t repair_tangents(Mesh& mesh) {
+    return count_in_parallel(mesh.tangents.size(), [&](uint64_t i) {
+        Vec4& t = mesh.tangents[i];
+        const float handedness = t.w < 0 ? -1.0f : 1.0f;
+        Vec3 direction = normalize_safely({t.x, t.y, t.z});
+        const bool is_bad = !is_finite(direction);
+        if (is_bad) direction = mesh.normals.empty() ? Vec3{1, 0, 0} : make_frame(mesh.normals[i]).tangent;
+        t = {direction.x, direction.y, direction.z, handedness};
+        return is_bad;
+    });
+}
+
+} // namespace
+
+MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
+    not_finite += other.not_finite;
+    without_area += other.without_area;
+    normals += other.normals;
+    tangents += other.tangents;
+    texture_coordinates += other.texture_coordinates;
+    colors += other.colors;
+    return *this;
+}
+
+Vec3 normalize_safely(Vec3 v) {
+    const float square = length_squared(v);
+    // Already unit as near as floats can tell: left alone, so that validating twice changes nothing.
+    if (abs(square - 1) <= 0x1p-22f) return v;
+    return unit({static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
+}
+
+MeshRepairs repair_mesh(Mesh& mesh, const std::string& of) {
+    check_sizes(mesh, of);
+    MeshRepairs repairs;
+    drop_triangles(mesh, of, repairs);
+    parallel_for(mesh.positions.size(), kGrain, [&](uint64_t i) {
+        if (!is_finite(mesh.positions[i])) mesh.positions[i] = {};
+    });
+    repairs.normals = repair_normals(mesh);
+    repairs.tangents = repair_tangents(mesh);
+    for (std::vector<Vec2>& uv : mesh.uv) {
+        repairs.texture_coordinates += count_in_parallel(uv.size(), [&](uint64_t i) {
+            if (is_finite(uv[i].x) && is_finite(uv[i].y)) return false;
+            uv[i] = {};
+            return true;
+        });
+    }
+    repairs.colors = count_in_parallel(mesh.colors.size(), [&](uint64_t i) {
+        const Vec4 c = mesh.colors[i];
+        const Vec4 kept = {clamp(c.x, 0.0f, 1.0f), clamp(c.y, 0.0f, 1.0f), clamp(c.z, 0.0f, 1.0f),
+                           clamp(c.w, 0.0f, 1.0f)};
+        mesh.colors[i] = kept;
+        return !(kept == c);
+    });
+    return repairs;
+}
+
+} // namespace pertev

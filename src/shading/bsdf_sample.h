@@ -1,0 +1,31 @@
+#pragma once
+
+// What sampling and evaluating a BSDF give. Local frame: +z is the shading normal; wo and wi point away from the
+// surface, unit length; either may lie on the back (z < 0).
+//
+// Refraction carries radiance over the square of the refractive index, L / n^2, which does not change at an interface
+// (Veach 1997, section 5.2). So no factor 1 / eta^2 appears: in a closed furnace the mean weight is 1 on both sides,
+// light and importance are transported by the same numbers, and Russian roulette sees no jump. Seen from the medium
+// in which a lamp stands its radiance is its own; a lamp inside glass counts as emitting n^2 times what it states.
+
+#include "base/host_device.h"
+#include "math/rgb.h"
+#include "math/vec3.h"
+
+namespace pertev {
+
+struct BsdfSample {
+    Vec3 wi = {};
+    Rgb weight = {}; // eval / pdf, |cos| included; of a delta lobe the factor of throughput, probability divided out
+    float pdf = 0;   // 1/sr; of a delta lobe its probability (no use for MIS); 0: nothing sampled, all absorbed
+    bool is_delta = false;
+    bool is_transmission = false; // wi and wo on different sides
+};
+
+/// eval() and pdf() of one pair of directions, which share most of their work.
+struct BsdfValue {
+    Rgb f = {};    // f(wo, wi) |cos(wi)|, 1/sr; without delta lobes
+    float pdf = 0; // density of sample() at wi, 1/sr; without delta lobes
+};
+
+} // namespace pertev

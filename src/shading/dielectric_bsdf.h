@@ -1,0 +1,121 @@
+#pragma once
+
+// Glass, water: reflection and refraction at GGX microfacets, a perfectly smooth interface below kSmoothAlpha.
+//
+// Source: Walter et al. 2007 (section 5; refraction's Jacobian is equation 17), in the units of bsdf_sample.h: radiance
+// over n^2, so f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2. Lost energy comes back through lobes after Kulla & Conty 2017,
+// to the near side with share 1 - T and to the far side with share T; reciprocity asks that T of the two sides be as
+// n^2 times their average loss, which transmitted_share() sees to.
+// wo.z > 0 is the outside, where the index is 1; the inside has index `ior`.
+
+#include "base/host_device.h"
+#include "shading/bsdf_sample.h"
+#include "shading/conductor_bsdf.h"
+#include "shading/energy_tables.h"
+#include "shading/fresnel.h"
+#include "shading/ggx.h"
+#include "shading/grazing_lobe.h"
+
+namespace pertev {
+
+struct DielectricBsdf {
+    Rgb tint;    // factor on what is transmitted, [0, 1]
+    float alpha; // GGX width = roughness^2, [0, 1]
+    float ior;   // inside over outside; where rough within [1.1, 3] or its inverse (usable_ior)
+
+    /// What a rough surface can use of an index: the range of the energy tables. 1 is kept: no interface at all.
+    HD static float usable_ior(float ior, float alpha) {
+        using energy_table::kIorMax, energy_table::kIorMin;
+        if (!(alpha >= kSmoothAlpha) || ior == 1) return ior;
+        return ior > 1 ? clamp(ior, kIorMin, kIorMax) : clamp(ior, 1.0f / kIorMax, 1.0f / kIorMin);
+    }
+
+    HD bool is_smooth() const { return !(alpha >= kSmoothAlpha) || ior == 1; }
+    /// Index of the far side over that of the near side.
+    HD float eta_from(Vec3 wo) const { return wo.z > 0 ? ior : 1.0f / ior; }
+
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi) const {
+        if (is_smooth() || !(abs(wo.z) > 0 && abs(wi.z) > 0)) return {};
+        const float eta = eta_from(wo);
+        const Vec3 o = {wo.x, wo.y, abs(wo.z)};
+        const bool transmitted = wo.z * wi.z < 0;
+        const float cos_i = abs(wi.z);
+        const float lost_o = glass_lost(o.z, alpha, eta), average_o = glass_average_lost(alpha, eta);
+        const float average_far = glass_average_lost(alpha, 1.0f / eta);
+        const float share = transmitted_share(eta, average_o, average_far);
+        const float cosine = cos_i * kInvPi, grazing = pdf_grazing_lobe(cos_i, alpha);
+        if (!transmitted) {
+            const GgxReflection once = evaluate_ggx_reflection(o, {wi.x, wi.y, cos_i}, alpha);
+            const float reflectance = fresnel_dielectric(once.cos_h, eta).reflectance;
+            const float more = (1.0f - share) * lost_o * glass_lost(cos_i, alpha, eta) / average_o;
+            return {grey(once.f * reflectance + cosine * more),
+                    (1.0f - lost_o) * reflectance * once.pdf + lost_o * (1.0f - share) * grazing};
+        }
+        float f = share * lost_o * glass_lost(cos_i, alpha, 1.0f / eta) / average_far * cosine;
+        float pdf = lost_o * share * grazing;
+        // The half vector of refraction; its length is |wo . h + eta wi . h|.
+        const Vec3 i = {wi.x, wi.y, -cos_i};
+        const Vec3 sum = o + eta * i;
+        const float length2 = length_squared(sum);
+        const Vec3 h = ((eta > 1 ? -1.0f : 1.0f) / sqrt(length2)) * sum; // towards wo
+        const float oh = min(dot(o, h), 1.0f), ih = -dot(i, h);
+        if (oh > 0 && ih > 0 && h.z > 0) {
+            const float passed = 1.0f - fresnel_dielectric(oh, eta).reflectance;
+            const float so = ggx_slope_length(o.z, alpha), si = ggx_slope_length(cos_i, alpha);
+            const float d = 2.0f * passed * ggx_normals(h, alpha) * oh * ih * (eta * eta) / length2;
+            f += d * cos_i / (so * cos_i + si * o.z);
+            pdf += (1.0f - lost_o) * d / (o.z + so);
+        }
+        return {f * tint, pdf};
+    }
+    HD Rgb eval(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).f; }
+    HD float pdf(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).pdf; }
+
+    HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
+        if (wo.z == 0) return {};
+        const float eta = eta_from(wo);
+        const Vec3 o = {wo.x, wo.y, abs(wo.z)}; // mirrored to the upper side, and i with it
+        if (is_smooth()) return sample_smooth(wo, u_lobe, eta);
+
+        Vec3 i;
+        const float lost = glass_lost(o.z, alpha, eta);
+        if (u_lobe < lost) {
+            const float share =
+                transmitted_share(eta, glass_average_lost(alpha, eta), glass_average_lost(alpha, 1.0f / eta));
+            i = sample_grazing_lobe(alpha, u);
+            if (u_lobe < lost * share) i.z = -i.z;
+        } else {
+            const Vec3 m = sample_ggx_visible_normal(o, alpha, u);
+            const float cos_m = clamp(dot(o, m), 0.0f, 1.0f);
+            const DielectricFresnel fresnel = fresnel_dielectric(cos_m, eta);
+            if (u_lobe - lost < (1.0f - lost) * fresnel.reflectance) {
+                i = normalize(reflect(o, m));
+                if (!(i.z > 0)) return {};
+            } else {
+                i = normalize((cos_m / eta - fresnel.cos_t) * m - (1.0f / eta) * o);
+                if (!(i.z < 0)) return {};
+            }
+        }
+        const Vec3 wi = {i.x, i.y, wo.z < 0 ? -i.z : i.z};
+        const BsdfValue value = evaluate(wo, wi);
+        if (!(value.pdf > 0)) return {};
+        return {.wi = wi, .weight = (1.0f / value.pdf) * value.f, .pdf = value.pdf, .is_transmission = i.z < 0};
+    }
+
+private:
+    /// Share of the light lost from the near side that ends on the far side.
+    HD static float transmitted_share(float eta, float average_near, float average_far) {
+        return (1.0f - fresnel_dielectric_average(eta)) * min(1.0f, average_far / average_near);
+    }
+
+    HD BsdfSample sample_smooth(Vec3 wo, float u_lobe, float eta) const {
+        const DielectricFresnel fresnel = fresnel_dielectric(min(abs(wo.z), 1.0f), eta);
+        const float r = fresnel.reflectance;
+        if (u_lobe < r) return {.wi = {-wo.x, -wo.y, wo.z}, .weight = grey(1), .pdf = r, .is_delta = true};
+        if (!(r < 1)) return {};
+        const Vec3 wi = normalize(Vec3{-wo.x / eta, -wo.y / eta, -copysign(fresnel.cos_t, wo.z)});
+        return {.wi = wi, .weight = tint, .pdf = 1.0f - r, .is_delta = true, .is_transmission = true};
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,187 @@
+#pragma once
+
+// All lights of a scene behind one door: emissive triangles (any number), point, spot and directional lights, and the
+// environment, drawn by power from one table. sample_light draws a light and a direction to it; pdf_light_hit and
+// pdf_environment give the density of that draw for a direction found otherwise, which multiple importance sampling
+// needs (Veach 1997, section 9.2).
+//
+// Index order: emissive triangles (per instance in scene order, all its primitives in order), punctual lights, the
+// environment. Both faces of a triangle emit; those of unlit materials are no lights.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/rgb.h"
+#include "math/sampling.h"
+#include "math/scalar.h"
+#include "math/vec2.h"
+#include "math/vec3.h"
+#include "scene/light.h"
+#include "scene/texture.h"
+#include "shading/alias_table.h"
+#include "shading/environment_light.h"
+#include "shading/texture_lookup.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kNoLight = 0xffffffffu;
+
+struct EmissiveTriangle {
+    Vec3 a, ab, ac;                                     // first vertex and the edges from it, metres, world space
+    Vec2 uv0, uv1, uv2;                                 // of the set that the emission texture reads
+    uint32_t instance = 0, primitive = 0, material = 0; // ids in the scene
+};
+
+/// scene/light.h's Light without its name.
+struct PunctualLight {
+    LightKind kind = LightKind::Point;
+    Vec3 position, direction; // metres; unit, the way the light travels
+    Rgb intensity;            // W/sr; Directional: W/m2
+    float cos_inner = 1, cos_outer = 0, range = 0;
+};
+
+/// What a material emits, both faces: emission times the texture.
+struct SurfaceEmission {
+    Rgb emission; // W/(sr m2); 0 for materials that are no lights
+    TextureRef texture;
+};
+
+struct LightSetView {
+    AliasTableView choice; // over all lights; count 0: there are none
+    const EmissiveTriangle* triangles = nullptr;
+    const PunctualLight* punctual = nullptr;
+    uint32_t triangle_count = 0, punctual_count = 0;
+    uint32_t environment_light = kNoLight;      // index of the environment
+    const uint32_t* first_light = nullptr;      // [instances] light of primitive 0, or kNoLight
+    const SurfaceEmission* emissions = nullptr; // [materials]
+    const TextureImageView* images = nullptr;   // [images of the scene]
+    const float* linear_from_srgb = nullptr;    // [256]
+    EnvironmentView environment;                // where there is one
+};
+
+struct LightSample {
+    Vec3 wi;               // unit, towards the light
+    float distance = 0;    // metres; kInfinity for the environment and directional lights
+    Vec3 light_point;      // metres; of triangles, point and spot lights
+    Vec3 light_normal;     // unit geometric normal of a triangle's front, or zero
+    Rgb radiance;          // what arrives along wi: W/(sr m2); delta lights: W/m2 on a surface that faces them
+    float pdf = 0;         // 1/sr, probability of the light included; delta lights: that probability
+    bool is_delta = false; // no other way of finding a direction can hit this light
+    uint32_t instance = kNoLight, primitive = kNoLight; // of a triangle, or kNoLight
+    float b1 = 0, b2 = 0;                               // weights of its second and third vertex
+};
+
+/// Light index of a triangle of the scene, or kNoLight.
+HD inline uint32_t light_of(const LightSetView& view, uint32_t instance, uint32_t primitive) {
+    const uint32_t first = view.triangle_count == 0 ? kNoLight : view.first_light[instance];
+    return first == kNoLight ? kNoLight : first + primitive;
+}
+
+/// Radiance that material `material` emits at `uv` (of the set that its emission texture reads).
+HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2 uv) {
+    const SurfaceEmission& surface = view.emissions[material];
+    if (surface.texture.image == kNoImage) return surface.emission;
+    const Vec4 texel = lookup_texture(view.images, surface.texture, uv, view.linear_from_srgb);
+    return surface.emission * Rgb{texel.x, texel.y, texel.z};
+}
+
+/// Solid-angle density of a point drawn uniformly on a triangle, 1/sr. `wi` is unit and leads from the receiver to the
+/// point, `distance_squared` away; `normal` is cross(ab, ac). Not finite where the triangle is seen edge-on.
+HD inline float triangle_pdf(Vec3 normal, Vec3 wi, float distance_squared) {
+    return 2.0f * distance_squared / abs(dot(normal, wi));
+}
+
+/// Share of a punctual light's intensity that reaches `distance` (metres) in direction `wi` (towards the light), as
+/// KHR_lights_punctual recommends: the spot's cone is a smooth step in the cosine, squared, and the range a window.
+HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float distance) {
+    float falloff = 1;
+    if (light.range > 0) falloff = clamp(1.0f - square(square(distance / light.range)), 0.0f, 1.0f);
+    if (light.kind == LightKind::Spot) {
+        const float width = max(0.001f, light.cos_inner - light.cos_outer);
+        falloff *= square(clamp((-dot(light.direction, wi) - light.cos_outer) / width, 0.0f, 1.0f));
+    }
+    return falloff;
+}
+
+HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, float pmf, Vec3 from_point, Vec2 u,
+                                     LightSample& sample) {
+    const EmissiveTriangle& triangle = view.triangles[light];
+    const Vec2 b = sample_uniform_triangle(u);
+    const Vec3 point = triangle.a + (b.x * triangle.ab + b.y * triangle.ac);
+    const Vec3 to_light = point - from_point;
+    const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
+    const Vec3 wi = to_light / distance;
+    const Vec3 normal = cross(triangle.ab, triangle.ac);
+    const float pdf = pmf * triangle_pdf(normal, wi, distance_squared);
+    if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
+    const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
+    const Rgb radiance = surface_emission(view, triangle.material, uv);
+    if (is_black(radiance)) return false;
+    sample = {wi,  distance, point, normalize(normal), radiance, pdf, false, triangle.instance, triangle.primitive,
+              b.x, b.y};
+    return true;
+}
+
+HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3 from_point, LightSample& sample) {
+    sample = {};
+    sample.pdf = pmf;
+    sample.is_delta = true;
+    if (light.kind == LightKind::Directional) {
+        sample.wi = -light.direction;
+        sample.distance = kInfinity;
+        sample.radiance = light.intensity;
+        return pmf > 0;
+    }
+    const Vec3 to_light = light.position - from_point;
+    const float distance_squared = length_squared(to_light);
+    sample.distance = sqrt(distance_squared);
+    sample.wi = to_light / sample.distance;
+    sample.light_point = light.position;
+    const float factor = punctual_falloff(light, sample.wi, sample.distance) / distance_squared;
+    if (!(factor > 0) || !is_finite(factor)) return false; // out of cone or range, or the receiver is the light
+    sample.radiance = factor * light.intensity;
+    return pmf > 0;
+}
+
+/// Draws a light by `u_choice` and a direction to it by `u`, all in [0, 1). False where nothing arrives: no lights, a
+/// dark spot of a texture, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha:
+/// where the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
+HD inline bool sample_light(const LightSetView& view, Vec3 from_point, float u_choice, Vec2 u, LightSample& sample) {
+    if (view.choice.count == 0) return false;
+    const BlockAliasSample light = sample_alias(view.choice, {u_choice, u.x});
+    const Vec2 rest = {light.u.y, u.y};
+    if (light.index < view.triangle_count) {
+        return sample_triangle_light(view, light.index, light.pmf, from_point, rest, sample);
+    }
+    if (light.index != view.environment_light) {
+        return sample_punctual_light(view.punctual[light.index - view.triangle_count], light.pmf, from_point, sample);
+    }
+    EnvironmentSample from_environment;
+    if (!sample_environment(view.environment, rest, from_environment)) return false;
+    sample = {};
+    sample.wi = from_environment.wi;
+    sample.distance = kInfinity;
+    sample.radiance = from_environment.radiance;
+    sample.pdf = light.pmf * from_environment.pdf;
+    return sample.pdf > 0;
+}
+
+/// Density with which sample_light, at `from_point`, draws the direction to `hit_point` on triangle light `light`,
+/// 1/sr. The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn.
+HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, Vec3 from_point, Vec3 hit_point) {
+    const EmissiveTriangle& triangle = view.triangles[light];
+    const Vec3 to_light = hit_point - from_point;
+    const float distance_squared = length_squared(to_light);
+    const Vec3 wi = to_light / sqrt(distance_squared);
+    const float pdf =
+        alias_pmf(view.choice, light) * triangle_pdf(cross(triangle.ab, triangle.ac), wi, distance_squared);
+    return is_finite(pdf) ? pdf : 0.0f;
+}
+
+/// Density with which sample_light draws direction `wi` for the environment, 1/sr; 0 without one.
+HD inline float pdf_environment(const LightSetView& view, Vec3 wi) {
+    if (view.environment_light == kNoLight || view.choice.count == 0) return 0;
+    return alias_pmf(view.choice, view.environment_light) * environment_pdf(view.environment, wi);
+}
+
+} // namespace pertev

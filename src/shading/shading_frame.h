@@ -1,0 +1,92 @@
+#pragma once
+
+// The frame that a BSDF works in: interpolated normal, tangent given or from the texture coordinates, normal map.
+// Conventions of glTF 2.0 section 3.7.2.1 and 3.9.3: x of the map is the tangent, y = cross(normal, tangent) * w points
+// to the top of the image, so against growing v.
+//
+// A bent normal may mirror light into the surface, which shows as black spots. valid_normal turns it just far enough
+// (Keller et al., "The Iray Light Transport Simulation and Rendering System", 2017, appendix A.3).
+
+#include "base/host_device.h"
+#include "math/frame.h"
+#include "math/scalar.h"
+#include "math/transform.h"
+#include "math/vec2.h"
+#include "math/vec3.h"
+#include "math/vec4.h"
+
+namespace pertev {
+
+/// Weighted sum of three vertices' values; b1 and b2 belong to the second and third.
+HD inline Vec3 interpolate(Vec3 v0, Vec3 v1, Vec3 v2, float b1, float b2) {
+    return (1.0f - b1 - b2) * v0 + b1 * v1 + b2 * v2;
+}
+HD inline Vec2 interpolate(Vec2 v0, Vec2 v1, Vec2 v2, float b1, float b2) {
+    return (1.0f - b1 - b2) * v0 + b1 * v1 + b2 * v2;
+}
+
+/// `v` at unit length, or `otherwise` where it has no direction (zero, tiny or not finite).
+HD inline Vec3 normalize_or(Vec3 v, Vec3 otherwise) {
+    const float squared = length_squared(v);
+    return squared > 0x1p-80f && is_finite(squared) ? (1.0f / sqrt(squared)) * v : otherwise;
+}
+
+/// Unit world-space shading normal on the side of the front face. `local_normal` is the interpolated vertex normal
+/// (zero: none); `geometric_normal` is unit, world space, of the front. A normal that points behind the face is taken
+/// for a mistake of the file and replaced by the geometric one.
+HD inline Vec3 world_normal(const Transform& local_from_world, Vec3 local_normal, Vec3 geometric_normal) {
+    const Vec3 normal = normalize_or(transform_transposed(local_from_world, local_normal), geometric_normal);
+    return dot(normal, geometric_normal) > 0 ? normal : geometric_normal;
+}
+
+/// Tangent (xyz, not unit: along growing u) and handedness (w) of a triangle with edges ab, ac and texture coordinates
+/// that grow by uv_ab, uv_ac along them. `geometric_normal` is of the front. Zero where the coordinates give none.
+HD inline Vec4 tangent_from_uv(Vec3 ab, Vec3 ac, Vec2 uv_ab, Vec2 uv_ac, Vec3 geometric_normal) {
+    const float det = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
+    if (!(abs(det) > 0) || !is_finite(det)) return {0, 0, 0, 1};
+    const float sign = copysign(1.0f, det);
+    const Vec3 along_u = sign * (uv_ac.y * ab - uv_ab.y * ac);
+    const Vec3 along_v = sign * (uv_ab.x * ac - uv_ac.x * ab);
+    const float w = dot(cross(geometric_normal, along_u), along_v) > 0 ? -1.0f : 1.0f; // y is against growing v
+    return {along_u.x, along_u.y, along_u.z, w};
+}
+
+/// Frame with z = `normal` (unit), x as near to `tangent` (xyz, any length) as can be, y by its handedness, so
+/// left-handed where w < 0. An arbitrary right-handed frame about the normal where the tangent has no direction across
+/// it.
+HD inline Frame frame_with_tangent(Vec3 normal, Vec4 tangent) {
+    const Vec3 along = normalize_or({tangent.x, tangent.y, tangent.z}, {0, 0, 0});
+    const Vec3 across = along - dot(along, normal) * normal;
+    if (!(length_squared(across) > 1e-10f)) return make_frame(normal);
+    const Vec3 x = normalize(across);
+    return {x, (tangent.w < 0 ? -1.0f : 1.0f) * cross(normal, x), normal};
+}
+
+/// Unit normal that a normal map's texel asks for: `texel` is the colour in [0, 1], `scale` the map's strength.
+HD inline Vec3 mapped_normal(const Frame& frame, Vec3 texel, float scale) {
+    const Vec3 local = {scale * (2.0f * texel.x - 1.0f), scale * (2.0f * texel.y - 1.0f), 2.0f * texel.z - 1.0f};
+    return normalize_or(frame.to_world(local), frame.normal);
+}
+
+/// `normal` (unit), turned as little as needed so that the mirror direction of `wo` about it lies above the surface.
+/// wo is unit; `geometric_normal` is unit and on wo's side; wo may lie below `normal`. The result is unit and on the
+/// side of both.
+HD inline Vec3 valid_normal(Vec3 normal, Vec3 geometric_normal, Vec3 wo) {
+    const float above = dot(wo, geometric_normal);
+    const float least = min(0.9f * above, 0.01f);    // so that an unbent normal never changes
+    const float facing = max(dot(wo, normal), 0.0f); // a normal turned away from wo counts as seen edge-on
+    const Vec3 mirrored = 2.0f * facing * normal - wo;
+    const float height = dot(mirrored, geometric_normal);
+    if (height >= least && facing > 0) return normal;
+    if (above < 1e-3f) return geometric_normal; // so flat that the sum below would cancel
+    const Vec3 along = normalize_or(mirrored - height * geometric_normal, {0, 0, 0});
+    const Vec3 raised = safe_sqrt(1.0f - square(least)) * along + least * geometric_normal;
+    return normalize_or(wo + raised, geometric_normal);
+}
+
+/// The right-handed frame about `normal` (unit) that turns least away from `frame`'s tangent.
+HD inline Frame frame_about(Vec3 normal, const Frame& frame) {
+    return frame_with_tangent(normal, {frame.tangent.x, frame.tangent.y, frame.tangent.z, 1.0f});
+}
+
+} // namespace pertev

@@ -1,0 +1,162 @@
+#pragma once
+
+// Reads a texture: coordinate transform, wrap, nearest or bilinear filter, in our own arithmetic on both devices
+// (a texture unit filters with 8 fraction bits and differently from card to card). sRGB is decoded texel by texel,
+// before filtering, as glTF 2.0 section 3.9.2 wants it.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "base/host_device.h"
+#include "math/scalar.h"
+#include "math/vec2.h"
+#include "math/vec4.h"
+#include "scene/scene.h"
+#include "scene/texture.h"
+
+namespace pertev {
+
+/// Pixels of one image; exactly one pointer is set. Row 0 is the top row.
+struct TextureImageView {
+    uint32_t width = 0, height = 0;    // both at least 1
+    const uint8_t* rgba8 = nullptr;    // [height * width * 4], 4-byte aligned
+    const float* rgba_float = nullptr; // [height * width * 4], linear, 16-byte aligned
+};
+
+/// What a coordinate's position along one axis reads: texels i0 and i1, the second with weight t.
+struct TexelPair {
+    uint32_t i0 = 0, i1 = 0;
+    float t = 0;
+};
+
+/// Coordinate `u` (1 = one image) brought into [0, 1]; 0 for NaN and infinity. Exact for u >= 0, so a texture does
+/// not get coarser the more often it repeats.
+HD inline float wrap_coordinate(float u, Wrap wrap) {
+    switch (wrap) {
+    case Wrap::Repeat:
+        return clamp(u - floor(u), 0.0f, 1.0f);
+    case Wrap::MirroredRepeat: {
+        const float twice = clamp(u - 2.0f * floor(0.5f * u), 0.0f, 2.0f);
+        return twice > 1.0f ? 2.0f - twice : twice;
+    }
+    case Wrap::ClampToEdge:
+        return clamp(u, 0.0f, 1.0f);
+    }
+    return 0;
+}
+
+/// Texel whose cell holds the coordinate.
+HD inline uint32_t nearest_texel(float u, Wrap wrap, uint32_t size) {
+    const int last = static_cast<int>(size) - 1;
+    return static_cast<uint32_t>(to_int(wrap_coordinate(u, wrap) * static_cast<float>(size), 0, last));
+}
+
+/// The two texels whose centres enclose the coordinate.
+HD inline TexelPair linear_texels(float u, Wrap wrap, uint32_t size) {
+    const int last = static_cast<int>(size) - 1;
+    const float x = wrap_coordinate(u, wrap) * static_cast<float>(size) - 0.5f;
+    const float below = floor(x);
+    const int i0 = to_int(below, -1, last), i1 = i0 + 1;
+    // Past an edge lies the other edge where the image repeats, the same texel where it mirrors or clamps.
+    const bool repeats = wrap == Wrap::Repeat;
+    return {static_cast<uint32_t>(i0 < 0 ? (repeats ? last : 0) : i0),
+            static_cast<uint32_t>(i1 > last ? (repeats ? 0 : last) : i1), x - below};
+}
+
+/// One texel as linear RGBA. `linear_from_srgb` [256] is read for the colours of sRGB-encoded 8-bit images.
+HD inline Vec4 load_texel(const TextureImageView& image, uint32_t x, uint32_t y, bool is_srgb,
+                          const float* linear_from_srgb) {
+    const size_t texel = 4 * (size_t(y) * image.width + x);
+    if (image.rgba8 != nullptr) {
+        uint32_t packed;
+        memcpy(&packed, __builtin_assume_aligned(image.rgba8 + texel, 4), 4); // one load on both devices
+        const uint32_t r = packed & 255u, g = packed >> 8 & 255u, b = packed >> 16 & 255u;
+        constexpr float unit = 1.0f / 255.0f; // 255 * unit rounds to 1
+        const float alpha = static_cast<float>(packed >> 24) * unit;
+        if (is_srgb) return {linear_from_srgb[r], linear_from_srgb[g], linear_from_srgb[b], alpha};
+        return {static_cast<float>(r) * unit, static_cast<float>(g) * unit, static_cast<float>(b) * unit, alpha};
+    }
+    Vec4 value;
+    memcpy(&value, __builtin_assume_aligned(image.rgba_float + texel, 16), 16);
+    return value;
+}
+
+/// One channel (0 to 3) of one texel, linear.
+HD inline float load_texel_channel(const TextureImageView& image, uint32_t x, uint32_t y, uint32_t channel,
+                                   bool is_srgb, const float* linear_from_srgb) {
+    const size_t texel = 4 * (size_t(y) * image.width + x) + channel;
+    if (image.rgba8 != nullptr) {
+        const uint32_t encoded = image.rgba8[texel];
+        return is_srgb && channel < 3 ? linear_from_srgb[encoded] : static_cast<float>(encoded) * (1.0f / 255.0f);
+    }
+    return image.rgba_float[texel];
+}
+
+HD inline Vec2 transform_uv(const TextureRef& ref, Vec2 uv) {
+    return {ref.m00 * uv.x + ref.m01 * uv.y + ref.m02, ref.m10 * uv.x + ref.m11 * uv.y + ref.m12};
+}
+
+/// `a` at t = 0 and `b` at t = 1; equal ends give that value exactly.
+HD inline Vec4 mix_texels(Vec4 a, Vec4 b, float t) {
+    return {lerp(a.x, b.x, t), lerp(a.y, b.y, t), lerp(a.z, b.z, t), lerp(a.w, b.w, t)};
+}
+
+/// Linear RGBA at `uv` (of the set that `ref.uv_set` names); white where `ref` has no image. Any float is a valid
+/// coordinate.
+HD inline Vec4 lookup_texture(const TextureImageView* images, const TextureRef& ref, Vec2 uv,
+                              const float* linear_from_srgb) {
+    if (ref.image == kNoImage) return {1, 1, 1, 1};
+    const TextureImageView& image = images[ref.image];
+    const Vec2 at = transform_uv(ref, uv);
+    if (ref.filter == TextureFilter::Nearest) {
+        return load_texel(image, nearest_texel(at.x, ref.wrap_s, image.width),
+                          nearest_texel(at.y, ref.wrap_t, image.height), ref.is_srgb, linear_from_srgb);
+    }
+    const TexelPair x = linear_texels(at.x, ref.wrap_s, image.width);
+    const TexelPair y = linear_texels(at.y, ref.wrap_t, image.height);
+    const Vec4 top = mix_texels(load_texel(image, x.i0, y.i0, ref.is_srgb, linear_from_srgb),
+                                load_texel(image, x.i1, y.i0, ref.is_srgb, linear_from_srgb), x.t);
+    const Vec4 bottom = mix_texels(load_texel(image, x.i0, y.i1, ref.is_srgb, linear_from_srgb),
+                                   load_texel(image, x.i1, y.i1, ref.is_srgb, linear_from_srgb), x.t);
+    return mix_texels(top, bottom, y.t);
+}
+
+/// Channel `ref.channel` at `uv`, equal to that component of lookup_texture; 1 where `ref` has no image.
+HD inline float lookup_texture_channel(const TextureImageView* images, const TextureRef& ref, Vec2 uv,
+                                       const float* linear_from_srgb) {
+    if (ref.image == kNoImage) return 1;
+    const TextureImageView& image = images[ref.image];
+    const Vec2 at = transform_uv(ref, uv);
+    const uint32_t channel = ref.channel;
+    if (ref.filter == TextureFilter::Nearest) {
+        return load_texel_channel(image, nearest_texel(at.x, ref.wrap_s, image.width),
+                                  nearest_texel(at.y, ref.wrap_t, image.height), channel, ref.is_srgb,
+                                  linear_from_srgb);
+    }
+    const TexelPair x = linear_texels(at.x, ref.wrap_s, image.width);
+    const TexelPair y = linear_texels(at.y, ref.wrap_t, image.height);
+    const float top = lerp(load_texel_channel(image, x.i0, y.i0, channel, ref.is_srgb, linear_from_srgb),
+                           load_texel_channel(image, x.i1, y.i0, channel, ref.is_srgb, linear_from_srgb), x.t);
+    const float bottom = lerp(load_texel_channel(image, x.i0, y.i1, channel, ref.is_srgb, linear_from_srgb),
+                              load_texel_channel(image, x.i1, y.i1, channel, ref.is_srgb, linear_from_srgb), x.t);
+    return lerp(top, bottom, y.t);
+}
+
+/// View of an image in host memory; valid as long as the image is.
+inline TextureImageView view_of(const TextureImage& image) {
+    if (!image.rgba8.pixels.empty()) {
+        return {image.rgba8.width, image.rgba8.height, image.rgba8.pixels.data(), nullptr};
+    }
+    return {image.rgba_float.width, image.rgba_float.height, nullptr, image.rgba_float.pixels.data()};
+}
+
+/// Views of all images of a scene, at the same indices.
+inline std::vector<TextureImageView> views_of_images(const Scene& scene) {
+    std::vector<TextureImageView> views;
+    for (const TextureImage& image : scene.images) views.push_back(view_of(image));
+    return views;
+}
+
+} // namespace pertev

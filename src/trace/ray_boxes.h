@@ -1,0 +1,57 @@
+#pragma once
+
+// A ray ready to be tested against the boxes of one tree: conservative, so that no box that holds a hit is ever missed.
+//
+// Every plane moves out by e = 2^-20 (|origin|max + |bounds|max), which is 16 units of 2^-24 of that sum S. The
+// parameter of a plane p is taken as fma(p, 1/d, -((o +- e) (1/d))). Written as a shift of the plane, its roundings are
+// at most: one unit of |o| + e for o +- e, one for its product, one of |p - o| + e for the fma, one for 1/d itself;
+// together 4 S units and a little. The triangle test's own error is at most 6, so 16 hold both, and an entry parameter
+// computed here is never greater than the t of a hit inside the box. |1/d| <= 2^80 and |p|, |o| <= 2^40 keep everything
+// finite.
+
+#include "accel/bvh/bvh.h"
+#include "base/host_device.h"
+#include "trace/ray.h"
+
+namespace pertev {
+
+// Their operands are never NaN, and of equal zeros either will do: no picture depends on the sign of an entry's zero.
+// On the device they are one instruction where math/scalar.h's take two.
+#if PERTEV_ON_DEVICE
+HD inline float box_min(float a, float b) { return ::fminf(a, b); }
+HD inline float box_max(float a, float b) { return ::fmaxf(a, b); }
+#else
+HD inline float box_min(float a, float b) { return a < b ? a : b; }
+HD inline float box_max(float a, float b) { return a > b ? a : b; }
+#endif
+
+struct RayBoxes {
+    Vec3 inv; // 1 / direction, where a component near 0 counts as +-2^-80
+    Vec3 lo;  // -(origin + e) / direction: what takes a lower plane, moved out, to its parameter
+    Vec3 hi;  // -(origin - e) / direction
+};
+
+HD inline float guard_direction(float d) { return abs(d) < 0x1p-80f ? copysign(0x1p-80f, d) : d; }
+
+/// `bounds_max_abs` is of the whole tree; `growth` multiplies e (1 within a mesh).
+HD inline RayBoxes make_ray_boxes(Vec3 origin, Vec3 direction, float bounds_max_abs, float growth = 1.0f) {
+    const float e = 0x1p-20f * (max_component(abs(origin)) + bounds_max_abs) * growth;
+    RayBoxes r;
+    r.inv = {1.0f / guard_direction(direction.x), 1.0f / guard_direction(direction.y),
+             1.0f / guard_direction(direction.z)};
+    r.lo = {-((origin.x + e) * r.inv.x), -((origin.y + e) * r.inv.y), -((origin.z + e) * r.inv.z)};
+    r.hi = {-((origin.x - e) * r.inv.x), -((origin.y - e) * r.inv.y), -((origin.z - e) * r.inv.z)};
+    return r;
+}
+
+/// Whether the box of child k may hold a hit with t_min < t <= t_limit; its entry parameter goes to `entry`.
+HD inline bool enters_child(const RayBoxes& r, const BvhNode& node, int k, float t_min, float t_limit, float& entry) {
+    const float x0 = fma(node.x[k], r.inv.x, r.lo.x), x1 = fma(node.x[k + 2], r.inv.x, r.hi.x);
+    const float y0 = fma(node.y[k], r.inv.y, r.lo.y), y1 = fma(node.y[k + 2], r.inv.y, r.hi.y);
+    const float z0 = fma(node.z[k], r.inv.z, r.lo.z), z1 = fma(node.z[k + 2], r.inv.z, r.hi.z);
+    entry = box_max(box_max(box_min(x0, x1), box_min(y0, y1)), box_max(box_min(z0, z1), t_min));
+    const float exit = box_min(box_min(box_max(x0, x1), box_max(y0, y1)), box_min(box_max(z0, z1), t_limit));
+    return entry <= exit;
+}
+
+} // namespace pertev

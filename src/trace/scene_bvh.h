@@ -1,0 +1,32 @@
+#pragma once
+
+// Everything a ray can meet: one tree over the triangles that are baked into world space, and a tree over instances of
+// meshes that keep their own. Which is which is decided in scene preparation, once, for every structure alike.
+
+#include <cstdint>
+
+#include "accel/bvh/bvh.h"
+#include "accel/bvh/top_level_bvh.h"
+#include "base/host_device.h"
+#include "math/transform.h"
+#include "trace/ray.h"
+
+namespace pertev {
+
+/// Plain pointers, host's or device's.
+struct SceneBvhView {
+    BvhView baked; // world space; triangles carry their instance
+    const BvhNode* top_nodes = nullptr;
+    const InstanceRecord* instances = nullptr; // [a leaf link of the top level]
+    const BvhView* meshes = nullptr;           // [InstanceRecord::mesh_bvh], local space
+    uint32_t top_root = kNoLink;
+    float top_reach = 0, top_growth = 0; // TopLevelBvh's
+};
+
+/// The ray in an instance's space. The direction is not renormalised, so that t is shared by all spaces.
+HD inline Ray transform_ray(const Transform& local_from_world, const Ray& ray) {
+    return {transform_point(local_from_world, ray.origin), ray.t_min, transform_vector(local_from_world, ray.direction),
+            ray.t_max};
+}
+
+} // namespace pertev

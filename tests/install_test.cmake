@@ -1,0 +1,16 @@
+# Run by CTest (cmake -P): installs BUILD into a folder of its own, runs the program from there and looks for the rest.
+set(prefix ${BUILD}/install_test)
+file(REMOVE_RECURSE ${prefix})
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+foreach(file share/pertev/scenes/cornell-box/cornell-box.gltf share/doc/pertev/LICENSE share/doc/pertev/README.md
+             share/doc/pertev/docs/conventions.md)
+  if(NOT EXISTS ${prefix}/${file})
+    message(FATAL_ERROR "the installed tree lacks ${file}")
+  endif()
+endforeach()
+execute_process(COMMAND ${prefix}/bin/pertev render cornell-box --size 16x16 --spp 1 -q -o ${prefix}/picture.png
+                WORKING_DIRECTORY ${prefix} COMMAND_ERROR_IS_FATAL ANY)
+if(NOT EXISTS ${prefix}/picture.png)
+  message(FATAL_ERROR "the installed program wrote no picture")
+endif()
+file(REMOVE_RECURSE ${prefix})

@@ -1,0 +1,158 @@
+// No file, however damaged, may crash a reader, make it hang, or make it ask for memory that the file's size does not
+// justify: it ends in an Error that names the file, or in a picture. The public collection of malformed files, and
+// damage of our own: every kind of picture cut at each length and with bits turned.
+
+#include <doctest/doctest.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/read_file.h"
+#include "image/decode_image.h"
+#include "image/read_exr.h"
+#include "image/read_image.h"
+#include "image/write_exr.h"
+#include "image/write_hdr.h"
+#include "image/write_jpeg.h"
+#include "image/write_png.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+
+namespace {
+
+enum class Outcome { Picture, Refused };
+
+// Anything but a whole picture or an Error of the right kind fails the test.
+Outcome try_to_decode(std::span<const std::byte> bytes) {
+    const auto start = std::chrono::steady_clock::now();
+    Outcome outcome = Outcome::Picture;
+    try {
+        const Image image = read_image(bytes, "damaged");
+        CHECK(image.pixels.size() == std::size_t(image.width) * image.height * image.channels);
+        CHECK(image.width > 0);
+        CHECK(image.height > 0);
+    } catch (const Error& error) {
+        const bool is_about_the_file = error.code() == ErrorCode::BadInput || error.code() == ErrorCode::OverLimit;
+        CHECK(is_about_the_file);
+        CHECK(std::string(error.what()).starts_with("damaged: "));
+        outcome = Outcome::Refused;
+    }
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+    return outcome;
+}
+
+// Peak memory of this process so far, in bytes. AddressSanitizer keeps freed memory, so it says nothing there.
+uint64_t peak_memory() {
+#if defined(__SANITIZE_ADDRESS__)
+    return 0;
+#endif
+    rusage usage = {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+struct Sample {
+    const char* name;
+    std::vector<std::byte> bytes;
+};
+
+std::vector<Sample> samples() {
+    Rgba8Image bytes{24, 10, {}};
+    Image floats{24, 10, 3, {}};
+    for (uint32_t i = 0; i < 240; ++i) {
+        for (uint32_t c = 0; c < 4; ++c) bytes.pixels.push_back(static_cast<uint8_t>(i * (c + 1)));
+        for (uint32_t c = 0; c < 3; ++c) floats.pixels.push_back(static_cast<float>(i / 7 * (c + 1)));
+    }
+    return {{"png", encode_png(bytes, true)},
+            {"jpg", encode_jpeg(bytes)},
+            {"hdr", encode_hdr(floats)},
+            {"exr", encode_exr(floats, {}, {{"comment", "text"}})}};
+}
+
+uint64_t next_random(uint64_t& state) { // splitmix64
+    uint64_t z = state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+} // namespace
+
+TEST_CASE("every file of the malformed collection is refused by name, quickly and in little memory") {
+    const uint64_t before = peak_memory();
+    for (const char* kind : {"png", "jpg", "exr", "hdr"}) {
+        const auto folder = test::test_scene(std::filesystem::path("malformed") / kind);
+        if (!folder) return;
+        for (const auto& entry : std::filesystem::directory_iterator(*folder)) {
+            CAPTURE(entry.path().string());
+            const std::vector<std::byte> bytes = read_file(entry.path());
+            CHECK(try_to_decode(bytes) == Outcome::Refused);
+            if (std::string(kind) == "exr") CHECK_THROWS_AS(read_exr(bytes, "damaged"), Error);
+        }
+    }
+    CHECK(peak_memory() - before < uint64_t(128) << 20);
+}
+
+TEST_CASE("a picture cut at any length is refused") {
+    for (const Sample& sample : samples()) {
+        CAPTURE(sample.name);
+        REQUIRE(try_to_decode(sample.bytes) == Outcome::Picture);
+        for (std::size_t left = 0; left < sample.bytes.size(); ++left) {
+            CAPTURE(left);
+            // Copied, so that a sanitizer sees one byte too far.
+            const std::vector<std::byte> cut(sample.bytes.begin(),
+                                             sample.bytes.begin() + static_cast<std::ptrdiff_t>(left));
+            CHECK(try_to_decode(cut) == Outcome::Refused);
+        }
+    }
+}
+
+TEST_CASE("pictures with a few bits turned or bytes replaced end in an error or a picture, in little memory") {
+    const uint64_t before = peak_memory();
+    uint64_t state = 1;
+    for (const Sample& sample : samples()) {
+        CAPTURE(sample.name);
+        for (uint64_t round = 0; round < test::effort(1500, 100'000); ++round) {
+            CAPTURE(round);
+            std::vector<std::byte> bytes = sample.bytes;
+            const uint64_t edits = 1 + next_random(state) % 4;
+            for (uint64_t k = 0; k < edits; ++k) {
+                // Half of them in the header, where sizes are.
+                const std::size_t range =
+                    next_random(state) % 2 == 0 ? std::min<std::size_t>(bytes.size(), 340) : bytes.size();
+                const std::size_t at = next_random(state) % range;
+                const uint64_t how = next_random(state);
+                if (how % 3 == 0)
+                    bytes[at] = std::byte{0xff};
+                else if (how % 3 == 1)
+                    bytes[at] = std::byte{0};
+                else
+                    bytes[at] ^= static_cast<std::byte>(1u << (how / 3 % 8));
+            }
+            try_to_decode(bytes);
+        }
+    }
+    CHECK(peak_memory() - before < uint64_t(128) << 20);
+}
+
+TEST_CASE("content decides over the name, and what is no picture is told what would be") {
+    const std::string text = "solid ascii\n";
+    try {
+        read_image(std::as_bytes(std::span(text)), "wall.png");
+        FAIL("no error");
+    } catch (const Error& error) {
+        CHECK(error.code() == ErrorCode::BadInput);
+        CHECK(std::string(error.what()).find("PNG, JPEG, Radiance HDR or OpenEXR") != std::string::npos);
+    }
+    CHECK_THROWS_AS(read_image(std::span<const std::byte>{}, "empty.png"), Error);
+    const std::filesystem::path path = test::scratch_folder() / "really_a_png.exr";
+    write_png(path, Rgba8Image{1, 1, {255, 0, 0, 255}});
+    CHECK(read_image(path).pixels == std::vector<float>{1, 0, 0});
+}

@@ -1,0 +1,436 @@
+// The light set against closed forms: irradiance at a point from every kind of light, alone and together, and the
+// densities that multiple importance sampling asks for. Nothing occludes here; that is the integrator's.
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "shading/build_light_set.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr double kPiDouble = 3.141592653589793;
+
+class Random {
+public:
+    explicit Random(uint32_t seed) : bits_(seed) {}
+    float number() { return (static_cast<float>(bits_() >> 9) + 0.5f) * 0x1p-23f; }
+    Vec2 pair() {
+        const float x = number();
+        return {x, number()};
+    }
+
+private:
+    std::mt19937 bits_;
+};
+
+double as_double(float x) { return static_cast<double>(x); }
+
+/// Linear on purpose: the tests' textures then mean the same with and without is_srgb.
+std::array<float, 256> make_table() {
+    std::array<float, 256> table{};
+    for (std::size_t i = 0; i < 256; ++i) table[i] = static_cast<float>(i) * (1.0f / 255.0f);
+    return table;
+}
+const std::array<float, 256> kTable = make_table();
+
+/// A scene's light set and all that its view points to.
+struct Lights {
+    LightSetData data;
+    std::vector<TextureImageView> images;
+    LightSetView view;
+
+    explicit Lights(const Scene& scene) : images(views_of_images(scene)) {
+        Messages messages;
+        data = build_light_set(scene, kTable.data(), messages);
+        view = view_of(data, images.data(), kTable.data());
+    }
+};
+
+/// Square of side 2 in the plane y = 0 about the origin, 2 n^2 triangles, (u, v) from (0, 0) to (1, 1).
+Mesh make_square(uint32_t n) {
+    Mesh mesh;
+    for (uint32_t i = 0; i <= n; ++i) {
+        for (uint32_t j = 0; j <= n; ++j) {
+            const Vec2 uv = {static_cast<float>(i) / static_cast<float>(n),
+                             static_cast<float>(j) / static_cast<float>(n)};
+            mesh.positions.push_back({2 * uv.x - 1, 0, 2 * uv.y - 1});
+            mesh.uv[0].push_back(uv);
+            if (i == n || j == n) continue;
+            const uint32_t a = i * (n + 1) + j, b = a + n + 1;
+            mesh.indices.insert(mesh.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+        }
+    }
+    return mesh;
+}
+
+uint32_t add_emitter(Scene& scene, const Mesh& mesh, Rgb emission, const Transform& world_from_local) {
+    Material material;
+    material.emission = emission;
+    scene.meshes.push_back(mesh);
+    scene.materials.push_back(material);
+    Instance instance;
+    instance.mesh = static_cast<uint32_t>(scene.meshes.size() - 1);
+    instance.material = static_cast<uint32_t>(scene.materials.size() - 1);
+    instance.world_from_local = world_from_local;
+    scene.instances.push_back(instance);
+    return static_cast<uint32_t>(scene.instances.size() - 1);
+}
+
+/// A checkered texture of n x n squares, black first, as the emission of the scene's last material.
+void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
+    TextureImage image;
+    image.rgba8 = {n, n, {}};
+    for (uint32_t i = 0; i < n * n; ++i) {
+        const uint8_t value = (i % n + i / n) % 2 == 0 ? 0 : 255;
+        image.rgba8.pixels.insert(image.rgba8.pixels.end(), {value, value, value, 255});
+    }
+    scene.images.push_back(image);
+    TextureRef& ref = scene.materials.back().emission_texture;
+    ref.image = static_cast<int32_t>(scene.images.size() - 1);
+    ref.filter = filter;
+}
+
+struct Estimate {
+    double mean = 0, error = 0;
+};
+
+/// Irradiance (red) at the origin of a surface that faces `normal`, drawn by sample_light.
+Estimate irradiance(const LightSetView& view, Vec3 point, Vec3 normal, uint64_t draws, uint32_t seed) {
+    Random random(seed);
+    double sum = 0, squares = 0;
+    for (uint64_t i = 0; i < draws; ++i) {
+        const float u_choice = random.number();
+        LightSample sample;
+        if (!sample_light(view, point, u_choice, random.pair(), sample)) continue;
+        REQUIRE(sample.pdf > 0);
+        const double value = as_double(max(dot(sample.wi, normal), 0.0f)) * as_double(sample.radiance.r / sample.pdf);
+        sum += value;
+        squares += value * value;
+    }
+    const double n = static_cast<double>(draws), mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / n)};
+}
+
+void check_irradiance(const LightSetView& view, double exact, uint64_t draws = 100'000) {
+    const Estimate got = irradiance(view, {0, 0, 0}, {0, 1, 0}, draws, 1);
+    CAPTURE(got.mean);
+    CAPTURE(got.error);
+    CHECK(std::abs(got.mean - exact) < 4 * got.error + 1e-5 * exact);
+}
+
+/// Irradiance from a rectangle (half sides a, b) parallel to the surface, centred at height h above it.
+double rectangle_irradiance(double a, double b, double h, double radiance) {
+    const double x = a / h, y = b / h, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+    return 2 * radiance * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
+}
+
+Light make_light(LightKind kind, Vec3 position, Vec3 direction) {
+    Light light;
+    light.kind = kind;
+    light.position = position;
+    light.direction = direction;
+    return light;
+}
+
+} // namespace
+
+TEST_CASE("lights: a square of few or many triangles, moved and stretched, gives its closed-form irradiance") {
+    for (const uint32_t n : {1u, 64u}) { // 64: 8192 triangles, a table of two levels
+        Scene scene;
+        const Transform place = compose(make_translation({0, 2, 0}), make_scale({1.5f, 7, 0.5f}));
+        add_emitter(scene, make_square(n), {3, 1, 0}, place);
+        const Lights lights(scene);
+        CHECK(lights.view.triangle_count == 2 * n * n);
+        CHECK((lights.view.choice.block_size > 1) == (n == 64));
+        CAPTURE(n);
+        check_irradiance(lights.view, rectangle_irradiance(1.5, 0.5, 2, 3));
+    }
+}
+
+TEST_CASE("lights: both faces of a triangle emit") {
+    Scene scene;
+    Mesh turned = make_square(2);
+    for (std::size_t i = 0; i < turned.indices.size(); i += 3) std::swap(turned.indices[i], turned.indices[i + 1]);
+    add_emitter(scene, turned, {1, 1, 1}, make_translation({0, 1, 0}));
+    check_irradiance(Lights(scene).view, rectangle_irradiance(1, 1, 1, 1));
+}
+
+TEST_CASE("lights: a texture's emission is where the texture has it") {
+    for (const TextureFilter filter : {TextureFilter::Nearest, TextureFilter::Linear}) {
+        Scene scene;
+        add_emitter(scene, make_square(1), {2, 2, 2}, make_translation({0, 1, 0}));
+        add_checkers(scene, 4, filter);
+        const Lights lights(scene);
+        // Quadrature over the square: cos^2 / d^2 of each point.
+        double exact = 0;
+        constexpr int steps = 400;
+        for (int i = 0; i < steps; ++i) {
+            for (int j = 0; j < steps; ++j) {
+                const double u = (i + 0.5) / steps, v = (j + 0.5) / steps, x = 2 * u - 1, z = 2 * v - 1;
+                const Rgb radiance = surface_emission(lights.view, 0, {static_cast<float>(u), static_cast<float>(v)});
+                exact += as_double(radiance.r) * 4 / (steps * steps) / std::pow(x * x + z * z + 1, 2);
+            }
+        }
+        check_irradiance(lights.view, exact);
+    }
+}
+
+TEST_CASE("lights: a triangle is drawn wherever its texture has one bright texel, and not where it has none") {
+    std::mt19937 random(8);
+    int drawn = 0, dark = 0;
+    for (int i = 0; i < 400; ++i) {
+        constexpr uint32_t width = 300, height = 200;
+        Scene scene;
+        Mesh mesh = make_square(1);
+        const auto coordinate = [&] { return static_cast<float>(random() % 2000) / 500.0f - 2.0f; };
+        const Vec2 corner = {coordinate(), coordinate()};
+        const float side = i % 2 == 0 ? 0.1f : 0.7f;
+        for (Vec2& uv : mesh.uv[0]) uv = corner + side * uv;
+        add_emitter(scene, mesh, {1, 1, 1}, make_translation({0, 1, 0}));
+        TextureImage image;
+        image.rgba8 = {width, height, std::vector<uint8_t>(std::size_t(4) * width * height)};
+        image.rgba8.pixels[4 * (random() % (width * height))] = 255;
+        scene.images.push_back(image);
+        TextureRef& ref = scene.materials[0].emission_texture;
+        ref.image = 0;
+        ref.wrap_s = ref.wrap_t = static_cast<Wrap>(i % 3);
+        ref.filter = i % 5 == 0 ? TextureFilter::Nearest : TextureFilter::Linear;
+        const Lights lights(scene);
+
+        std::array<bool, 2> is_lit{}; // each triangle, looked at in every part
+        constexpr int steps = 500;
+        for (int a = 0; a <= steps; ++a) {
+            for (int b = 0; a + b <= steps; ++b) {
+                const float b1 = static_cast<float>(a) / steps, b2 = static_cast<float>(b) / steps;
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const EmissiveTriangle& t = lights.view.triangles[k];
+                    const Vec2 uv = (1 - b1 - b2) * t.uv0 + b1 * t.uv1 + b2 * t.uv2;
+                    if (!is_black(surface_emission(lights.view, 0, uv))) is_lit[k] = true;
+                }
+            }
+        }
+        for (uint32_t k = 0; k < 2; ++k) {
+            const bool is_drawn = lights.view.choice.count > 0 && alias_pmf(lights.view.choice, k) > 0;
+            CAPTURE(i);
+            if (is_lit[k]) CHECK(is_drawn);
+            drawn += is_drawn ? 1 : 0;
+            dark += is_drawn ? 0 : 1;
+        }
+    }
+    CHECK(drawn > 40);
+    CHECK(dark > 100);
+}
+
+TEST_CASE("lights: triangles of a textured mesh are drawn as their texture shines") {
+    Scene scene;
+    add_emitter(scene, make_square(16), {1, 1, 1}, make_translation({0, 1, 0}));
+    add_checkers(scene, 4, TextureFilter::Nearest);
+    const Lights lights(scene);
+    double on_bright = 0;
+    for (uint32_t i = 0; i < lights.view.triangle_count; ++i) {
+        const EmissiveTriangle& t = lights.view.triangles[i];
+        const Vec2 centre = 0.25f * (t.uv0 + t.uv1) + 0.5f * t.uv2;
+        if (!is_black(surface_emission(lights.view, 0, centre)))
+            on_bright += as_double(alias_pmf(lights.view.choice, i));
+    }
+    CHECK(on_bright > 0.8); // some dark ones touch a bright square
+}
+
+TEST_CASE("lights: point, spot and directional lights give what their definitions say") {
+    const Vec3 above = {0, 2, 0}, down = {0, -1, 0};
+    LightSample sample;
+    Scene scene;
+    const auto only = [&](const Light& light) {
+        scene.lights = {light};
+        const Lights lights(scene);
+        const bool is_lit = sample_light(lights.view, {0, 0, 0}, 0.5f, {0.5f, 0.5f}, sample);
+        if (is_lit) {
+            CHECK(sample.pdf == 1);
+            CHECK(sample.is_delta);
+            CHECK(sample.instance == kNoLight);
+        }
+        return is_lit ? as_double(sample.radiance.r) : 0.0;
+    };
+    Light point = make_light(LightKind::Point, above, down);
+    point.intensity = {8, 1, 1};
+    CHECK(only(point) == doctest::Approx(2));
+    CHECK(sample.wi == Vec3{0, 1, 0});
+    CHECK(sample.distance == 2);
+    CHECK(sample.light_point == above);
+    point.range = 4;
+    CHECK(only(point) == doctest::Approx(2 * (1 - 1.0 / 16)));
+    point.range = 1.9f;
+    CHECK(only(point) == 0);
+
+    Light directional = make_light(LightKind::Directional, {}, {0, -0.6f, 0.8f});
+    directional.intensity = {5, 1, 1};
+    CHECK(only(directional) == doctest::Approx(5));
+    CHECK(sample.wi == Vec3{0, 0.6f, -0.8f});
+    CHECK(sample.distance == kInfinity);
+
+    Light spot = make_light(LightKind::Spot, above, down);
+    spot.intensity = {8, 1, 1};
+    spot.cos_inner = 0.9f, spot.cos_outer = 0.5f;
+    CHECK(only(spot) == doctest::Approx(2));
+    spot.direction = {0.8f, -0.6f, 0}; // the origin is off the axis by a cosine of 0.6: a quarter of the way in
+    CHECK(only(spot) == doctest::Approx(2.0 / 16));
+    spot.direction = {1, 0, 0};
+    CHECK(only(spot) == 0);
+    spot.direction = down;
+    spot.cos_inner = spot.cos_outer = 1; // no width at all
+    CHECK(std::isfinite(only(spot)));
+}
+
+TEST_CASE("lights: all kinds together add up, and near and far ones each get a quarter of the draws") {
+    Scene scene;
+    add_emitter(scene, make_square(1), {3, 1, 0}, make_translation({0, 1, 0}));
+    add_emitter(scene, make_square(40), {1, 1, 1}, make_translation({0, 3, 0}));
+    scene.lights = {make_light(LightKind::Point, {0, 2, 0}, {}), make_light(LightKind::Spot, {0, 4, 0}, {0, -1, 0}),
+                    make_light(LightKind::Directional, {}, {0, -1, 0})};
+    for (const float sky : {1e-5f, 0.25f, 1e4f}) {
+        scene.environment = Environment{};
+        scene.environment->scale = {sky, sky, sky};
+        const Lights lights(scene);
+        double exact = rectangle_irradiance(1, 1, 1, 3) + rectangle_irradiance(1, 1, 3, 1);
+        exact += 1.0 / 4 + 1.0 / 16 + 1 + kPiDouble * as_double(sky);
+        CAPTURE(sky);
+        check_irradiance(lights.view, exact, 400'000);
+
+        double sum = 0, far_sum = 0;
+        const uint32_t first_punctual = lights.view.triangle_count;
+        CHECK(lights.view.environment_light == lights.view.choice.count - 1);
+        for (uint32_t i = 0; i < lights.view.choice.count; ++i) {
+            const double pmf = as_double(alias_pmf(lights.view.choice, i));
+            CHECK(pmf > 0);
+            sum += pmf;
+            if (i >= first_punctual + 2) far_sum += pmf;
+        }
+        CHECK(sum == doctest::Approx(1).epsilon(1e-6));
+        CHECK(far_sum > 0.25 - 1e-6);
+        CHECK(far_sum < 0.75 + 1e-6);
+    }
+}
+
+TEST_CASE("lights: the density of a sample is found again from its point or its direction") {
+    Scene scene;
+    add_emitter(scene, make_square(50), {3, 1, 0}, compose(make_translation({0, 1, 0}), make_scale({2, 1, 1})));
+    scene.environment = Environment{};
+    scene.environment->image = {8, 4, 3, std::vector<float>(96, 1.0f)};
+    for (std::size_t i = 0; i < 48; ++i) scene.environment->image.pixels[i] = 4;
+    const Lights lights(scene);
+    Random random(6);
+    uint64_t on_triangles = 0, from_sky = 0, sky_differs = 0;
+    for (int i = 0; i < 50'000; ++i) {
+        const Vec3 from = {random.number() - 0.5f, -random.number(), random.number()};
+        const float u_choice = random.number();
+        LightSample sample;
+        if (!sample_light(lights.view, from, u_choice, random.pair(), sample)) continue;
+        CHECK_FALSE(sample.is_delta);
+        if (sample.instance == kNoLight) {
+            ++from_sky;
+            const float pdf = pdf_environment(lights.view, sample.wi);
+            if (std::abs(pdf - sample.pdf) > 1e-5f * sample.pdf) ++sky_differs;
+            continue;
+        }
+        ++on_triangles;
+        const uint32_t light = light_of(lights.view, sample.instance, sample.primitive);
+        REQUIRE(light < lights.view.triangle_count);
+        CHECK(pdf_light_hit(lights.view, light, from, sample.light_point) == sample.pdf);
+        CHECK(as_double(length(sample.light_point - from)) == doctest::Approx(as_double(sample.distance)));
+        const EmissiveTriangle& triangle = lights.view.triangles[light];
+        const Vec3 again = triangle.a + sample.b1 * triangle.ab + sample.b2 * triangle.ac;
+        CHECK(length(again - sample.light_point) < 1e-6f);
+        CHECK(std::abs(sample.light_normal.y) > 0.99999f);
+    }
+    CHECK(on_triangles > 5000);
+    CHECK(from_sky > 5000);
+    CHECK(sky_differs < from_sky / 500);
+}
+
+TEST_CASE("lights: the density of directions to a triangle integrates to its probability") {
+    Scene scene;
+    add_emitter(scene, make_square(1), {1, 1, 1}, make_translation({0, 1, 0}));
+    scene.lights = {make_light(LightKind::Point, {0, 2, 0}, {})};
+    const Lights lights(scene);
+    // Directions as points of the plane of the square: solid angle = cos^3 times area at height 1.
+    double integral = 0;
+    constexpr int steps = 500;
+    for (int i = 0; i < steps; ++i) {
+        for (int j = 0; j < steps; ++j) {
+            const double x = 2 * (i + 0.5) / steps - 1, z = 2 * (j + 0.5) / steps - 1;
+            const Vec3 hit = {static_cast<float>(x), 1, static_cast<float>(z)};
+            const uint32_t light = i + j < steps ? 0 : 1;
+            integral += 4.0 / (steps * steps) / std::pow(x * x + z * z + 1, 1.5) *
+                        as_double(pdf_light_hit(lights.view, light, {0, 0, 0}, hit));
+        }
+    }
+    CHECK(integral == doctest::Approx(1 - as_double(alias_pmf(lights.view.choice, 2))).epsilon(1e-4));
+}
+
+TEST_CASE("lights: a hit finds its light by instance and primitive; unlit and dark instances have none") {
+    Scene scene;
+    add_emitter(scene, make_square(2), {0, 0, 0}, {});
+    add_emitter(scene, make_square(3), {1, 0, 0}, {});
+    add_emitter(scene, make_square(1), {1, 1, 1}, {});
+    scene.materials[2].kind = MaterialKind::Unlit;
+    add_emitter(scene, make_square(2), {0, 0, 1}, make_translation({5, 0, 0}));
+    const Lights lights(scene);
+    REQUIRE(lights.view.triangle_count == 18 + 8);
+    CHECK(light_of(lights.view, 0, 3) == kNoLight);
+    CHECK(light_of(lights.view, 2, 0) == kNoLight);
+    for (uint32_t primitive = 0; primitive < 8; ++primitive) {
+        const uint32_t light = light_of(lights.view, 3, primitive);
+        CHECK(light == 18 + primitive);
+        CHECK(lights.view.triangles[light].instance == 3);
+        CHECK(lights.view.triangles[light].primitive == primitive);
+        CHECK(lights.view.triangles[light].material == 3);
+    }
+    CHECK(surface_emission(lights.view, 2, {}) == Rgb{});
+    CHECK(light_of(lights.view, 1, 17) == 17);
+
+    Scene dark;
+    add_emitter(dark, make_square(2), {0, 0, 0}, {});
+    CHECK(light_of(Lights(dark).view, 0, 0) == kNoLight);
+}
+
+TEST_CASE("lights: what cannot be lit is no sample, never a value that is not finite") {
+    LightSample sample;
+    Scene empty;
+    const Lights none(empty);
+    CHECK_FALSE(sample_light(none.view, {0, 0, 0}, 0.5f, {0.5f, 0.5f}, sample));
+    CHECK(pdf_environment(none.view, {0, 1, 0}) == 0);
+
+    Scene scene;
+    Mesh mesh = make_square(1);
+    mesh.positions.push_back(mesh.positions[0]);
+    mesh.indices.insert(mesh.indices.end(), {0, 4, 1}); // no area
+    add_emitter(scene, mesh, {1, 1, 1}, {});
+    scene.lights = {make_light(LightKind::Point, {0, 1, 0}, {})};
+    const Lights lights(scene);
+    CHECK(alias_pmf(lights.view.choice, 2) == 0);
+    Random random(7);
+    for (int i = 0; i < 20'000; ++i) {
+        // In the plane of the square, on it, at the point light, and next to them.
+        const float tiny = i % 2 == 0 ? 0.0f : 1e-38f;
+        const Vec3 from = i % 3 == 0 ? Vec3{0, 1 + tiny, 0} : Vec3{3 * random.number(), tiny, random.number() - 0.5f};
+        const float u_choice = random.number();
+        if (!sample_light(lights.view, from, u_choice, random.pair(), sample)) continue;
+        CHECK(sample.primitive != 2);
+        CHECK(is_finite(sample.wi));
+        CHECK(is_finite(sample.radiance));
+        CHECK(is_finite(sample.pdf));
+        CHECK(sample.pdf > 0);
+    }
+    CHECK(pdf_light_hit(lights.view, 0, {0, 0, 0}, {0, 0, 0}) == 0);
+    CHECK(pdf_light_hit(lights.view, 2, {0, 1, 0}, mesh.positions[0]) == 0);
+}

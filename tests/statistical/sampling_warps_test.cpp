@@ -1,0 +1,86 @@
+// Each warp of math/sampling.h sends uniform points to the density that its pdf function states: chi-square over 10^6
+// samples. The tester itself must refuse a density that is slightly wrong.
+
+#include <cmath>
+#include <optional>
+
+#include <doctest/doctest.h>
+
+#include "math/sampling.h"
+#include "tests/support/chi_square.h"
+
+using namespace pertev;
+using test::chi_square_of_directions;
+using test::chi_square_of_points;
+
+namespace {
+
+constexpr int kTests = 9; // of this file, for the Sidak correction
+
+void check(const test::ChiSquareResult& result) { CHECK_MESSAGE(result.passes(kTests), result.describe()); }
+
+double inside_disk(Vec2 p) { return p.x * p.x + p.y * p.y <= 1 ? 0.3183098861837907 : 0; }
+
+} // namespace
+
+TEST_CASE("cosine-weighted directions follow their density") {
+    check(chi_square_of_directions([](float, Vec2 u) { return sample_cosine_hemisphere(u); },
+                                   [](Vec3 w) { return static_cast<double>(pdf_cosine_hemisphere(w.z)); }));
+}
+
+TEST_CASE("uniform directions follow their density") {
+    check(chi_square_of_directions([](float, Vec2 u) { return sample_uniform_sphere(u); },
+                                   [](Vec3) { return static_cast<double>(pdf_uniform_sphere()); }));
+    check(
+        chi_square_of_directions([](float, Vec2 u) { return sample_uniform_hemisphere(u); },
+                                 [](Vec3 w) { return w.z > 0 ? static_cast<double>(pdf_uniform_hemisphere()) : 0.0; }));
+}
+
+TEST_CASE("cones follow their density, wide and narrow") {
+    for (const float one_minus_cos : {1.5f, 0.2f, 1e-3f}) {
+        // A narrow cone is one cell of the sphere's grid, so the grid is laid over the cone: turns about z, and
+        // |w - z|^2 = 2 (1 - cos) as a fraction of its greatest value, which is uniform by solid angle.
+        const auto sample = [&](Vec2 u) {
+            const Vec3 w = sample_uniform_cone(u, one_minus_cos);
+            const float turns = std::atan2(w.y, w.x) / kTwoPi;
+            return Vec2{turns < 0 ? turns + 1 : turns,
+                        min(length_squared(w - Vec3{0, 0, 1}) / (2 * one_minus_cos), 1.0f)};
+        };
+        const double density = 6.283185307179586 * static_cast<double>(one_minus_cos * pdf_uniform_cone(one_minus_cos));
+        check(chi_square_of_points(sample, [&](Vec2) { return density; }, {0, 0}, {1, 1}));
+    }
+}
+
+TEST_CASE("the chi-square test refuses a density that is tilted by 5 % or off by 0.1 %") {
+    const auto sample = [](float, Vec2 u) -> std::optional<Vec3> { return sample_uniform_sphere(u); };
+    CHECK(!chi_square_of_directions(sample, [](Vec3 w) {
+               return 0.0795774715 * (1 + 0.05 * static_cast<double>(w.z));
+           }).passes(kTests));
+    CHECK(!chi_square_of_directions(sample, [](Vec3) { return 0.0795774715 * 1.001; }).passes(kTests));
+    CHECK(!chi_square_of_directions(sample, [](Vec3) { return 0.0795774715 * 0.999; }).passes(kTests));
+    const auto failing = [&](float lobe, Vec2 u) { return lobe < 0.001f ? std::nullopt : sample(lobe, u); };
+    CHECK(chi_square_of_directions(failing, [](Vec3) { return 0.0795774715 * 0.999; }).passes(kTests));
+}
+
+TEST_CASE("the incomplete gamma function is right") {
+    CHECK(test::upper_gamma(1, 2) == doctest::Approx(std::exp(-2.0)).epsilon(1e-12));
+    CHECK(test::upper_gamma(0.5, 0.25) == doctest::Approx(std::erfc(0.5)).epsilon(1e-12));
+    CHECK(test::upper_gamma(0.5, 9) == doctest::Approx(std::erfc(3.0)).epsilon(1e-12));
+    CHECK(test::upper_gamma(400, 400) == doctest::Approx(0.49335).epsilon(1e-4)); // near 1/2 - 1/(3 sqrt(2 pi a))
+}
+
+TEST_CASE("points of the disk are uniform") {
+    check(chi_square_of_points([](Vec2 u) { return sample_uniform_disk_concentric(u); }, inside_disk, {-1, -1}, {1, 1},
+                               {.cells_x = 30, .cells_y = 30}));
+}
+
+TEST_CASE("points of the triangle are uniform") {
+    check(chi_square_of_points([](Vec2 u) { return sample_uniform_triangle(u); },
+                               [](Vec2 p) { return p.x + p.y <= 1 ? 2.0 : 0.0; }, {0, 0}, {1, 1}, {.cells_y = 40}));
+}
+
+TEST_CASE("the tent filter follows its density") {
+    const auto sample = [](Vec2 u) { return Vec2{sample_tent(u.x), sample_tent(u.y)}; };
+    check(chi_square_of_points(sample, [](Vec2 p) { return static_cast<double>(pdf_tent(p.x) * pdf_tent(p.y)); },
+                               {-1, -1}, {1, 1}, {.cells_y = 40}));
+}

@@ -1,0 +1,67 @@
+#pragma once
+
+// Meshes made by the tests themselves, and the plainest possible ray caster to hold the walks against.
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "accel/bvh/bvh.h"
+#include "trace/intersect_triangle.h"
+#include "trace/ray.h"
+
+namespace pertev::test {
+
+struct TriangleMesh {
+    std::vector<Vec3> positions;
+    std::vector<uint32_t> indices;
+
+    uint32_t triangle_count() const { return static_cast<uint32_t>(indices.size() / 3); }
+    Vec3 corner(uint32_t triangle, int k) const { return positions[indices[3 * triangle + static_cast<uint32_t>(k)]]; }
+};
+
+/// Icosahedron, each face cut in four `subdivisions` times, vertices on the sphere. Closed.
+TriangleMesh make_sphere(int subdivisions, Vec3 centre_m, float radius_m);
+/// Bumpy closed torus of 2 * segments * sides triangles of very uneven sizes.
+TriangleMesh make_torus(int segments, int sides);
+/// The vertices and faces of an OBJ file, nothing else of it; polygons become fans.
+TriangleMesh read_obj_geometry(const std::filesystem::path& path);
+
+/// What a builder takes; primitive ids in the mesh's order.
+std::vector<BvhTriangle> triangles_of(const TriangleMesh& mesh, uint32_t instance = 0);
+
+/// Counter-based random numbers for tests; quality of PCG's output function.
+class Random {
+public:
+    explicit Random(uint32_t seed) : state_(seed) {}
+    uint32_t bits();
+    float unit() { return static_cast<float>(bits() >> 8) * 0x1p-24f; } // [0, 1)
+    float within(float lo, float hi) { return lo + (hi - lo) * unit(); }
+    uint32_t below(uint32_t n) { return static_cast<uint32_t>((static_cast<uint64_t>(bits()) * n) >> 32); }
+    Vec3 point(float lo, float hi);
+    /// Uniform on the unit sphere.
+    Vec3 direction();
+
+private:
+    uint32_t state_;
+};
+
+/// Tests every triangle: DESIGN.md's result rule, word by word. Takes over a better hit into `best`.
+template <class Accept>
+void trace_by_brute_force(std::span<const BvhTriangle> triangles, const Ray& ray, uint32_t instance,
+                          const Accept& accept, Hit& best) {
+    const RayShear shear = make_ray_shear(ray.direction);
+    for (const BvhTriangle& t : triangles) {
+        TriangleHit hit;
+        if (!intersect_triangle(ray.origin, shear, ray.t_min, ray.t_max, t.a, t.b, t.c, hit)) continue;
+        const uint32_t id = instance == kNoHit ? t.instance : instance;
+        if (!accept(id, t.primitive, hit.u, hit.v)) continue;
+        const bool first =
+            best.instance == kNoHit || hit.t < best.t ||
+            (hit.t == best.t && (id < best.instance || (id == best.instance && t.primitive < best.primitive)));
+        if (first) best = {hit.t, hit.u, hit.v, id, t.primitive};
+    }
+}
+
+} // namespace pertev::test

@@ -1,0 +1,239 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfTiledOutputFile.h>
+
+#include "base/error.h"
+#include "image/decode_image.h"
+#include "image/picture_hash.h"
+#include "image/read_exr.h"
+#include "image/write_exr.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+
+namespace {
+
+class Stream : public Imf::OStream {
+public:
+    Stream() : Imf::OStream("test") {}
+    void write(const char from[], int count) override {
+        bytes.resize(std::max(bytes.size(), offset_ + static_cast<std::size_t>(count)));
+        std::memcpy(bytes.data() + offset_, from, static_cast<std::size_t>(count));
+        offset_ += static_cast<std::size_t>(count);
+    }
+    uint64_t tellp() override { return offset_; }
+    void seekp(uint64_t offset) override { offset_ = offset; }
+    std::vector<std::byte> bytes;
+
+private:
+    std::size_t offset_ = 0;
+};
+
+// A value that tells pixel and channel, and that half holds exactly.
+float value_at(int x, int y, int channel) {
+    return static_cast<float>(x + 16 * y) + 0.25f * static_cast<float>(channel);
+}
+
+struct Source {
+    Imath::Box2i display{{0, 0}, {9, 7}}, data{{0, 0}, {9, 7}};
+    std::vector<const char*> names = {"R", "G", "B"};
+    Imf::PixelType type = Imf::FLOAT;
+    Imf::Compression compression = Imf::ZIP_COMPRESSION;
+    bool tiled = false;
+    int sampling = 1;
+};
+
+// Header, and the pixels of `data` that it writes.
+struct Prepared {
+    Imf::Header header;
+    std::vector<std::vector<float>> floats;
+    std::vector<std::vector<unsigned>> uints;
+    std::vector<std::vector<Imath::half>> halves;
+    Imf::FrameBuffer frame;
+
+    explicit Prepared(const Source& from)
+        : header(from.display, from.data, 1, {0, 0}, 1, Imf::INCREASING_Y, from.compression) {
+        const int width = from.data.max.x - from.data.min.x + 1;
+        int index = 0;
+        for (const char* name : from.names) {
+            header.channels().insert(name, Imf::Channel(from.type, from.sampling, from.sampling));
+            auto& f = floats.emplace_back();
+            auto& u = uints.emplace_back();
+            auto& h = halves.emplace_back();
+            for (int y = from.data.min.y; y <= from.data.max.y; ++y) {
+                for (int x = from.data.min.x; x <= from.data.max.x; ++x) {
+                    f.push_back(value_at(x, y, index));
+                    u.push_back(static_cast<unsigned>(std::max(0.0f, f.back())));
+                    h.emplace_back(f.back());
+                }
+            }
+            char* base = from.type == Imf::FLOAT  ? reinterpret_cast<char*>(f.data())
+                         : from.type == Imf::UINT ? reinterpret_cast<char*>(u.data())
+                                                  : reinterpret_cast<char*>(h.data());
+            const int size = from.type == Imf::HALF ? 2 : 4;
+            const std::ptrdiff_t shift = size * (from.data.min.x + std::ptrdiff_t(from.data.min.y) * width);
+            base = reinterpret_cast<char*>(reinterpret_cast<std::intptr_t>(base) - shift);
+            frame.insert(name, Imf::Slice(from.type, base, static_cast<std::size_t>(size),
+                                          static_cast<std::size_t>(size * width), from.sampling, from.sampling));
+            ++index;
+        }
+    }
+};
+
+std::vector<std::byte> make_exr(const Source& from) {
+    Prepared prepared(from);
+    Stream stream;
+    if (from.tiled) {
+        prepared.header.setTileDescription(Imf::TileDescription(4, 3, Imf::MIPMAP_LEVELS));
+        Imf::TiledOutputFile file(stream, prepared.header, 0);
+        file.setFrameBuffer(prepared.frame);
+        file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1, 0);
+    } else {
+        Imf::OutputFile file(stream, prepared.header, 0);
+        file.setFrameBuffer(prepared.frame);
+        file.writePixels(from.data.max.y - from.data.min.y + 1);
+    }
+    return stream.bytes;
+}
+
+Image decode(const std::vector<std::byte>& bytes) { return std::get<Image>(decode_image(bytes, "t.exr")); }
+
+void check_values(const Image& image, uint32_t channels) {
+    REQUIRE(image.channels == channels);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 10; ++x)
+            for (uint32_t c = 0; c < channels; ++c)
+                CHECK(image.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y))[c] ==
+                      value_at(x, y, static_cast<int>(c)));
+}
+
+std::string message_of(const std::vector<std::byte>& bytes) {
+    try {
+        decode(bytes);
+    } catch (const Error& error) {
+        CHECK(error.code() == ErrorCode::BadInput);
+        return error.what();
+    }
+    return "no error";
+}
+
+} // namespace
+
+TEST_CASE("EXR colour is read from float and half, scanlines and tiles, under every lossless compression") {
+    for (const Imf::PixelType type : {Imf::FLOAT, Imf::HALF}) {
+        for (const bool tiled : {false, true}) {
+            for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                                       Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+                CAPTURE(type);
+                CAPTURE(tiled);
+                CAPTURE(compression);
+                check_values(decode(make_exr({.type = type, .compression = compression, .tiled = tiled})), 3);
+            }
+        }
+    }
+}
+
+TEST_CASE("EXR with R, G, B, A has four channels, Y one, and uint colour is read as numbers") {
+    check_values(decode(make_exr({.names = {"R", "G", "B", "A"}})), 4);
+    check_values(decode(make_exr({.names = {"Y"}})), 1);
+    CHECK(decode(make_exr({.type = Imf::UINT})).at(3, 2)[0] == 35);
+}
+
+TEST_CASE("an EXR's display window is the picture; outside the data window it is 0, data outside it is cut") {
+    const Image image = decode(make_exr({.data = {{-3, 2}, {5, 12}}}));
+    CHECK(image.width == 10);
+    CHECK(image.height == 8);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 10; ++x)
+            CHECK(image.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y))[1] ==
+                  (x <= 5 && y >= 2 ? value_at(x, y, 1) : 0.0f));
+    const Image apart = decode(make_exr({.data = {{100, 100}, {101, 101}}}));
+    CHECK(apart.pixels == std::vector<float>(240, 0.0f));
+}
+
+TEST_CASE("of several parts the first with colour is the picture, and read_exr names them all") {
+    Prepared depth({.names = {"Z"}}), colour({});
+    depth.header.setName("depth");
+    colour.header.setName("beauty");
+    for (Prepared* part : {&depth, &colour}) part->header.setType(Imf::SCANLINEIMAGE);
+    Stream stream;
+    {
+        const Imf::Header headers[] = {depth.header, colour.header};
+        Imf::MultiPartOutputFile file(stream, headers, 2, false, 0);
+        int index = 0;
+        for (Prepared* part : {&depth, &colour}) {
+            Imf::OutputPart output(file, index++);
+            output.setFrameBuffer(part->frame);
+            output.writePixels(8);
+        }
+    }
+    check_values(decode(stream.bytes), 3);
+    const ExrFile file = read_exr(stream.bytes, "t.exr");
+    REQUIRE(file.channels.size() == 4);
+    REQUIRE(file.find("depth.Z") != nullptr);
+    CHECK(std::get<0>(file.find("depth.Z")->values)[12] == value_at(2, 1, 0));
+    CHECK(file.find("beauty.G") != nullptr);
+}
+
+TEST_CASE("an EXR without colour is an error that lists its channels; so is one with subsampled channels") {
+    CHECK(message_of(make_exr({.names = {"R", "B", "depth.Z"}})).find("it has B, R, depth.Z") != std::string::npos);
+    CHECK(message_of(make_exr({.sampling = 2})).find("save it as R, G, B") != std::string::npos);
+}
+
+TEST_CASE("an EXR cut short anywhere is an error that names the file") {
+    const std::vector<std::byte> bytes = make_exr({});
+    for (std::size_t left = 4; left < bytes.size(); left += 7) {
+        const std::string message = message_of({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(left)});
+        CHECK(message.starts_with("t.exr: "));
+    }
+}
+
+TEST_CASE("a written EXR gives back every bit, its layers, ids over 2^24 and metadata, and is written the same twice") {
+    const float inf = std::numeric_limits<float>::infinity();
+    const Image picture{2, 2, 4, {0, -0.0f, 1e-42f, 1, inf, -inf, 3.0e38f, 0.1f, 1, 2, 3, 4, 5, 6, 7, 8}};
+    const std::vector<ExrLayer> layers = {
+        {"albedo", {"R", "G", "B"}, std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}},
+        {"id", {"instance"}, std::vector<uint32_t>{0, 16777217, 4294967295u, 5}}};
+    const ExrMetadata metadata = {
+        {"pertev.scene", "cornell-box"}, {"pertev.seed", 7}, {"pertev.seconds", 0.1}, {"pertev.exposure", 0.5f}};
+    const std::vector<std::byte> bytes = encode_exr(picture, layers, metadata);
+    CHECK(encode_exr(picture, layers, metadata) == bytes);
+
+    const Image back = decode(bytes);
+    REQUIRE(back.channels == 4);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        CHECK(std::bit_cast<uint32_t>(back.pixels[i]) == std::bit_cast<uint32_t>(picture.pixels[i]));
+    CHECK(picture_hash(back) == picture_hash(picture));
+
+    const std::filesystem::path path = test::scratch_folder() / "p.exr";
+    write_exr(path, picture, layers, metadata);
+    const ExrFile file = read_exr(path);
+    CHECK(file.width == 2);
+    CHECK(file.channels.size() == 8);
+    REQUIRE(file.find("albedo.G") != nullptr);
+    CHECK(std::get<0>(file.find("albedo.G")->values) == std::vector<float>{2, 5, 8, 11});
+    REQUIRE(file.find("id.instance") != nullptr);
+    CHECK(std::get<1>(file.find("id.instance")->values) == std::vector<uint32_t>{0, 16777217, 4294967295u, 5});
+    for (const auto& entry : metadata) CHECK(std::count(file.metadata.begin(), file.metadata.end(), entry) == 1);
+}
+
+TEST_CASE("two layers of one name and metadata named as the format's own are a programmer's mistake") {
+    const Image picture{1, 1, 3, {1, 2, 3}};
+    const ExrLayer layer{"depth", {"Z"}, std::vector<float>{1}};
+    CHECK_THROWS_AS(encode_exr(picture, std::vector<ExrLayer>{layer, layer}), std::logic_error);
+    CHECK_THROWS_AS(encode_exr(picture, {}, {{"compression", 1}}), std::logic_error);
+}

@@ -1,0 +1,150 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+
+#include "shading/shading_frame.h"
+
+using namespace pertev;
+
+namespace {
+
+class Random {
+public:
+    explicit Random(uint32_t seed) : bits_(seed) {}
+    Vec3 direction() {
+        for (;;) {
+            const float x = number(), y = number();
+            const Vec3 v = {x, y, number()};
+            if (length_squared(v) > 0.01f && length_squared(v) < 1) return normalize(v);
+        }
+    }
+    float number() { return static_cast<float>(bits_() >> 8) * 0x1p-23f - 1.0f; }
+
+private:
+    std::mt19937 bits_;
+};
+
+bool is_near(Vec3 a, Vec3 b, float within = 1e-5f) { return length(a - b) < within; }
+
+void check_orthonormal(const Frame& frame) {
+    CHECK(std::abs(dot(frame.tangent, frame.bitangent)) < 1e-5f);
+    CHECK(std::abs(dot(frame.tangent, frame.normal)) < 1e-5f);
+    CHECK(std::abs(dot(frame.bitangent, frame.normal)) < 1e-5f);
+    CHECK(std::abs(length(frame.tangent) - 1) < 1e-5f);
+    CHECK(std::abs(length(frame.bitangent) - 1) < 1e-5f);
+}
+
+} // namespace
+
+TEST_CASE("shading frame: on a wall seen upright, x of a normal map is right and y is up") {
+    // A wall in the plane z = 0, front towards +z; u to the right, v down from the top of the image (glTF).
+    const Vec3 right = {2, 0, 0}, up = {0, 3, 0}, front = {0, 0, 1};
+    const Vec4 tangent = tangent_from_uv(right, up, {1, 0}, {0, -1}, front);
+    const Frame frame = frame_with_tangent(front, tangent);
+    CHECK(is_near(frame.tangent, {1, 0, 0}));
+    CHECK(is_near(frame.bitangent, {0, 1, 0}));
+    CHECK(is_near(mapped_normal(frame, {0.5f, 0.5f, 1}, 1), front));
+    CHECK(mapped_normal(frame, {0.8f, 0.5f, 0.8f}, 1).x > 0.5f);
+    CHECK(mapped_normal(frame, {0.5f, 0.8f, 0.8f}, 1).y > 0.5f);
+    CHECK(is_near(mapped_normal(frame, {1, 0.5f, 1}, 0.5f), normalize(Vec3{0.5f, 0, 1})));
+    CHECK(is_near(mapped_normal(frame, {1, 0, 0.5f}, 0), front)); // no direction at all: unbent
+
+    // The same image mirrored left to right: u runs left, y is still up.
+    const Frame mirrored = frame_with_tangent(front, tangent_from_uv(right, up, {-1, 0}, {0, -1}, front));
+    CHECK(is_near(mirrored.tangent, {-1, 0, 0}));
+    CHECK(is_near(mirrored.bitangent, {0, 1, 0}));
+}
+
+TEST_CASE("shading frame: the tangent follows the texture on any triangle") {
+    Random random(1);
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 ab = random.direction(), ac = random.direction();
+        if (length(cross(ab, ac)) < 0.1f) continue;
+        const Vec2 uv_ab = {random.number(), random.number()}, uv_ac = {random.number(), random.number()};
+        const float det = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
+        if (std::abs(det) < 0.05f) continue;
+        const Vec3 normal = normalize(cross(ab, ac));
+        const Vec4 tangent = tangent_from_uv(ab, ac, uv_ab, uv_ac, normal);
+        // Along the tangent v stands still and u grows: solve p = s ab + t ac for the step.
+        const Vec3 along = {tangent.x, tangent.y, tangent.z};
+        const Vec3 n = cross(ab, ac);
+        const float s = dot(cross(along, ac), n) / dot(n, n), t = dot(cross(ab, along), n) / dot(n, n);
+        CHECK(s * uv_ab.x + t * uv_ac.x > 0);
+        CHECK(std::abs(s * uv_ab.y + t * uv_ac.y) < 1e-4f);
+        const Frame frame = frame_with_tangent(normal, tangent);
+        check_orthonormal(frame);
+        const float s_y = dot(cross(frame.bitangent, ac), n) / dot(n, n);
+        const float t_y = dot(cross(ab, frame.bitangent), n) / dot(n, n);
+        CHECK(s_y * uv_ab.y + t_y * uv_ac.y < 0); // y is against growing v
+    }
+}
+
+TEST_CASE("shading frame: coordinates, tangents and normals without direction fall back to a valid frame") {
+    const Vec3 normal = {0, 0.6f, 0.8f};
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const Vec2 uv_ac : {Vec2{0, 0}, {2, 2}, {nan, 0}, {1e38f, -1e38f}}) {
+        check_orthonormal(
+            frame_with_tangent(normal, tangent_from_uv({1, 0, 0}, {0, 0.8f, -0.6f}, {1, 1}, uv_ac, normal)));
+    }
+    for (const Vec4 tangent :
+         {Vec4{0, 0, 0, 1}, {0, 0.6f, 0.8f, -1}, {0, -6, -8, 1}, {nan, 1, 1, 1}, {1e-30f, 0, 0, 1}}) {
+        check_orthonormal(frame_with_tangent(normal, tangent));
+    }
+    const Transform identity;
+    CHECK(world_normal(identity, {0, 0, 0}, normal) == normal);
+    CHECK(world_normal(identity, {nan, 0, 0}, normal) == normal);
+    CHECK(world_normal(identity, {0, -1, 0}, normal) == normal); // behind its own face
+    CHECK(is_near(world_normal(identity, {0, 2, 2}, normal), normalize(Vec3{0, 1, 1})));
+}
+
+TEST_CASE("shading frame: normals stay perpendicular to what they were under uneven scale") {
+    const Transform world_from_local = compose(make_rotation(0, 0, 0.6f, 0.8f), make_scale({1, 5, 0.2f}));
+    const Vec3 local_normal = normalize(Vec3{1, 1, 1}), local_tangent = {1, -1, 0};
+    const Vec3 normal = normalize(transform_transposed(inverse(world_from_local), local_normal));
+    const Vec3 world = world_normal(inverse(world_from_local), local_normal, normal);
+    CHECK(std::abs(dot(world, transform_vector(world_from_local, local_tangent))) < 1e-5f);
+    CHECK(std::abs(length(world) - 1) < 1e-6f);
+}
+
+TEST_CASE("shading frame: a valid normal mirrors light above the surface, and moves no further than needed") {
+    Random random(2);
+    const Vec3 up = {0, 0, 1};
+    int kept = 0, moved = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        Vec3 wo = random.direction();
+        wo.z = std::abs(wo.z);
+        if (i % 4 == 0) wo = normalize(Vec3{wo.x, wo.y, 0.001f * wo.z});
+        const Vec3 bent = random.direction();
+        const Vec3 normal = valid_normal(bent, up, wo);
+        const Vec3 mirrored = 2.0f * dot(wo, normal) * normal - wo;
+        CHECK(std::abs(length(normal) - 1) < 1e-5f);
+        CHECK(mirrored.z > -1e-7f);
+        CHECK(dot(normal, up) > 0);
+        CHECK(dot(normal, wo) > 0);
+        if (normal == bent) {
+            ++kept;
+        } else {
+            ++moved;
+            CHECK(mirrored.z < 0.0101f); // just above
+        }
+        CHECK(valid_normal(up, up, wo) == up);
+    }
+    CHECK(kept > 15'000);
+    CHECK(moved > 20'000);
+    const Vec3 wo = normalize(Vec3{1, 0, 0.2f});
+    CHECK(is_near(valid_normal(up, up, wo), up));
+}
+
+TEST_CASE("shading frame: the frame about a bent normal is right-handed and keeps its tangent's side") {
+    Random random(3);
+    for (int i = 0; i < 5000; ++i) {
+        const Vec3 normal = random.direction(), bent = normalize(normal + 0.5f * random.direction());
+        const Frame frame = frame_about(bent, make_frame(normal));
+        check_orthonormal(frame);
+        CHECK(is_near(cross(frame.tangent, frame.bitangent), frame.normal));
+        CHECK(dot(frame.tangent, make_frame(normal).tangent) > 0);
+    }
+}

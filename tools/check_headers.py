@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Compiles headers by themselves, so that each can be included first and, where it has device code, by any compiler.
+
+Host-device headers (those that say HD) are compiled alone by each --cxx and, gathered into one generated file a module,
+by --nvcc; all other headers alone by the first --cxx. `--self-test` feeds the check headers that must fail.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+HOST_FLAGS = ["-x", "c++", "-std=c++20", "-fsyntax-only", "-ffp-contract=off", "-march=x86-64-v3", "-Wall", "-Wextra",
+              "-Wpedantic", "-Wshadow", "-Wdouble-promotion", "-Wfloat-conversion", "-Werror"]
+NVCC_FLAGS = ["-x", "cu", "-std=c++20", "-ptx", "-arch=compute_90", "--expt-relaxed-constexpr", "-fmad=false",
+              "-Werror=all-warnings", "-o", os.devnull]
+HOST_DEVICE = re.compile(r"^\s*(template\s*<.*>\s*)?(\[\[\w+\]\]\s*)?(constexpr\s+|static\s+)*HD\b", re.MULTILINE)
+
+
+def compile_includes(command, headers, source):
+    """The compiler's complaint about a file that includes `headers`; empty where there is none."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / ("gathered.cu" if "cu" in command else "alone.cpp")
+        file.write_text("".join(f'#include "{h}"\n' for h in headers))
+        run = subprocess.run([*command, f"-I{source}", str(file)], capture_output=True, text=True)
+        return "" if run.returncode == 0 else run.stderr + run.stdout
+
+
+def jobs_for(source, compilers, nvcc):
+    """(what it is, command, headers) for each compilation."""
+    headers = [h.relative_to(source) for h in sorted(source.rglob("*.h")) if "cuda" not in h.parts]
+    host_device = [h for h in headers if HOST_DEVICE.search((source / h).read_text(encoding="utf-8"))]
+    if nvcc:
+        for module in sorted({h.parts[0] for h in host_device}):
+            yield f"{module} by nvcc", [nvcc, *NVCC_FLAGS], [h for h in host_device if h.parts[0] == module]
+    for position, compiler in enumerate(compilers):
+        for header in headers if position == 0 else host_device:
+            yield f"{header} by {compiler}", [compiler, *HOST_FLAGS], [header]
+
+
+def check(source, compilers, nvcc, threads):
+    jobs = list(jobs_for(source, compilers, nvcc))
+    with concurrent.futures.ThreadPoolExecutor(threads) as pool:
+        complaints = list(pool.map(lambda job: compile_includes(job[1], job[2], source), jobs))
+    return [f"{what}:\n{text}" for (what, _, _), text in zip(jobs, complaints) if text], len(jobs)
+
+
+GOOD = '#pragma once\n#include "base/host_device.h"\n'
+BAD_HEADERS = {  # each compiles for somebody, and must fail for the compiler named
+    "cxx": "#pragma once\nHD inline int f(Vec3 v) { return 0; }\n",
+    "nvcc": GOOD + "inline int on_host(int x) { return x; }\nHD inline int f(int x) { return on_host(x); }\n",
+}
+
+
+def self_test(compilers, nvcc):
+    failures = 0
+    for who, text in BAD_HEADERS.items():
+        if who == "nvcc" and not nvcc:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder)
+            (source / "base").mkdir()
+            shutil.copy(ROOT / "src/base/host_device.h", source / "base/host_device.h")
+            (source / "base/good.h").write_text(GOOD + "HD inline int g(int x) { return x; }\n")
+            (source / "base/bad.h").write_text(text)
+            faults, _ = check(source, compilers, nvcc, 1)
+            expected = len(compilers) + (1 if nvcc else 0) if who == "cxx" else 1
+            if len(faults) != expected:
+                failures += 1
+                print(f"bad for {who}: {len(faults)} complaints, expected {expected}\n" + "\n".join(faults))
+    return failures
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--cxx", action="append", required=True, help="host compiler; may be repeated")
+    parser.add_argument("--nvcc", help="CUDA compiler")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
+    parser.add_argument("--self-test", action="store_true")
+    args = parser.parse_args()
+    absent = [c for c in args.cxx if not shutil.which(c)]
+    for compiler in absent:
+        print(f"skipped: {compiler} is not here, so no header was compiled with it")
+    compilers = [c for c in args.cxx if c not in absent]
+    if args.self_test:
+        sys.exit(1 if self_test(compilers, args.nvcc) else 0)
+    faults, count = check(ROOT / "src", compilers, args.nvcc, args.jobs)
+    print("\n".join(faults) or f"{count} compilations, no complaint")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""Fails on a source file longer than 500 lines, and on a header that does not open with a comment that says what it is.
+
+A table of numbers may be as long as it is, in a file of its own whose name ends in _data.
+"""
+
+import pathlib
+import sys
+
+LIMIT = 500
+FOLDERS = ["src", "apps", "tests", "tools", "bench", "python", "cmake"]
+SUFFIXES = {".h", ".cpp", ".cu", ".py", ".js", ".cmake"}
+
+
+def faults_in(root):
+    for folder in FOLDERS:
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix not in SUFFIXES:
+                continue
+            lines = file.read_text(encoding="utf-8").splitlines()
+            name = file.relative_to(root)
+            if len(lines) > LIMIT and not file.stem.endswith("_data"):
+                yield f"{name}: {len(lines)} lines; the limit is {LIMIT}: which two ideas does it hold?"
+            if folder == "src" and file.suffix == ".h":
+                text = [line for line in lines if line.strip()]
+                if not text or text[0].strip() != "#pragma once":
+                    yield f"{name}:1: a header starts with #pragma once"
+                elif len(text) < 2 or not text[1].startswith("//"):
+                    yield f"{name}:3: a header opens with a comment: what it is, its source, the one thing to know"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent
+    faults = list(faults_in(root))
+    print("\n".join(faults) or "no file is too long and each header says what it is")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
