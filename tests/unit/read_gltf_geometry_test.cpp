@@ -116,7 +116,7 @@ TEST_CASE("all attributes are read") {
         attribute("TANGENT", builder.add("VEC4", std::vector<float>{1, 0, 0, 1, 0, 1, 0, -1, 0, 0, 1, -1})) + "," +
         attribute("TEXCOORD_0", builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1})) + "," +
         attribute("TEXCOORD_1", builder.add("VEC2", std::vector<float>{5, 6, 7, 8, 9, 10})) + "," +
-        attribute("COLOR_0", builder.add("VEC3", std::vector<float>{1, 0, 0, 0, 0.5f, 0, 0, 0, 2}));
+        attribute("COLOR_0", builder.add("VEC3", std::vector<float>{1, 0, 0, 0, 0.5f, 0, 0, 0, 1}));
     const Mesh mesh = read_primitive(builder, "\"attributes\":{" + attributes + "}").meshes.at(0);
     CHECK(mesh.normals == std::vector<Vec3>{{0, 0, 1}, {0, 0, 1}, {0, 1, 0}});
     CHECK(mesh.tangents == std::vector<Vec4>{{1, 0, 0, 1}, {0, 1, 0, -1}, {0, 0, 1, -1}});

@@ -65,6 +65,28 @@ TEST_CASE("a material that says nothing is a white, rough metal that lets nothin
     CHECK(read_material(R"({"extensions":{"KHR_materials_unlit":{}}})").kind == MaterialKind::Unlit);
 }
 
+TEST_CASE("solid clear glass is a dielectric, and other transmission is left out with a warning") {
+    const auto read = [](const std::string& transmission, const std::string& volume, bool is_glass, bool warns) {
+        CAPTURE(transmission);
+        CAPTURE(volume);
+        Messages messages;
+        const Scene scene = test::read_gltf_text(
+            with_material(R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0},"extensions":{)"
+                          R"("KHR_materials_ior":{"ior":1.25},"KHR_materials_transmission":{)" +
+                          transmission + R"(},"KHR_materials_volume":{)" + volume + "}}}"),
+            messages);
+        const Material& material = scene.materials.at(0);
+        CHECK(material.kind == (is_glass ? MaterialKind::Dielectric : MaterialKind::MetallicRoughness));
+        CHECK(material.ior == 1.25f);
+        CHECK(test::has_warning(messages, {"model.gltf", "left out"}) == warns);
+    };
+    read(R"("transmissionFactor":1)", R"("thicknessFactor":1)", true, false);
+    read(R"("transmissionFactor":1)", R"("thicknessFactor":1,"attenuationDistance":2)", true, true);
+    read(R"("transmissionFactor":0.5)", R"("thicknessFactor":1)", false, true);
+    read(R"("transmissionFactor":1)", "", false, true);
+    read("", R"("thicknessFactor":1)", false, false);
+}
+
 TEST_CASE("each texture slot gets its image, its channel and its encoding") {
     const Material material = read_material(
         R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0}},)"
