@@ -3,7 +3,8 @@
 // Reads glTF 2.0, .gltf and .glb. The work is done by the files in formats/gltf, one part of the format each.
 //
 // Supported extensions: KHR_texture_transform, KHR_lights_punctual, KHR_materials_unlit, _ior and _emissive_strength,
-// KHR_mesh_quantization, EXT_meshopt_compression, EXT_mesh_gpu_instancing. Others are an error where the file requires
+// KHR_mesh_quantization, EXT_meshopt_compression, EXT_mesh_gpu_instancing; in part (formats/gltf/materials.h)
+// KHR_materials_specular, _transmission and _volume. Others are an error where the file requires
 // them and a warning where it only uses them.
 
 #include <cstddef>

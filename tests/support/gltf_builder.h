@@ -28,6 +28,10 @@ public:
         return add_view_of_bytes(std::as_bytes(std::span(numbers)), members);
     }
     int add_view_of_bytes(std::span<const std::byte> bytes, const std::string& members = "");
+    /// A view of `count` elements of `stride` bytes that EXT_meshopt_compression holds in `bytes`. `members`: the
+    /// extension's mode and filter.
+    int add_compressed_view(const std::vector<unsigned char>& bytes, std::size_t stride, std::size_t count,
+                            const std::string& members);
 
     /// Appends numbers and returns the index of an accessor over all of them.
     template <class T>

@@ -170,6 +170,7 @@ void Accessor::set_sparse(const JsonValue& sparse, Buffers& buffers) {
         return count > 0 ? view.bytes.subspan(offset, count * size) : std::span<const std::byte>();
     };
     const std::span<const std::byte> index_bytes = part(indices, bytes_of(type));
+    buffers.charge(count * sizeof(uint64_t), sparse);
     Sparse list;
     list.values = part(values, element_bytes());
     list.indices.resize(count);

@@ -9,9 +9,9 @@
 namespace pertev::gltf {
 namespace {
 
-// What a scene may take in memory for each byte of its files. A part that is drawn ten thousand times with another
-// material each is shared; this stops a small file that multiplies itself.
-constexpr uint64_t kMaxExpansion = 4096, kFreeBytes = uint64_t(256) << 20;
+// What a scene may take in memory for each byte of its files. Honest files stay far below (what they use many times
+// is shared); this stops a small one that multiplies itself.
+constexpr uint64_t kMaxExpansion = 1024, kFreeBytes = uint64_t(256) << 20;
 
 // The vertex codec spends at least two bits on a group of 16 bytes, the others more: no stream can grow further.
 constexpr uint64_t kMaxCodecRatio = 64;
@@ -24,9 +24,8 @@ Buffers::Buffers(const Document& document, const FileAccess& access)
     for (std::size_t i = 0; i < buffers.size(); ++i) {
         const uint64_t length = buffers[i].at("byteLength").to_unsigned();
         std::optional<std::span<const std::byte>> bytes;
-        if (buffers[i].find("uri")) {
-            bytes = owned_.emplace_back(read_buffer(buffers[i], access));
-            file_bytes_ += bytes->size();
+        if (const std::optional<JsonValue> uri = buffers[i].find("uri")) {
+            bytes = read_uri(*uri, access);
         } else if (i == 0) {
             bytes = document.binary_chunk();
         }
@@ -38,19 +37,25 @@ Buffers::Buffers(const Document& document, const FileAccess& access)
     }
 }
 
-std::vector<std::byte> Buffers::read_buffer(const JsonValue& buffer, const FileAccess& access) const {
-    const JsonValue uri = buffer.at("uri");
+std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAccess& access) {
+    const auto own = [&](std::vector<std::byte> bytes) -> std::span<const std::byte> {
+        file_bytes_ += bytes.size();
+        return owned_.emplace_back(std::move(bytes));
+    };
     const std::string_view text = uri.to_string();
     if (is_data_uri(text)) {
         std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
         if (!bytes)
             throw uri.error("the data URI cannot be decoded; expected data:application/octet-stream;base64,...");
-        return *std::move(bytes);
+        return own(*std::move(bytes));
     }
-    const std::optional<std::string> path = decode_path_uri(text);
-    if (!path) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", text));
+    const std::optional<std::string> reference = decode_path_uri(text);
+    if (!reference) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", text));
     try {
-        return read_file(access.resolve(document_.path(), *path));
+        const std::filesystem::path path = access.resolve(document_.path(), *reference);
+        const auto [entry, is_new] = by_path_.try_emplace(path);
+        if (is_new) entry->second = own(read_file(path));
+        return entry->second;
     } catch (const Error& error) {
         throw Error(error.code(), fmt::format("{}: {}", uri.place(), error.what()));
     }
@@ -68,7 +73,7 @@ std::span<const std::byte> Buffers::slice(const JsonValue& place) const {
     return buffer->subspan(offset, length);
 }
 
-std::vector<std::byte> Buffers::decompress(const JsonValue& compressed) const {
+std::vector<std::byte> Buffers::decompress(const JsonValue& compressed) {
     const std::span<const std::byte> source = slice(compressed);
     const uint64_t count = compressed.at("count").to_unsigned(), stride = compressed.at("byteStride").to_unsigned();
     const std::string mode = compressed.string_or("mode", ""), filter = compressed.string_or("filter", "NONE");
@@ -91,6 +96,7 @@ std::vector<std::byte> Buffers::decompress(const JsonValue& compressed) const {
             fmt::format("{} compressed bytes cannot hold {} elements of {} bytes", source.size(), count, stride));
     }
 
+    charge(count * stride, compressed);
     std::vector<std::byte> bytes(count * stride);
     const auto* data = reinterpret_cast<const unsigned char*>(source.data());
     int failure = 0;

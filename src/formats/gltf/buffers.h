@@ -7,6 +7,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,14 +39,15 @@ public:
     uint64_t file_bytes() const { return file_bytes_; }
 
 private:
-    std::vector<std::byte> read_buffer(const JsonValue& buffer, const FileAccess& access) const;
+    std::span<const std::byte> read_uri(const JsonValue& uri, const FileAccess& access);
     std::span<const std::byte> slice(const JsonValue& place) const;
-    std::vector<std::byte> decompress(const JsonValue& compressed) const;
+    std::vector<std::byte> decompress(const JsonValue& compressed);
 
     const Document& document_;
     std::vector<std::vector<std::byte>> owned_;
-    std::vector<std::optional<std::span<const std::byte>>> buffers_;  // nothing: a placeholder
-    std::vector<std::optional<std::vector<std::byte>>> decompressed_; // by view
+    std::map<std::filesystem::path, std::span<const std::byte>> by_path_; // a file is read once
+    std::vector<std::optional<std::span<const std::byte>>> buffers_;      // nothing: a placeholder
+    std::vector<std::optional<std::vector<std::byte>>> decompressed_;     // by view
     uint64_t file_bytes_ = 0, charged_bytes_ = 0;
 };
 

@@ -17,8 +17,9 @@ constexpr std::array<std::string_view, 8> kSupportedExtensions = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
 
-// Of this one only what turns the dielectric coat off (materials.cpp): a file that requires it is refused.
-constexpr std::string_view kSupportedInPart = "KHR_materials_specular";
+// Of these only the cases that materials.cpp names; it warns of the others. A file that requires one is refused.
+constexpr std::array<std::string_view, 3> kSupportedInPart = {"KHR_materials_specular", "KHR_materials_transmission",
+                                                              "KHR_materials_volume"};
 
 constexpr std::array<std::string_view, 12> kTables = {"accessors", "bufferViews", "buffers", "cameras",
                                                       "images",    "materials",   "meshes",  "nodes",
@@ -35,15 +36,23 @@ uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
     return value;
 }
 
-bool is_supported(std::string_view extension) {
-    return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
+bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 } // namespace
 
 Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
     : path_(path), file_(path.string()), bytes_(std::move(bytes)), json_chunk_(bytes_) {
-    if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) split_glb();
+    if (bytes_.empty()) {
+        throw Error(ErrorCode::BadInput, fmt::format("{}: the file is empty; expected a glTF 2.0 document", file_));
+    }
+    if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
+        split_glb();
+    } else if (path.extension() == ".glb") {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: byte 0: expected the letters glTF, with which a GLB file starts", file_));
+    }
     parse(json_chunk_);
     check_version();
     for (const std::string_view name : kTables) tables_.emplace(name, root().elements_of(name));
@@ -125,20 +134,20 @@ void Document::check_version() const {
 }
 
 void Document::check_extensions(Messages& messages) const {
-    std::vector<std::string_view> required;
     for (const JsonValue& name : root().elements_of("extensionsRequired")) {
-        required.push_back(name.to_string());
-        if (!is_supported(required.back())) {
-            throw name.error(fmt::format("the file requires the extension {}, which is not supported; export it "
-                                         "without that extension",
-                                         required.back()));
-        }
+        if (is_one_of(kSupportedExtensions, name.to_string())) continue;
+        throw name.error(fmt::format("the file requires the extension {}, which is not supported; export it without "
+                                     "that extension",
+                                     name.to_string()));
     }
+    std::string left_out;
     for (const JsonValue& name : root().elements_of("extensionsUsed")) {
-        if (is_supported(name.to_string()) || name.to_string() == kSupportedInPart) continue;
-        messages.warn(
-            fmt::format("{}: the extension {} is not supported and left out", name.place(), name.to_string()));
+        const std::string_view extension = name.to_string();
+        if (is_one_of(kSupportedExtensions, extension) || is_one_of(kSupportedInPart, extension)) continue;
+        left_out += fmt::format("{}{}", left_out.empty() ? "" : ", ", extension);
     }
+    if (left_out.empty()) return;
+    messages.warn(fmt::format("{}: extensions that are not supported are left out: {}", file_, left_out));
 }
 
 const std::vector<JsonValue>& Document::table(std::string_view name) const {

@@ -44,6 +44,7 @@ Material Materials::read(const JsonValue& source) {
     read_alpha(source, material);
     material.ior = read_ior(source);
     read_specular(source, material);
+    read_transmission(source, material);
     if (source.extension("KHR_materials_unlit")) material.kind = MaterialKind::Unlit;
 
     float strength = 1;
@@ -64,11 +65,11 @@ Material Materials::read(const JsonValue& source) {
 
 void Materials::read_metallic_roughness(const JsonValue& pbr, Material& material) {
     const std::array<float, 4> color = pbr.floats_or<4>("baseColorFactor", {1, 1, 1, 1});
-    material.base_color = {clamp(color[0], 0.0f, 1.0f), clamp(color[1], 0.0f, 1.0f), clamp(color[2], 0.0f, 1.0f)};
-    material.alpha = clamp(color[3], 0.0f, 1.0f);
+    material.base_color = {color[0], color[1], color[2]};
+    material.alpha = color[3];
     material.base_color_texture = read_texture(pbr, "baseColorTexture", true);
-    material.metallic = clamp(pbr.float_or("metallicFactor", 1), 0.0f, 1.0f);
-    material.roughness = clamp(pbr.float_or("roughnessFactor", 1), 0.0f, 1.0f);
+    material.metallic = pbr.float_or("metallicFactor", 1);
+    material.roughness = pbr.float_or("roughnessFactor", 1);
     const TextureRef both = read_texture(pbr, "metallicRoughnessTexture", false);
     material.metallic_texture = material.roughness_texture = both;
     material.roughness_texture.channel = 1;
@@ -95,8 +96,29 @@ void Materials::read_specular(const JsonValue& material, Material& result) const
         result.kind = MaterialKind::Diffuse;
         return;
     }
-    messages_.warn(fmt::format("{}: left out; only a specularFactor of 0 with a metallicFactor of 0 is supported",
-                               extension->place()));
+    messages_.warn(fmt::format("{}: KHR_materials_specular is left out, but for a specularFactor of 0 with a "
+                               "metallicFactor of 0",
+                               document_.file()));
+}
+
+void Materials::read_transmission(const JsonValue& material, Material& result) const {
+    const std::optional<JsonValue> transmission = material.extension("KHR_materials_transmission");
+    const float factor = transmission ? transmission->float_or("transmissionFactor", 0) : 0;
+    if (factor == 0) return;
+    const std::optional<JsonValue> volume = material.extension("KHR_materials_volume");
+    const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
+    if (factor != 1 || transmission->find("transmissionTexture") || !is_solid || result.metallic != 0) {
+        messages_.warn(fmt::format("{}: KHR_materials_transmission is left out, and the material opaque, but for solid "
+                                   "glass: a transmissionFactor of 1 without texture, a thicknessFactor above 0 and a "
+                                   "metallicFactor of 0",
+                                   document_.file()));
+        return;
+    }
+    result.kind = MaterialKind::Dielectric;
+    if (volume->find("attenuationDistance")) {
+        messages_.warn(fmt::format("{}: glass does not absorb: the attenuation of KHR_materials_volume is left out",
+                                   document_.file()));
+    }
 }
 
 float Materials::read_ior(const JsonValue& material) const {

@@ -3,7 +3,8 @@
 // glTF materials as Scene materials, in the order of their first use; those that nothing uses are not read.
 //
 // Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit. Of
-// KHR_materials_specular a weight of 0 on what is no metal: that takes the coat off and leaves Lambert's law.
+// KHR_materials_specular a weight of 0 on what is no metal: that takes the coat off and leaves Lambert's law. Of
+// KHR_materials_transmission and _volume solid clear glass.
 // Occlusion textures are not read: a path tracer computes what they approximate. Faces are always double sided.
 
 #include <optional>
@@ -30,6 +31,7 @@ private:
     void read_metallic_roughness(const JsonValue& pbr, Material& material);
     void read_alpha(const JsonValue& source, Material& material) const;
     void read_specular(const JsonValue& material, Material& result) const;
+    void read_transmission(const JsonValue& material, Material& result) const;
     float read_ior(const JsonValue& material) const;
     TextureRef read_texture(const JsonValue& parent, std::string_view key, bool is_srgb);
 

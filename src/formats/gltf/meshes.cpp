@@ -15,21 +15,33 @@ std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh) {
     return weights;
 }
 
+// Equal texts: equal members.
+std::string members_as_text(const JsonValue& object, std::initializer_list<std::string_view> members) {
+    std::string text;
+    for (const std::string_view member : members) {
+        const std::optional<JsonValue> value = object.find(member);
+        text += fmt::format("{};", value ? value->to_json() : "");
+    }
+    return text;
+}
+
 // Equal texts: equal vertices and triangles.
 std::string data_key(const JsonValue& primitive, const std::vector<float>& weights,
                      const std::optional<JsonValue>& skin) {
-    std::string key;
-    for (const std::string_view member : {"mode", "attributes", "indices", "targets"}) {
-        const std::optional<JsonValue> value = primitive.find(member);
-        key += fmt::format("{};", value ? value->to_json() : "");
-    }
+    std::string key = members_as_text(primitive, {"mode", "attributes", "indices", "targets"});
     if (primitive.find("targets")) key += fmt::format("{}", fmt::join(weights, ","));
     return key + fmt::format(";{}", skin ? skin->to_json() : "");
 }
 
 } // namespace
 
-std::vector<Meshes::Part> Meshes::parts_of(const JsonValue& node) {
+const std::vector<Meshes::Part>& Meshes::parts_of(const JsonValue& node) {
+    const auto [entry, is_new] = by_use_.try_emplace(members_as_text(node, {"mesh", "skin", "weights"}));
+    if (is_new) entry->second = read_parts(node);
+    return entry->second;
+}
+
+std::vector<Meshes::Part> Meshes::read_parts(const JsonValue& node) {
     const JsonValue& mesh = document_.item("meshes", node.at("mesh"));
     const std::vector<float> weights = read_weights(node, mesh);
     const std::optional<JsonValue> skin = node.find("skin");
@@ -59,7 +71,7 @@ std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, const std::v
             fmt::format("{}: skinned meshes are drawn in their rest pose; animation is not played", document_.file()));
         apply_skin(document_, buffers_, primitive.at("attributes"), joints_of(*skin), *mesh);
     }
-    finish_normals(*mesh);
+    buffers_.charge(name.size(), primitive);
     mesh->name = name;
     scene_.meshes.push_back(*std::move(mesh));
     entry->second = static_cast<uint32_t>(scene_.meshes.size() - 1);

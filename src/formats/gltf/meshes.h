@@ -28,9 +28,10 @@ public:
           geometry_only_(geometry_only), messages_(messages) {}
 
     /// The drawable parts of the mesh that `node` (which has one) shows. With a skin they are in world space.
-    std::vector<Part> parts_of(const JsonValue& node);
+    const std::vector<Part>& parts_of(const JsonValue& node);
 
 private:
+    std::vector<Part> read_parts(const JsonValue& node);
     std::optional<uint32_t> mesh_of(const JsonValue& primitive, const std::vector<float>& weights,
                                     const std::optional<JsonValue>& skin, const std::string& name);
     const std::vector<Transform>& joints_of(const JsonValue& skin);
@@ -42,6 +43,7 @@ private:
     Scene& scene_;
     bool geometry_only_;
     Messages& messages_;
+    std::map<std::string, std::vector<Part>> by_use_;        // what one node shows, another may show too
     std::map<std::string, std::optional<uint32_t>> by_data_; // nothing: not drawable
     std::map<uint32_t, std::vector<Transform>> joints_;      // by skin
 };

@@ -50,7 +50,7 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Messages& messages) {
     const auto place_mesh = [&](const JsonValue& node, const Transform& world_from_node) {
-        const std::vector<Meshes::Part> parts = meshes.parts_of(node);
+        const std::vector<Meshes::Part>& parts = meshes.parts_of(node);
         const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
         std::vector<Transform> world_from_local = {world_from_node};
         if (node.find("skin")) {
@@ -60,9 +60,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             for (Transform& m : world_from_local) m = compose(world_from_node, m);
         }
         const std::string name = node.string_or("name", "");
-        if (world_from_local.size() > 1) {
-            buffers.charge(world_from_local.size() * parts.size() * sizeof(Instance), node);
-        }
+        buffers.charge(world_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : world_from_local) {
             for (const Meshes::Part& part : parts) scene.instances.push_back({name, part.mesh, part.material, m});
         }

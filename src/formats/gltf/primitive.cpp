@@ -50,15 +50,10 @@ private:
 };
 
 std::vector<Vec4> read_colors(const Accessor& accessor) {
+    if (accessor.element_type() == ElementType::Vec4) return accessor.read_vec4();
     std::vector<Vec4> colors;
-    if (accessor.element_type() == ElementType::Vec4) {
-        colors = accessor.read_vec4();
-    } else {
-        for (const Vec3 rgb : accessor.read_vec3()) colors.push_back({rgb.x, rgb.y, rgb.z, 1});
-    }
-    for (Vec4& c : colors) {
-        c = {clamp(c.x, 0.0f, 1.0f), clamp(c.y, 0.0f, 1.0f), clamp(c.z, 0.0f, 1.0f), clamp(c.w, 0.0f, 1.0f)};
-    }
+    colors.reserve(accessor.count());
+    for (const Vec3 rgb : accessor.read_vec3()) colors.push_back({rgb.x, rgb.y, rgb.z, 1});
     return colors;
 }
 
@@ -73,9 +68,8 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     if (vertices == 0) return;
     if (const auto normals = reader.find("NORMAL", vertices, {ElementType::Vec3})) mesh.normals = normals->read_vec3();
     if (request.geometry_only) return;
-    if (const auto tangents = reader.find("TANGENT", vertices, {ElementType::Vec4})) {
-        mesh.tangents = tangents->read_vec4();
-    }
+    const auto tangents = reader.find("TANGENT", vertices, {ElementType::Vec4});
+    if (tangents && !mesh.normals.empty()) mesh.tangents = tangents->read_vec4(); // without normals they mean nothing
     if (const auto uv = reader.find("TEXCOORD_0", vertices, {ElementType::Vec2})) mesh.uv[0] = uv->read_vec2();
     if (const auto uv = reader.find("TEXCOORD_1", vertices, {ElementType::Vec2})) mesh.uv[1] = uv->read_vec2();
     if (const auto colors = reader.find("COLOR_0", vertices, {ElementType::Vec3, ElementType::Vec4})) {
@@ -128,18 +122,6 @@ std::vector<uint32_t> read_corners(const PrimitiveRequest& request, std::size_t 
     return corners;
 }
 
-bool has_direction(float squared_length) { return squared_length > 0 && is_finite(squared_length); }
-
-std::vector<Vec3> face_normals_at_vertices(const Mesh& mesh) {
-    std::vector<Vec3> sums(mesh.positions.size());
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const Vec3 a = mesh.positions[mesh.indices[i]];
-        const Vec3 twice_area = cross(mesh.positions[mesh.indices[i + 1]] - a, mesh.positions[mesh.indices[i + 2]] - a);
-        for (std::size_t k = 0; k < 3; ++k) sums[mesh.indices[i + k]] += twice_area;
-    }
-    return sums;
-}
-
 } // namespace
 
 std::optional<Mesh> read_primitive(const PrimitiveRequest& request, Messages& messages) {
@@ -170,27 +152,6 @@ std::optional<Mesh> read_primitive(const PrimitiveRequest& request, Messages& me
         return std::nullopt;
     }
     return mesh;
-}
-
-void finish_normals(Mesh& mesh) {
-    const auto is_good = [](Vec3 n) { return has_direction(length_squared(n)); };
-    if (!std::all_of(mesh.normals.begin(), mesh.normals.end(), is_good)) {
-        const std::vector<Vec3> from_faces = face_normals_at_vertices(mesh);
-        for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-            if (!is_good(mesh.normals[i])) mesh.normals[i] = from_faces[i];
-            if (!is_good(mesh.normals[i])) mesh.normals[i] = {0, 0, 1}; // no face with an area uses this vertex
-        }
-    }
-    for (Vec3& n : mesh.normals) n = normalize(n);
-
-    const auto xyz = [](const Vec4& t) { return Vec3{t.x, t.y, t.z}; };
-    if (!std::all_of(mesh.tangents.begin(), mesh.tangents.end(), [&](const Vec4& t) { return is_good(xyz(t)); })) {
-        mesh.tangents.clear();
-    }
-    for (Vec4& t : mesh.tangents) {
-        const Vec3 unit = normalize(xyz(t));
-        t = {unit.x, unit.y, unit.z, t.w < 0 ? -1.0f : 1.0f};
-    }
 }
 
 } // namespace pertev::gltf

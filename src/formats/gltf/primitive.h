@@ -23,11 +23,7 @@ struct PrimitiveRequest {
 };
 
 /// Nothing, after a warning, where the primitive draws no triangle: points, lines, no positions. Normals and tangents
-/// may have any length until finish_normals has seen them.
+/// are as the file and the morph targets give them; validate() brings them to unit length.
 std::optional<Mesh> read_primitive(const PrimitiveRequest& request, Messages& messages);
-
-/// Brings normals and tangents to unit length. A normal without direction becomes the mean of the faces around; if any
-/// tangent has none, all are dropped, and the renderer derives them from the texture coordinates.
-void finish_normals(Mesh& mesh);
 
 } // namespace pertev::gltf

@@ -95,7 +95,10 @@ int32_t Textures::add_image(const JsonValue& image) {
     const std::string name =
         fmt::format("{}{}{}", image.place(), image.find("name") ? " " : "", image.string_or("name", ""));
     if (const std::optional<JsonValue> view = image.find("bufferView")) {
-        return loader_.add_bytes(name, buffers_.view(*view).bytes);
+        const std::span<const std::byte> bytes = buffers_.view(*view).bytes;
+        const auto [entry, is_new] = by_bytes_.try_emplace({bytes.data(), bytes.size()}, kNoImage);
+        if (is_new) entry->second = loader_.add_bytes(name, bytes);
+        return entry->second;
     }
     const std::optional<JsonValue> uri = image.find("uri");
     if (!uri) throw image.error("an image without data; expected \"uri\" or \"bufferView\"");

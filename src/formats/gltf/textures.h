@@ -4,6 +4,9 @@
 // KHR_texture_transform as a matrix. Images are handed to the TextureLoader, each once, when first used.
 
 #include <deque>
+#include <map>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/messages.h"
@@ -33,7 +36,8 @@ private:
     Buffers& buffers_;
     TextureLoader& loader_;
     Messages& messages_;
-    std::vector<std::optional<int32_t>> images_;  // by glTF image: the loader's index, once asked for
+    std::vector<std::optional<int32_t>> images_; // by glTF image: the loader's index, once asked for
+    std::map<std::pair<const std::byte*, std::size_t>, int32_t> by_bytes_; // several glTF images may share a view
     std::deque<std::vector<std::byte>> embedded_; // what data URIs held; the loader reads it later
 };
 

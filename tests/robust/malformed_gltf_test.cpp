@@ -1,0 +1,104 @@
+// Broken glTF files end in an Error that names the file, or in a scene, within seconds.
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <vector>
+
+#include "base/error.h"
+#include "base/write_file_atomically.h"
+#include "formats/read_gltf.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/options.h"
+
+namespace fs = std::filesystem;
+using namespace pertev;
+
+namespace {
+
+/// "" when a scene came out.
+std::string read_outcome(const fs::path& path) {
+    Messages messages;
+    try {
+        read_gltf(path, FileAccess(path, {}), {}, messages);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// A document that uses most of the format.
+std::string rich_document() {
+    test::GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+    builder.add("SCALAR", std::vector<uint16_t>{0, 1, 2, 3});
+    builder.add("VEC4", std::vector<uint8_t>{0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0});
+    builder.add("VEC4", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    builder.add("VEC2", std::vector<uint16_t>{0, 1, 2, 3, 4, 5, 6, 7}, ",\"normalized\":true");
+    builder.add_view(std::vector<uint8_t>{1, 3});
+    builder.add_view(std::vector<float>{1, 2, 3, 4, 5, 6});
+    builder.add_accessor(R"("componentType":5126,"type":"VEC3","count":4,"sparse":{"count":2,"indices":)"
+                         R"({"bufferView":5,"componentType":5121},"values":{"bufferView":6}})");
+    return builder.json(
+        R"("extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot",)"
+        R"("spot":{"innerConeAngle":0.1}}]}},"meshes":[{"weights":[1],"primitives":[{"mode":5,"indices":1,"material":0,)"
+        R"("attributes":{"POSITION":0,"TEXCOORD_0":4,"JOINTS_0":2,"WEIGHTS_0":3},"targets":[{"POSITION":5}]}]}],)"
+        R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":)"
+        R"({"rotation":1}}}},"alphaMode":"MASK"}],"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],)"
+        R"("images":[{"bufferView":4}],"skins":[{"joints":[1,2]}],"cameras":[{"type":"perspective","perspective":)"
+        R"({"yfov":1}}],"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{"children":[2],)"
+        R"("extensions":{"KHR_lights_punctual":{"light":0}}},{"camera":0,"rotation":[0,0,0,1],"scale":[1,2,3]}])");
+}
+
+} // namespace
+
+TEST_CASE("every public malformed glTF file ends in an Error that names it, or in a scene, within 5 s") {
+    const auto folder = test::test_scene("malformed/gltf");
+    if (!folder) return;
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(*folder)) {
+        const fs::path path = entry.path();
+        if (path.extension() != ".gltf" && path.extension() != ".glb") continue;
+        CAPTURE(path.string());
+        const auto start = std::chrono::steady_clock::now();
+        const std::string outcome = read_outcome(path);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        MESSAGE(path.filename().string() << ": " << (outcome.empty() ? "a scene" : outcome));
+        if (!outcome.empty()) CHECK(outcome.find(path.filename().string()) != std::string::npos);
+        CHECK(seconds.count() < 5);
+        ++files;
+    }
+    CHECK(files >= 20);
+}
+
+TEST_CASE("no change of one number of a document crashes the reader") {
+    const std::string good = rich_document();
+    const fs::path path = test::scratch_folder() / "model.gltf";
+    const auto outcome_of = [&](const std::string& text) {
+        write_file_atomically(path, std::as_bytes(std::span(text)));
+        return read_outcome(path);
+    };
+    REQUIRE(outcome_of(good).empty());
+    const std::vector<std::string> others = {"-1",    "7",  "4294967295", "9007199254740991", "1e300", "1e999", "null",
+                                             "\"x\"", "[]", "{}"};
+    int refused = 0;
+    for (std::size_t at = 1; at < good.size(); ++at) {
+        const bool is_number =
+            good[at] >= '0' && good[at] <= '9' && (good[at - 1] == ':' || good[at - 1] == '[' || good[at - 1] == ',');
+        if (!is_number) continue;
+        const std::size_t end = good.find_first_not_of("0123456789.", at);
+        for (const std::string& other : others) {
+            refused += outcome_of(good.substr(0, at) + other + good.substr(end)).empty() ? 0 : 1;
+        }
+    }
+    CHECK(refused > 300); // most of these changes cannot be right
+}
+
+TEST_CASE("a document cut off anywhere is an Error") {
+    const std::string good = rich_document();
+    const fs::path path = test::scratch_folder() / "model.gltf";
+    for (std::size_t size = 0; size < good.size(); size += 31) {
+        write_file_atomically(path, std::as_bytes(std::span(good).first(size)));
+        CHECK(!read_outcome(path).empty());
+    }
+}

@@ -1,0 +1,216 @@
+// What is wrong with a glTF file is said with the file, the place and what would be right.
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "base/write_file_atomically.h"
+#include "formats/gltf/uri.h"
+#include "formats/read_gltf.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+
+namespace {
+
+std::string document(const std::string& members) { return R"({"asset":{"version":"2.0"},)" + members + "}"; }
+
+/// A primitive over accessor 0, which has these members, in a buffer of 36 bytes; index accessor 1.
+std::string with_accessor(const std::string& members, const std::string& attributes = R"("POSITION":0)") {
+    return document(
+        R"("buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],)"
+        R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":0,"byteLength":36,)"
+        R"("byteStride":8}],"accessors":[{)" +
+        members +
+        R"(},{"bufferView":0,"componentType":5121,"type":"SCALAR","count":36}],)"
+        R"("meshes":[{"primitives":[{"attributes":{)" +
+        attributes + R"(}}]}],"nodes":[{"mesh":0}])");
+}
+
+std::string glb_error(std::vector<std::byte> bytes) {
+    const auto path = test::scratch_folder() / "model.glb";
+    write_file_atomically(path, bytes);
+    Messages messages;
+    try {
+        read_gltf(path, FileAccess(path, {}), {}, messages);
+    } catch (const Error& error) {
+        CHECK(error.code() == ErrorCode::BadInput);
+        const std::string text = error.what();
+        return text.substr(text.find("model.glb"));
+    }
+    return "";
+}
+
+} // namespace
+
+TEST_CASE("a required extension that is not supported is an error that names it") {
+    CHECK(test::gltf_error(
+              document(R"("extensionsUsed":["KHR_x"],"extensionsRequired":["KHR_texture_transform","KHR_x"])")) ==
+          "model.gltf: /extensionsRequired/1: the file requires the extension KHR_x, which is not supported; export it "
+          "without that extension");
+}
+
+TEST_CASE("an extension that is used but not required is a warning that names it") {
+    Messages messages;
+    test::read_gltf_text(document(R"("extensionsUsed":["KHR_lights_punctual","KHR_materials_sheen"])"), messages);
+    REQUIRE(messages.all().size() == 1);
+    CHECK(test::has_warning(messages, {"model.gltf", "KHR_materials_sheen"}));
+    CHECK(!test::has_warning(messages, {"KHR_lights_punctual"}));
+}
+
+TEST_CASE("what is not glTF 2 is refused") {
+    CHECK(test::gltf_error("{]").starts_with("model.gltf: not valid JSON: "));
+    CHECK(test::gltf_error("") == "model.gltf: the file is empty; expected a glTF 2.0 document");
+    CHECK(test::gltf_error("[]") == "model.gltf: /: an array; expected an object");
+    CHECK(test::gltf_error("{}") == "model.gltf: /: \"asset\" is missing; it is required here");
+    CHECK(test::gltf_error(R"({"asset":{"version":"1.0"}})") ==
+          "model.gltf: /asset/version: glTF 1.0; this reader knows 2.0");
+    CHECK(test::gltf_error(R"({"asset":{"version":"2.1","minVersion":"2.1"}})") ==
+          "model.gltf: /asset/minVersion: the file needs glTF 2.1; this reader knows 2.0");
+    CHECK(test::gltf_error(R"({"asset":{"version":"two"}})") ==
+          "model.gltf: /asset/version: \"two\" is not a version; expected \"2.0\"");
+    CHECK(test::gltf_error(document("\"extras\":" + std::string(2000, '[') + std::string(2000, ']'))) ==
+          "model.gltf: JSON nested more than 1024 levels deep; expected a glTF 2.0 document");
+}
+
+TEST_CASE("a damaged GLB container is an error with the byte where it stops making sense") {
+    test::GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const std::vector<std::byte> good = builder.glb(R"("nodes":[])");
+    CHECK(glb_error(good).empty());
+    for (std::size_t size = 0; size < good.size(); ++size) {
+        CAPTURE(size);
+        CHECK(!glb_error({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}).empty());
+    }
+    const auto with_byte = [&](std::size_t at, int value) {
+        std::vector<std::byte> bad = good;
+        bad[at] = static_cast<std::byte>(value);
+        return glb_error(bad);
+    };
+    CHECK(with_byte(0, 'x') == "model.glb: byte 0: expected the letters glTF, with which a GLB file starts");
+    CHECK(with_byte(4, 1) == "model.glb: byte 4: GLB container version 1; expected 2");
+    CHECK(with_byte(15, 0x7f).starts_with("model.glb: byte 12: the chunk says "));
+    CHECK(with_byte(16, 'X') == "model.glb: byte 12: the first chunk of a GLB file must be JSON");
+}
+
+TEST_CASE("an accessor that leaves its data is an error before anything is allocated") {
+    const auto read = [](const std::string& members) { return test::gltf_error(with_accessor(members)); };
+    const std::string vec3 = R"("type":"VEC3","componentType":5126,)";
+    CHECK(read("\"bufferView\":0," + vec3 + "\"count\":3").empty());
+    CHECK(read("\"bufferView\":0," + vec3 + "\"count\":4") ==
+          "model.gltf: /accessors/0: 4 elements of 12 bytes, 12 apart, from byte 0 leave the buffer view, which has 36 "
+          "bytes");
+    CHECK(read("\"bufferView\":0,\"byteOffset\":4," + vec3 + "\"count\":3").starts_with("model.gltf: /accessors/0: "));
+    CHECK(read("\"bufferView\":0,\"byteOffset\":9007199254740992," + vec3 + "\"count\":1")
+              .starts_with("model.gltf: /accessors/0: 1 elements of 12 bytes"));
+    // 9007199254740992 * 12 wraps round in 64 bits if multiplied often enough; the check must not multiply.
+    CHECK(read("\"bufferView\":0," + vec3 + "\"count\":9007199254740992").starts_with("model.gltf: /accessors/0: "));
+    CHECK(read("\"bufferView\":0," + vec3 + "\"count\":4294967295").starts_with("model.gltf: /accessors/0: "));
+    CHECK(read(vec3 + "\"count\":4000000000").find("4000000000 elements without a buffer view") != std::string::npos);
+    CHECK(read("\"bufferView\":1," + vec3 + "\"count\":1") ==
+          "model.gltf: /accessors/0: elements of 12 bytes lie 8 bytes apart");
+    CHECK(read("\"bufferView\":2," + vec3 + "\"count\":1") ==
+          "model.gltf: /accessors/0/bufferView: 2; expected an index into \"bufferViews\", which has 2 elements");
+    CHECK(read("\"bufferView\":0," + vec3 + "\"count\":-1") ==
+          "model.gltf: /accessors/0/count: -1; expected a whole number from 0 to 2^53");
+    CHECK(read("\"bufferView\":0," + vec3 + "\"count\":1.5") ==
+          "model.gltf: /accessors/0/count: 1.5; expected a whole number from 0 to 2^53");
+    CHECK(read("\"bufferView\":0," + vec3 + "\"count\":3.0").empty());
+    CHECK(read(R"("bufferView":0,"componentType":5130,"type":"VEC3","count":1)") ==
+          "model.gltf: /accessors/0/componentType: component type 5130; expected 5120, 5121, 5122, 5123, 5125 or 5126");
+}
+
+TEST_CASE("an attribute of the wrong type or length is an error with the attribute's pointer") {
+    const std::string vec3 = R"("bufferView":0,"type":"VEC3","componentType":5126,"count":3)";
+    const std::string place = "model.gltf: /meshes/0/primitives/0/attributes/";
+    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":1)")) ==
+          place + "POSITION: the accessor's type is SCALAR; expected VEC3");
+    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":0,"COLOR_0":1)")) ==
+          place + "COLOR_0: the accessor's type is SCALAR; expected VEC3 or VEC4");
+    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":7)")) ==
+          place + "POSITION: 7; expected an index into \"accessors\", which has 2 elements");
+    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":"0")")) ==
+          place + "POSITION: a string; expected a whole number");
+}
+
+TEST_CASE("an index past the vertices is an error with its place and value") {
+    test::GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("SCALAR", std::vector<uint32_t>{0, 1, 4294967295u});
+    CHECK(test::gltf_error(builder.json(
+              R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"nodes":[{"mesh":0}])")) ==
+          "model.gltf: /meshes/0/primitives/0/indices: index 2 is 4294967295; expected less than 3, the number of "
+          "vertices");
+}
+
+TEST_CASE("buffers that are missing, short, badly encoded or elsewhere are errors") {
+    const auto read = [](const std::string& members) {
+        return test::gltf_error(document("\"buffers\":[{" + members + "}]"));
+    };
+    CHECK(read(R"("byteLength":4,"uri":"data:;base64,AAAA")") ==
+          "model.gltf: /buffers/0: byteLength is 4, but there are only 3 bytes");
+    CHECK(read(R"("byteLength":3,"uri":"data:;base64,A*AA")").starts_with("model.gltf: /buffers/0/uri: "));
+    CHECK(read(R"("byteLength":3,"uri":"none.bin")").find("none.bin: cannot read: ") != std::string::npos);
+    CHECK(read(R"("byteLength":3,"uri":"../../etc/passwd")").find("--allow-path") != std::string::npos);
+    CHECK(read(R"("byteLength":3,"uri":"%2e%2e/%2e%2e/etc/passwd")").find("--allow-path") != std::string::npos);
+    CHECK(read(R"("byteLength":3,"uri":"http://example.org/a.bin")") ==
+          "model.gltf: /buffers/0/uri: \"http://example.org/a.bin\"; expected a relative path or a data URI");
+    CHECK(test::gltf_error(with_accessor(R"("bufferView":0,"componentType":5126,"type":"VEC3","count":3)")).empty());
+    CHECK(
+        test::gltf_error(document(
+            R"("buffers":[{"byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,)"
+            R"("componentType":5126,"type":"VEC3","count":3}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+            R"("nodes":[{"mesh":0}])")) ==
+        "model.gltf: /bufferViews/0/buffer: this buffer has no data: neither a uri nor the binary chunk of a .glb");
+}
+
+TEST_CASE("a small file that multiplies itself without bound is refused") {
+    test::GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC3", std::vector<float>(3 * 20'000));
+    std::string nodes = "{\"mesh\":0}";
+    for (int i = 0; i < 2'000; ++i) {
+        nodes += R"(,{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}})";
+    }
+    const std::string error = test::gltf_error(
+        builder.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[)" + nodes + "]"));
+    CHECK(error.find("times the size of its files") != std::string::npos);
+}
+
+TEST_CASE("a buffer file that many buffers name is read once") {
+    const auto folder = test::scratch_folder();
+    write_file_atomically(folder / "big.bin", std::vector<std::byte>(std::size_t(8) << 20));
+    std::string buffers = R"({"byteLength":4,"uri":"big.bin"})";
+    for (int i = 0; i < 20'000; ++i) buffers += R"(,{"byteLength":4,"uri":"./big.bin"})"; // 160 GB if read each time
+    const std::string text = document("\"buffers\":[" + buffers + "]");
+    write_file_atomically(folder / "model.gltf", std::as_bytes(std::span(text)));
+    Messages messages;
+    CHECK(read_gltf(folder / "model.gltf", FileAccess(folder / "model.gltf", {}), {}, messages).meshes.empty());
+}
+
+TEST_CASE("base64 and percent encoding are undone exactly or refused") {
+    const auto decoded = [](const std::string& text) {
+        std::string out;
+        const auto bytes = gltf::decode_data_uri("data:text/plain;base64," + text);
+        if (!bytes) return std::string("refused");
+        for (const std::byte b : *bytes) out += static_cast<char>(b);
+        return out;
+    };
+    CHECK(decoded("") == "");
+    CHECK(decoded("Zg==") == "f");
+    CHECK(decoded("Zm8=") == "fo");
+    CHECK(decoded("Zm9v") == "foo");
+    CHECK(decoded("Zm9vYg") == "foob"); // padding left out
+    CHECK(decoded("Zm9vY") == "refused");
+    CHECK(decoded("Zm=v") == "refused");
+    CHECK(decoded("Zm9v\n") == "refused");
+    CHECK(!gltf::decode_data_uri("data:text/plain,foo"));
+    CHECK(!gltf::decode_data_uri("data:text/plain;base64"));
+    CHECK(gltf::decode_path_uri("a%20b/%C3%A9.png") == "a b/\xc3\xa9.png");
+    CHECK(!gltf::decode_path_uri("a%2"));
+    CHECK(!gltf::decode_path_uri("a%zz"));
+    CHECK(!gltf::decode_path_uri("a%00b"));
+    CHECK(!gltf::decode_path_uri("file:///a"));
+    CHECK(!gltf::decode_path_uri("C:/a"));
+    CHECK(gltf::decode_path_uri("1a/b:c.png") == "1a/b:c.png");
+}

@@ -1,0 +1,218 @@
+// Where glTF nodes put things: transforms, instancing, cameras, lights, skins, morph targets, scenes.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/support/gltf_builder.h"
+
+using namespace pertev;
+using test::GltfBuilder;
+
+namespace {
+
+/// A triangle as mesh 0, and these further members.
+std::string with_triangle(const std::string& members) {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    return builder.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" + members);
+}
+
+std::string only_nodes(const std::string& members) { return R"({"asset":{"version":"2.0"},)" + members + "}"; }
+
+bool close(Vec3 a, Vec3 b) { return length(a - b) < 1e-6f; }
+
+const std::string kQuarterTurnAboutZ = R"("rotation":[0,0,0.70710678,0.70710678])";
+
+} // namespace
+
+TEST_CASE("a node's place is its parents' places times translation, rotation, scale, in this order") {
+    const Scene scene = test::read_gltf_text(with_triangle(
+        R"("nodes":[{"name":"parent","translation":[10,0,0],)" + kQuarterTurnAboutZ + R"(,"children":[1]},)" +
+        R"({"name":"child","mesh":0,"translation":[0,5,0],)" + kQuarterTurnAboutZ + R"(,"scale":[2,3,4]}])"));
+    REQUIRE(scene.instances.size() == 1);
+    CHECK(scene.instances[0].name == "child");
+    const Transform& m = scene.instances[0].world_from_local;
+    // Child: scaled, turned by 90 degrees, moved up by 5. Parent: turned again, moved right by 10.
+    CHECK(close(transform_point(m, {0, 0, 0}), {5, 0, 0}));
+    CHECK(close(transform_point(m, {1, 0, 0}), {3, 0, 0}));
+    CHECK(close(transform_point(m, {0, 1, 0}), {5, -3, 0}));
+    CHECK(close(transform_point(m, {0, 0, 1}), {5, 0, 4}));
+}
+
+TEST_CASE("a node's matrix is read column by column") {
+    const Scene scene = test::read_gltf_text(
+        with_triangle(R"("nodes":[{"mesh":0,"matrix":[1,2,3,0, 4,5,6,0, 7,8,10,0, 11,12,13,1]}])"));
+    CHECK(scene.instances.at(0).world_from_local == Transform{{1, 4, 7}, {2, 5, 8}, {3, 6, 10}, {11, 12, 13}});
+}
+
+TEST_CASE("several nodes that show one mesh share it") {
+    const Scene scene = test::read_gltf_text(
+        with_triangle(R"("nodes":[{"mesh":0},{"mesh":0,"translation":[1,0,0]},{"mesh":0,"translation":[2,0,0]}])"));
+    CHECK(scene.meshes.size() == 1);
+    REQUIRE(scene.instances.size() == 3);
+    CHECK(scene.instances[2].world_from_local.translation == Vec3{2, 0, 0});
+}
+
+TEST_CASE("EXT_mesh_gpu_instancing places one instance for each element, within the node") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC3", std::vector<float>{1, 0, 0, 2, 0, 0});
+    builder.add("VEC4", std::vector<int16_t>{0, 0, 0, 32767, 0, 0, 32767, 0}, ",\"normalized\":true");
+    builder.add("VEC3", std::vector<float>{1, 1, 1, 5, 6, 7});
+    const Scene scene = test::read_gltf_text(builder.json(
+        R"("extensionsRequired":["EXT_mesh_gpu_instancing"],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+        R"("nodes":[{"mesh":0,"translation":[0,10,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":)"
+        R"({"TRANSLATION":1,"ROTATION":2,"SCALE":3}}}}])"));
+    CHECK(scene.meshes.size() == 1);
+    REQUIRE(scene.instances.size() == 2);
+    CHECK(scene.instances[0].world_from_local == Transform{.translation = {1, 10, 0}});
+    CHECK(close(transform_point(scene.instances[1].world_from_local, {1, 1, 1}), {2 - 5, 10 - 6, 7}));
+}
+
+TEST_CASE("the scene property chooses what is shown, and without scenes all of it is") {
+    const std::string nodes = R"("nodes":[{"mesh":0,"name":"a"},{"mesh":0,"name":"b"},{"mesh":0,"name":"c"}])";
+    const std::string scenes = R"("scenes":[{"nodes":[0]},{"nodes":[2,1]}],)";
+    CHECK(test::read_gltf_text(with_triangle(nodes)).instances.size() == 3);
+    CHECK(test::read_gltf_text(with_triangle(scenes + nodes)).instances.size() == 1);
+    Messages messages;
+    const Scene second = test::read_gltf_text(with_triangle("\"scene\":1," + scenes + nodes), messages);
+    REQUIRE(second.instances.size() == 2);
+    CHECK(second.instances[0].name == "c");
+    REQUIRE(messages.all().size() == 1);
+    CHECK(!messages.all()[0].is_warning);
+}
+
+TEST_CASE("cycles, second parents and children listed as roots are errors that name the node") {
+    CHECK(test::gltf_error(only_nodes(R"("nodes":[{"children":[1]},{"children":[0]}])")) ==
+          "model.gltf: /nodes/0: the node is its own ancestor; expected a tree");
+    CHECK(test::gltf_error(only_nodes(R"("nodes":[{"children":[0]}])")) ==
+          "model.gltf: /nodes/0: the node is its own ancestor; expected a tree");
+    CHECK(test::gltf_error(only_nodes(R"("nodes":[{"children":[2]},{"children":[2]},{}])")) ==
+          "model.gltf: /nodes/1/children/0: node 2 is already a child of node 0; expected one parent");
+    CHECK(test::gltf_error(only_nodes(R"("scenes":[{"nodes":[1]}],"nodes":[{"children":[1]},{}])")) ==
+          "model.gltf: /scenes/0/nodes/0: node 1 is a child of another node; expected each root once");
+}
+
+TEST_CASE("a chain of two hundred thousand nodes is read without recursion") {
+    constexpr int length = 200'000;
+    std::string nodes = R"("nodes":[{"mesh":0})";
+    for (int i = 1; i < length; ++i) nodes += R"(,{"children":[)" + std::to_string(i - 1) + "]}";
+    CHECK(test::read_gltf_text(with_triangle(nodes + "]")).instances.size() == 1);
+}
+
+TEST_CASE("cameras keep their angle, height and aspect, and lose their node's scale") {
+    const Scene scene = test::read_gltf_text(only_nodes(
+        R"("cameras":[{"name":"p","type":"perspective","perspective":{"yfov":0.75,"aspectRatio":1.5,"znear":0.1}},)"
+        R"({"type":"orthographic","orthographic":{"xmag":3,"ymag":2,"znear":0,"zfar":9}}],)"
+        R"("nodes":[{"camera":0,"translation":[1,2,3],"scale":[2,-3,4],)" +
+        kQuarterTurnAboutZ + R"(},{"camera":1,"name":"o"}])"));
+    REQUIRE(scene.cameras.size() == 2);
+    const Camera &perspective = scene.cameras[0], &orthographic = scene.cameras[1];
+    CHECK(perspective.name == "p");
+    CHECK(perspective.projection == Projection::Perspective);
+    CHECK(perspective.fov_y == 0.75f);
+    CHECK(perspective.aspect == 1.5f);
+    CHECK(perspective.world_from_camera.translation == Vec3{1, 2, 3});
+    CHECK(close(column(perspective.world_from_camera, 1), {1, 0, 0})); // +y turned to -x, mirrored by the scale
+    CHECK(close(column(perspective.world_from_camera, 2), {0, 0, 1}));
+    CHECK(determinant(perspective.world_from_camera) == doctest::Approx(1));
+    CHECK(orthographic.name == "o");
+    CHECK(orthographic.projection == Projection::Orthographic);
+    CHECK(orthographic.ortho_height == 4.0f);
+    CHECK(orthographic.aspect == 1.5f);
+    CHECK(orthographic.world_from_camera == Transform());
+}
+
+TEST_CASE("punctual lights shine along their node's -z with candela and lux taken one for one") {
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        only_nodes(
+            R"("extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[)"
+            R"({"type":"point","color":[1,0.5,0.25],"intensity":8,"range":7},)"
+            R"({"name":"s","type":"spot","spot":{"innerConeAngle":0.5,"outerConeAngle":1}},)"
+            R"({"type":"directional","intensity":3},{"type":"spot"}]}},"nodes":[)"
+            R"({"name":"p","translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":0}}},)"
+            R"({"rotation":[0.70710678,0,0,0.70710678],"scale":[5,5,5],"extensions":{"KHR_lights_punctual":{"light":1}}},)"
+            R"({"extensions":{"KHR_lights_punctual":{"light":2}}},{"extensions":{"KHR_lights_punctual":{"light":3}}}])"),
+        messages);
+    CHECK(messages.all().empty());
+    REQUIRE(scene.lights.size() == 4);
+    CHECK(scene.lights[0].name == "p");
+    CHECK(scene.lights[0].kind == LightKind::Point);
+    CHECK(scene.lights[0].position == Vec3{1, 2, 3});
+    CHECK(scene.lights[0].intensity == Rgb{8, 4, 2});
+    CHECK(scene.lights[0].range == 7.0f);
+    CHECK(scene.lights[1].name == "s");
+    CHECK(scene.lights[1].kind == LightKind::Spot);
+    CHECK(close(scene.lights[1].direction, {0, 1, 0})); // -z turned by +90 degrees about x
+    CHECK(scene.lights[1].intensity == Rgb{1, 1, 1});
+    CHECK(scene.lights[1].cos_inner == doctest::Approx(std::cos(0.5)).epsilon(1e-6));
+    CHECK(scene.lights[1].cos_outer == doctest::Approx(std::cos(1.0)).epsilon(1e-6));
+    CHECK(scene.lights[2].kind == LightKind::Directional);
+    CHECK(scene.lights[2].direction == Vec3{0, 0, -1});
+    CHECK(scene.lights[2].intensity == Rgb{3, 3, 3});
+    CHECK(scene.lights[3].cos_inner == 1.0f);
+    CHECK(scene.lights[3].cos_outer == doctest::Approx(std::sqrt(0.5)).epsilon(1e-6));
+}
+
+TEST_CASE("a skinned mesh stands where its joints put it and its own node does not move it") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC3", std::vector<float>{0, 0, 1, 1, 0, 0, 0, 0, 1});
+    builder.add("VEC4", std::vector<uint8_t>{0, 1, 0, 0, 1, 0, 0, 9, 1, 0, 0, 0}); // the 9 has no weight
+    builder.add("VEC4", std::vector<float>{0.5f, 0.5f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    builder.add("MAT4", std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -7, 0, 0, 1, //
+                                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1});
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        builder.json(
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"JOINTS_0":2,"WEIGHTS_0":3}}]}],)"
+            R"("skins":[{"joints":[1,2],"inverseBindMatrices":4}],"animations":[],"nodes":[)"
+            R"({"mesh":0,"skin":0,"translation":[1000,0,0]},{"translation":[7,2,0]},{"translation":[0,0,4],)" +
+            kQuarterTurnAboutZ + "}]"),
+        messages);
+    const Mesh& mesh = scene.meshes.at(0);
+    CHECK(scene.instances.at(0).world_from_local == Transform());
+    // Joint 0 with its inverse bind matrix lifts by 2 in y; joint 1 turns about z and lifts by 4 in z.
+    CHECK(close(mesh.positions[0], {0, 1, 2}));
+    CHECK(close(mesh.positions[1], {0, 1, 4}));
+    CHECK(close(mesh.positions[2], {-1, 0, 4}));
+    CHECK(close(mesh.normals[1], {0, 1, 0}));
+    CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2});
+    CHECK(test::has_warning(messages, {"skinned", "rest pose"}));
+    CHECK(test::has_warning(messages, {"animations are not played"}));
+}
+
+TEST_CASE("a joint that the skin does not have is an error with the attribute's pointer") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC4", std::vector<uint16_t>{0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0});
+    builder.add("VEC4", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    CHECK(test::gltf_error(
+              builder.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}}]}],)"
+                           R"("skins":[{"joints":[1]}],"nodes":[{"mesh":0,"skin":0},{}])")) ==
+          "model.gltf: /meshes/0/primitives/0/attributes/JOINTS_0: vertex 2 has joint 2; expected less than 1, the "
+          "number of the skin's joints");
+}
+
+TEST_CASE("morph targets are added with the mesh's weights, or the node's where it has some") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC3", std::vector<float>{0, 0, 8, 0, 0, 0, 0, 0, 0});
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 0, 0, 16, 0, 0, 0});
+    builder.add("VEC3", std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1});
+    builder.add("VEC3", std::vector<float>{4, 0, -4, 0, 0, 0, 0, 0, 0});
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        builder.json(R"("meshes":[{"weights":[0.25,0],"primitives":[{"attributes":{"POSITION":0,"NORMAL":3},)"
+                     R"("targets":[{"POSITION":1,"NORMAL":4},{"POSITION":2}]}]}],)"
+                     R"("nodes":[{"mesh":0},{"mesh":0,"weights":[0,0.5]},{"mesh":0}])"),
+        messages);
+    REQUIRE(scene.meshes.size() == 2);
+    CHECK(scene.meshes[0].positions == std::vector<Vec3>{{0, 0, 2}, {1, 0, 0}, {0, 1, 0}});
+    CHECK(scene.meshes[0].normals == std::vector<Vec3>{{1, 0, 0}, {0, 0, 1}, {0, 0, 1}});
+    CHECK(scene.meshes[1].positions == std::vector<Vec3>{{0, 0, 0}, {1, 0, 8}, {0, 1, 0}});
+    CHECK(scene.instances[0].mesh == scene.instances[2].mesh);
+    CHECK(test::has_warning(messages, {"morph targets", "default weights"}));
+}
