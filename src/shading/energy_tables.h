@@ -33,7 +33,9 @@ HD inline Cell make_cell(float x, int nodes) {
 
 HD inline Cell mu_cell(float mu, float alpha) {
     const float root = sqrt(mu);
-    return make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
+    Cell cell = make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
+    if (cell.node == 0) cell.fraction *= cell.fraction; // there the curves are linear in mu
+    return cell;
 }
 HD inline Cell roughness_cell(float alpha, int nodes) {
     constexpr float lowest = 0.031622776f; // sqrt(kAlphaMin)
@@ -78,7 +80,7 @@ HD inline float metal_schlick(float mu, float alpha) {
     using namespace energy_table;
     const float beyond = along([](int i) { return metal_schlick_at(i); }, 0, roughness_cell(alpha, kRoughnessNodes),
                                mu_cell(mu, alpha), kMuNodes);
-    return schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f);
+    return max(schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f), 0.0f);
 }
 /// 2 int (1 - metal_lost(mu)) metal_schlick(mu) mu dmu
 HD inline float metal_average_schlick(float alpha) {
