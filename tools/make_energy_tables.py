@@ -158,6 +158,7 @@ def interpolate(table, position):
 _am, _aw = np.polynomial.legendre.leggauss(400)
 _am, _aw = ((_am + 1) / 2) ** 2, _aw / 2 * (_am + 1)  # mu = x^2: dmu = 2 x dx
 AVERAGE_WEIGHT = 2 * _am * _aw
+AVERAGE_R = nodes(AVERAGE_NODES) ** 2  # dense where roughness is least: there the averages change the fastest
 
 
 def average(row, alpha):
@@ -194,7 +195,7 @@ def main():
     schlick_part = quantised(1 - lowered(schlick, tabulate(schlick, (R_NODES, MU_NODES))))
 
     average_lost, average_schlick = [], []
-    for r in nodes(AVERAGE_NODES):
+    for r in AVERAGE_R:
         row = interpolate(lost / 65535, [r])
         average_lost.append(average(row, alpha_at(r)) / alpha_at(r))
         x = x_at(_am, alpha_at(r))
@@ -211,7 +212,7 @@ def main():
         table = quantised(lowered(value, tabulate(value, (ETA_NODES, R_NODES, MU_NODES))))
         glass.append(table)
         average_glass.append([[average(interpolate(table[q] / 65535, [r]), alpha_at(r)) / alpha_at(r)
-                               for r in nodes(AVERAGE_NODES)] for q in range(ETA_NODES)])
+                               for r in AVERAGE_R] for q in range(ETA_NODES)])
 
     flat = lambda t: np.asarray(t).reshape(-1)
     header = f"""#pragma once

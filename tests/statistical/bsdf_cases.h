@@ -53,15 +53,13 @@ inline SamplePoint random_point(uint32_t i, uint32_t seed) {
     return {unit_interval(h.x), {unit_interval(h.y), unit_interval(h.z)}};
 }
 
-/// Point i of a rank-1 sequence in three dimensions (powers of the inverse of the root of x^4 = x + 1): the mean of
-/// a smooth function over n of them is off by about 1 / n.
-inline SamplePoint even_point(uint64_t i) {
-    const auto turn = [i](double a) {
-        const double x = 0.5 + a * static_cast<double>(i + 1);
-        return static_cast<float>(x - std::floor(x)) * 0x1.fffffep-1f;
-    };
-    const float lobe = turn(0.8191725133961645), x = turn(0.6710436067037893), y = turn(0.5497004779019703);
-    return {lobe, {x, y}};
+/// Point i of the Hammersley set of `count` points: means over it are off by little more than 1 / count.
+inline SamplePoint even_point(uint32_t i, uint32_t count) {
+    double thirds = 0, digit = 1.0 / 3;
+    for (uint32_t rest = i; rest != 0; rest /= 3, digit /= 3) thirds += digit * (rest % 3);
+    const double lobe = (i + 0.5) / count;
+    return {static_cast<float>(lobe) * 0x1.fffffep-1f,
+            {static_cast<float>(thirds) * 0x1.fffffep-1f, unit_interval(reverse_bits(i))}};
 }
 
 struct MeanWeight {
@@ -71,17 +69,17 @@ struct MeanWeight {
 };
 
 /// Mean of sample()'s weight over `count` even points: the light that a closed furnace of radiance 1 sends to wo.
-inline MeanWeight mean_weight(const Bsdf& bsdf, Vec3 wo, uint64_t count) {
+inline MeanWeight mean_weight(const Bsdf& bsdf, Vec3 wo, uint32_t count) {
     MeanWeight mean;
-    for (uint64_t i = 0; i < count; i++) {
-        const SamplePoint p = even_point(i);
+    for (uint32_t i = 0; i < count; i++) {
+        const SamplePoint p = even_point(i, count);
         const BsdfSample s = bsdf.sample(wo, p.lobe, p.u);
         if (!(s.pdf > 0)) continue;
         mean.r += static_cast<double>(s.weight.r);
         mean.g += static_cast<double>(s.weight.g);
         mean.b += static_cast<double>(s.weight.b);
     }
-    const double scale = 1.0 / static_cast<double>(count);
+    const double scale = 1.0 / count;
     return {scale * mean.r, scale * mean.g, scale * mean.b};
 }
 
