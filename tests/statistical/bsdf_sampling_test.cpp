@@ -83,7 +83,7 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
     report.chi_square.integral = total[3];
     if (total[3] > 1 + 1e-4) report.chi_square.p_value = 0;
     for (int c = 0; c < 3; c++) {
-        const double mean = sum[c] / samples, variance = squares[c] / samples - mean * mean;
+        const double mean = sum[c] / samples, variance = std::max(squares[c] / samples - mean * mean, 0.0);
         const double error = std::sqrt(variance / samples) + 2e-5; // the latter for the integration
         report.mean_deviations = std::max(report.mean_deviations, std::fabs(mean - total[c]) / error);
     }
