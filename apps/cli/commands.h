@@ -12,5 +12,6 @@ namespace pertev {
 void add_render_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
+void add_bench_command(CLI::App& app, int& status);
 
 } // namespace pertev

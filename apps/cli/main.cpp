@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     add_render_command(app, status);
     add_compare_command(app, status);
     add_info_command(app, status);
+    add_bench_command(app, status);
     const auto fail = [](ErrorCode code, const std::string& message) {
         fmt::print(stderr, "pertev: {}\n", message);
         return exit_status(code);

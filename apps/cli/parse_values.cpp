@@ -50,6 +50,12 @@ std::pair<uint32_t, uint32_t> parse_size(const std::string& flag, const std::str
                                                  flag, text, kMaxImageSide));
 }
 
+float parse_number(const std::string& flag, const std::string& text) {
+    const auto value = parse_whole<float>(text);
+    if (value && is_finite(*value)) return *value;
+    throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected a number", flag, text));
+}
+
 Vec3 parse_vec3(const std::string& flag, const std::string& text) {
     if (const auto value = three_numbers(text)) return *value;
     throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected three numbers X,Y,Z, such as 1,0.5,-2", flag, text));

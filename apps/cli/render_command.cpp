@@ -20,6 +20,7 @@
 #include "base/parallel_for.h"
 #include "base/version.h"
 #include "base/write_file_atomically.h"
+#include "image/auto_exposure.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_image.h"
@@ -35,8 +36,8 @@ struct RenderFlags {
     std::string size;
     uint32_t samples = 64;
     double time_s = 0;
-    std::string integrator = "path", sampler = "sobol", filter = "blackman-harris", device = "auto", tone_map = "srgb";
-    float filter_radius = 0, exposure = 0, clamp = 0;
+    std::string integrator = "path", sampler = "sobol", filter = "blackman-harris", device = "auto", tone_map = "srgb", exposure;
+    float filter_radius = 0, clamp = 0;
     uint32_t max_depth = 16, seed = 0;
     int threads = 0;
     std::vector<std::string> aovs;
@@ -136,7 +137,26 @@ std::string progress_detail(const RenderProgress& now) {
                        static_cast<double>(now.rays.total()) / now.seconds * 1e-6, left);
 }
 
+bool wants_auto_exposure(const RenderFlags& flags, bool default_light) {
+    return flags.exposure == "auto" || (flags.exposure.empty() && default_light);
+}
+
+/// Stops for PNG and JPEG.
+float exposure_of(const RenderFlags& flags, bool default_light, const Image& picture, Reporter& reporter) {
+    if (!wants_auto_exposure(flags, default_light)) {
+        return flags.exposure.empty() ? 0.0f : parse_number("--exposure", flags.exposure);
+    }
+    const float stops = auto_exposure_stops(picture);
+    const bool shows = std::ranges::any_of(flags.outputs, [](const std::string& output) {
+        const ImageFormat format = image_format_for(output);
+        return format == ImageFormat::Png || format == ImageFormat::Jpeg;
+    });
+    if (shows) reporter.say(fmt::format("note: exposed by {:+.2f} stops (--exposure {:.2f})", stops, stops));
+    return stops;
+}
+
 void check_flags(const RenderFlags& flags) {
+    if (!flags.exposure.empty() && flags.exposure != "auto") parse_number("--exposure", flags.exposure);
     bool any_exr = false;
     for (const std::string& output : flags.outputs) {
         any_exr = image_format_for(output) == ImageFormat::Exr || any_exr;
@@ -158,7 +178,8 @@ int render(const RenderFlags& flags) {
     const auto seconds = [&] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    const Scene scene = load_scene(flags.scene, messages);
+    const LoadedScene loaded = load_scene(flags.scene, messages);
+    const Scene& scene = loaded.scene;
     const RenderSettings settings = settings_of(flags, scene);
     const Camera camera = choose_camera(flags.scene, scene, settings.width, settings.height, messages);
     const double load_s = seconds();
@@ -185,7 +206,7 @@ int render(const RenderFlags& flags) {
     const std::string hash = picture_hash(result.picture).hex();
     WriteImageOptions write;
     write.tone_map = *tone_map_named(flags.tone_map);
-    write.exposure_stops = flags.exposure;
+    write.exposure_stops = exposure_of(flags, loaded.default_light, result.picture, reporter);
     write.transparent = flags.transparent;
     const std::vector<ExrLayer> layers = layers_of(result);
     write.layers = layers;
@@ -224,7 +245,9 @@ void add_render_command(CLI::App& app, int& status) {
         ->group(group);
     verb.add_option("--tone-map", flags->tone_map, "of PNG and JPEG: srgb, agx, aces or neutral")
         ->check(CLI::IsMember({"srgb", "agx", "aces", "neutral"}))->capture_default_str()->group(group);
-    verb.add_option("--exposure", flags->exposure, "of PNG and JPEG: stops")->group(group);
+    verb.add_option("--exposure", flags->exposure,
+                    "of PNG and JPEG: stops, or auto (0; auto where the light was made up for lack of any)")
+        ->group(group);
     verb.add_flag("--transparent", flags->transparent, "keep how much of a pixel is covered as alpha")->group(group);
     verb.add_option("--aov", flags->aovs, "layers of an EXR: albedo normal depth position ids")
         ->delimiter(',')->check(CLI::IsMember(names_of(kAovs)))->group(group);

@@ -100,7 +100,7 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
         ->check(CLI::ExistingDirectory);
 }
 
-Scene load_scene(const SceneOptions& options, Messages& messages) {
+LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
     ReadOptions read;
     read.allowed_paths = options.allowed_paths;
     Scene scene = builtin_scene(options.scene) ? read_builtin_scene(options.scene, messages)
@@ -111,8 +111,11 @@ Scene load_scene(const SceneOptions& options, Messages& messages) {
         scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
         scene.environment->scale = options.environment_scale * scene.environment->scale;
     }
+    const bool had_environment = scene.environment.has_value();
+    const std::size_t lights = scene.lights.size();
     add_default_environment(scene, messages);
-    return scene;
+    const bool default_light = scene.lights.size() != lights || scene.environment.has_value() != had_environment;
+    return {std::move(scene), default_light};
 }
 
 Camera choose_camera(const SceneOptions& options, const Scene& scene, uint32_t width, uint32_t height,

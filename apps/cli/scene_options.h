@@ -31,8 +31,13 @@ struct SceneOptions {
 
 void add_scene_options(CLI::App& verb, SceneOptions& options);
 
+struct LoadedScene {
+    Scene scene;
+    bool default_light = false; // it brought none of its own
+};
+
 /// The scene read, with the environment that the flags or the defaults give it. Throws Error.
-Scene load_scene(const SceneOptions& options, Messages& messages);
+LoadedScene load_scene(const SceneOptions& options, Messages& messages);
 
 /// The camera that the flags or the scene or the defaults give, for a picture of this shape. Throws Error(BadInput).
 Camera choose_camera(const SceneOptions& options, const Scene& scene, uint32_t width, uint32_t height,

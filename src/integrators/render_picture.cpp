@@ -49,6 +49,7 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
     const PathBody body = queue.is_cuda() ? PathBody::Wavefront : settings.body;
     PathRenderer renderer(queue, scene.view(), camera, settings.filter, radius, settings.path, settings.width,
                           settings.height, body, batch_of(settings));
+    if (settings.stage_seconds != nullptr) renderer.time_stages(*settings.stage_seconds);
     queue.wait();
     result.upload_seconds = seconds_since(start);
 

@@ -22,6 +22,7 @@ struct RenderSettings {
     PathSettings path;
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront
     uint32_t batch = 1u << 22;      // paths in flight of the wavefront
+    StageSeconds* stage_seconds = nullptr; // filled by the wavefront, which is then slower
     uint32_t pass_samples = 0;      // samples a pass; 0 = as many as fit a fraction of a second
 };
 

@@ -19,7 +19,9 @@ bool has_light(const Scene& scene) {
     return !scene.lights.empty() || scene.environment ||
            std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
                const Material& material = scene.materials[instance.material];
-               return material.is_emissive() || material.kind == MaterialKind::Unlit;
+               // What glows by a texture is a display or a badge, not what the rest is to be seen by.
+               return (material.is_emissive() && !material.emission_texture.has_image()) ||
+                      material.kind == MaterialKind::Unlit;
            });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 
 #include "base/parallel_for.h"
 #include "device/launch.h"
@@ -27,6 +28,16 @@ PathRenderer::PathRenderer(Queue& queue, const SceneView& scene, const Camera& c
     hit_ids_ = Buffer<Uint4>(queue, batch, "hit queue");
     for (auto& list : active_) list = Buffer<uint32_t>(queue, batch, "active paths");
     counts_ = Buffer<uint32_t>(queue, 2, "queue lengths");
+}
+
+template <class Stage>
+void PathRenderer::run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::* seconds) {
+    if (seconds_ == nullptr) return launch(queue_, name, count, stage);
+    queue_.wait();
+    const auto start = std::chrono::steady_clock::now();
+    launch(queue_, name, count, stage);
+    queue_.wait();
+    seconds_->*seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void PathRenderer::render(uint32_t first, uint32_t count, Film& film) {
@@ -81,8 +92,9 @@ void PathRenderer::render_wavefront(uint32_t first, uint32_t count, const FilmVi
         for (uint32_t pixel = 0; pixel < picture; pixel += pixels) {
             const uint32_t batch_pixels = std::min(pixels, picture - pixel);
             const uint32_t batch = batch_pixels * std::min(samples, count - sample);
-            launch(queue_, "generate_paths", batch,
-                   GeneratePaths{camera_, settings_, height_, pixel, batch_pixels, first + sample, paths});
+            run("generate_paths", batch,
+                GeneratePaths{camera_, settings_, height_, pixel, batch_pixels, first + sample, paths},
+                &StageSeconds::generate);
             rays_.camera += batch;
             trace_batch(batch, film);
         }
@@ -101,18 +113,20 @@ void PathRenderer::trace_batch(uint32_t batch, const FilmView& film) {
     for (uint32_t count = batch; count > 0;) {
         const SlotListView going_on = {active_[next].data(), counts_.data()};
         counts_.zero();
-        launch(queue_, "find_hits", count, FindHits{scene_, settings_.seed, paths, active, hits});
-        launch(queue_, "shade_hits", count,
-               ShadeHits{scene_, settings_, film, paths, active, hits, going_on, shadows, counts_.data() + 1});
+        run("find_hits", count, FindHits{scene_, settings_.seed, paths, active, hits},
+            active == nullptr ? &StageSeconds::camera_hits : &StageSeconds::bounce_hits);
+        run("shade_hits", count,
+            ShadeHits{scene_, settings_, film, paths, active, hits, going_on, shadows, counts_.data() + 1},
+            &StageSeconds::shade);
         const std::vector<uint32_t> counts = counts_.download();
-        launch(queue_, "trace_shadows", counts[1], TraceShadows{scene_, shadows, paths});
+        run("trace_shadows", counts[1], TraceShadows{scene_, shadows, paths}, &StageSeconds::shadows);
         rays_.bounce += counts[0];
         rays_.shadow += counts[1];
         active = active_[next].data();
         next = 1 - next;
         count = counts[0];
     }
-    launch(queue_, "add_to_film", batch, AddToFilm{film, paths});
+    run("add_to_film", batch, AddToFilm{film, paths}, &StageSeconds::film);
 }
 
 } // namespace pertev

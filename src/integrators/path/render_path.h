@@ -19,6 +19,11 @@ struct RayCounts {
     uint64_t total() const { return camera + bounce + shadow; }
 };
 
+/// Seconds that the wavefront's stages took, measured from outside: the queue is waited for after each.
+struct StageSeconds {
+    double generate = 0, camera_hits = 0, bounce_hits = 0, shade = 0, shadows = 0, film = 0;
+};
+
 enum class PathBody : uint8_t { Loop, Wavefront }; // Loop is for the CPU; both run there
 
 class PathRenderer {
@@ -37,10 +42,15 @@ public:
 
     const RayCounts& rays() const { return rays_; }
 
+    /// From now on the wavefront's stages are timed, each on its own; slower than a render that is not looked at.
+    void time_stages(StageSeconds& seconds) { seconds_ = &seconds; }
+
 private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film);
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
     void trace_batch(uint32_t paths, const FilmView& film);
+    template <class Stage>
+    void run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::* seconds);
 
     Queue& queue_;
     SceneView scene_;
@@ -50,6 +60,7 @@ private:
     Buffer<float> filter_table_;
     PathCamera camera_;
     RayCounts rays_;
+    StageSeconds* seconds_ = nullptr;
 
     // The wavefront's queues, one element a path in flight.
     uint32_t capacity_ = 0;

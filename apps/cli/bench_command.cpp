@@ -1,0 +1,291 @@
+// pertev bench: how fast this machine loads, builds and renders. `bench render` runs one job that is defined so that
+// other renderers can be timed on it.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "accel/bvh/bvh_cache.h"
+#include "apps/cli/choose_device.h"
+#include "apps/cli/commands.h"
+#include "apps/cli/parse_values.h"
+#include "apps/cli/reporter.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "formats/read_scene.h"
+#include "image/picture_hash.h"
+#include "image/write_image.h"
+#include "integrators/render_picture.h"
+#include "scene/defaults.h"
+
+namespace pertev {
+namespace {
+
+struct BenchFlags {
+    std::vector<std::string> scenes;
+    std::string device = "auto", size = "1920x1080", output, job = "S8";
+    uint32_t samples = 0;
+    int threads = 0;
+    bool quiet = false, json = false;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double rate(uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds * 1e-6 : 0.0; }
+
+// ---------------------------------------------------------------------------------------------------------------------
+// bench render --job: grey geometry under a constant sky.
+
+/// The file's triangles in a 0.7 grey that scatters to both sides, without vertex normals, under radiance 1 from
+/// everywhere; the camera stands in Crytek's Sponza at the scale of a tenth of the original's centimetres.
+Scene make_job_scene(const std::string& file, Messages& messages) {
+    ReadOptions options;
+    options.geometry_only = true;
+    Scene scene = read_scene(file, options, messages);
+    scene.materials.assign(1, Material{.name = "grey", .base_color = {0.7f, 0.7f, 0.7f}});
+    for (Instance& instance : scene.instances) instance.material = 0;
+    for (Mesh& mesh : scene.meshes) {
+        mesh.normals.clear();
+        mesh.tangents.clear();
+        mesh.colors.clear();
+    }
+    scene.images.clear();
+    scene.lights.clear();
+    scene.environment = Environment{};
+    return scene;
+}
+
+Camera job_camera() {
+    Camera camera;
+    camera.world_from_camera = look_at({-110, 18, -2}, {60, 32, -4}, {0, 1, 0});
+    camera.fov_y = 60 * kPi / 180;
+    return camera;
+}
+
+RenderSettings job_settings(const BenchFlags& flags) {
+    RenderSettings settings;
+    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
+    settings.samples = flags.samples > 0 ? flags.samples : 256;
+    settings.filter = PixelFilter::Box;
+    settings.path.max_depth = flags.job == "S5" ? 5 : 8;
+    settings.path.roulette_depth = 2;
+    return settings;
+}
+
+double mean_of(const Image& image) {
+    double sum = 0;
+    for (const float value : image.pixels) sum += static_cast<double>(value);
+    return sum / static_cast<double>(image.pixels.size());
+}
+
+int bench_job(const BenchFlags& flags) {
+    if (flags.threads > 0) set_thread_count(flags.threads);
+    Reporter reporter(flags.quiet, flags.json);
+    Messages messages;
+    const std::unique_ptr<Queue> queue = choose_device(flags.device, messages);
+    auto start = std::chrono::steady_clock::now();
+    const Scene scene = make_job_scene(flags.scenes.front(), messages);
+    const double load_s = seconds_since(start);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    reporter.say(messages);
+    const RenderSettings settings = job_settings(flags);
+    const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
+
+    RenderSettings warm_up = settings; // clocks, caches, the driver's first launch
+    warm_up.samples = 1;
+    render_picture(*queue, prepared, job_camera(), warm_up);
+    const RenderResult result = render_picture(*queue, prepared, job_camera(), settings);
+    const std::string hash = picture_hash(result.picture).hex();
+    if (!flags.output.empty()) write_image(flags.output, result.picture);
+    if (flags.json) {
+        reporter.event(fmt::format(
+            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"mean":{:.6f},"invalid_samples":{},"hash":"{}"}})",
+            flags.job, json_string(queue->device_name()), settings.width, settings.height, settings.samples,
+            prepared.triangles, load_s, prepared.build_seconds, result.render_seconds, samples / result.render_seconds,
+            static_cast<double>(result.rays.total()) / result.render_seconds,
+            static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), result.invalid_samples, hash));
+    } else if (!flags.quiet) {
+        fmt::print("job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
+                   "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\nmean {:.5f}, picture {}\n",
+                   flags.job, queue->device_name(), settings.width, settings.height, settings.samples,
+                   prepared.triangles, load_s, prepared.build_seconds, result.render_seconds,
+                   samples / result.render_seconds * 1e-6, rate(result.rays.total(), result.render_seconds),
+                   static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), hash);
+    }
+    return 0;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// bench: whole scenes as a user meets them.
+
+struct SceneFigures {
+    std::string scene, device;
+    double load_s = 0, build_s = 0, cached_s = 0, first_pixel_s = 0, render_s = 0;
+    double camera_mrays = 0, bounce_mrays = 0, shadow_mrays = 0, msamples = 0;
+    double tree_bytes_per_triangle = 0;
+    uint64_t triangles = 0;
+};
+
+std::size_t tree_bytes(const PreparedScene& prepared) {
+    const auto bytes = [](const Bvh& bvh) {
+        return bvh.nodes.size() * sizeof(BvhNode) + bvh.triangles.size() * sizeof(BvhTriangle);
+    };
+    std::size_t sum = bytes(prepared.baked) + prepared.top_level.nodes.size() * sizeof(BvhNode);
+    for (const Bvh& bvh : prepared.mesh_bvhs) sum += bytes(bvh);
+    return sum;
+}
+
+/// A cache folder of its own, gone afterwards.
+class ScratchCache {
+public:
+    ScratchCache() : path_(std::filesystem::temp_directory_path() / fmt::format("pertev-bench-{}", ::getpid())) {}
+    ~ScratchCache() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    ScratchCache(const ScratchCache&) = delete;
+    ScratchCache& operator=(const ScratchCache&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& flags) {
+    SceneFigures figures{.scene = std::filesystem::path(file).stem().string(), .device = queue.device_name()};
+    Messages messages;
+    auto start = std::chrono::steady_clock::now();
+    Scene scene = read_scene(file, {}, messages);
+    figures.load_s = seconds_since(start);
+    add_default_environment(scene, messages);
+
+    const ScratchCache cache;
+    PrepareOptions options;
+    options.bvh_cache = cache.path();
+    const PreparedScene prepared = prepare_scene(scene, options, messages); // also fills the cache
+    figures.cached_s = prepare_scene(scene, options, messages).build_seconds;
+    figures.build_s = prepare_scene(scene, {}, messages).build_seconds;
+    figures.triangles = prepared.triangles;
+    figures.tree_bytes_per_triangle =
+        static_cast<double>(tree_bytes(prepared)) / static_cast<double>(std::max<uint64_t>(prepared.triangles, 1));
+
+    RenderSettings settings;
+    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
+    settings.samples = flags.samples > 0 ? flags.samples : (queue.is_cuda() ? 64 : 4);
+    const Camera camera = scene.cameras.empty()
+                              ? make_default_camera(scene, static_cast<float>(settings.width) /
+                                                               static_cast<float>(settings.height),
+                                                    messages)
+                              : scene.cameras.front();
+    RenderSettings warm_up = settings;
+    warm_up.samples = 1;
+    render_picture(queue, prepared, camera, warm_up);
+    const RenderResult whole = render_picture(queue, prepared, camera, settings);
+    figures.first_pixel_s = whole.upload_seconds + whole.first_pixel_seconds;
+    figures.render_s = whole.render_seconds;
+    figures.msamples = rate(uint64_t(settings.width) * settings.height * whole.samples, whole.render_seconds);
+
+    StageSeconds stages; // once more, each stage on its own
+    settings.stage_seconds = &stages;
+    settings.body = PathBody::Wavefront;
+    const RenderResult staged = render_picture(queue, prepared, camera, settings);
+    figures.camera_mrays = rate(staged.rays.camera, stages.camera_hits);
+    figures.bounce_mrays = rate(staged.rays.bounce, stages.bounce_hits);
+    figures.shadow_mrays = rate(staged.rays.shadow, stages.shadows);
+    return figures;
+}
+
+void print(const SceneFigures& f, Reporter& reporter) {
+    if (reporter.json()) {
+        reporter.event(fmt::format(
+            R"({{"event":"bench","scene":{},"device":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"cached_seconds":{:.4f},"first_pixel_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"camera_rays_per_second":{:.0f},"bounce_rays_per_second":{:.0f},"shadow_rays_per_second":{:.0f},"tree_bytes_per_triangle":{:.1f}}})",
+            json_string(f.scene), json_string(f.device), f.triangles, f.load_s, f.build_s, f.cached_s, f.first_pixel_s,
+            f.render_s, f.msamples * 1e6, f.camera_mrays * 1e6, f.bounce_mrays * 1e6, f.shadow_mrays * 1e6,
+            f.tree_bytes_per_triangle));
+    } else if (!reporter.quiet()) {
+        fmt::print("{:10} {:12.12} {:9} {:7.3f} {:7.3f} {:7.3f} {:7.3f} {:8.3f} {:9.2f} {:8.1f} {:8.1f} {:8.1f} {:6.1f}\n",
+                   f.scene, f.device, f.triangles, f.load_s, f.build_s, f.cached_s, f.first_pixel_s, f.render_s,
+                   f.msamples, f.camera_mrays, f.bounce_mrays, f.shadow_mrays, f.tree_bytes_per_triangle);
+    }
+}
+
+/// Sponza and Sibenik of the test scenes, where PERTEV_SCENES says they are.
+std::vector<std::string> default_scenes() {
+    const char* root = std::getenv("PERTEV_SCENES");
+    std::vector<std::string> scenes;
+    for (const char* name : {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"}) {
+        const std::filesystem::path path = std::filesystem::path(root != nullptr ? root : "") / name;
+        if (root != nullptr && std::filesystem::exists(path)) scenes.push_back(path.string());
+    }
+    if (scenes.empty()) {
+        throw Error(ErrorCode::BadInput,
+                    "bench: name scene files, or set PERTEV_SCENES to the folder that holds crytek-sponza/sponza.obj "
+                    "and sibenik/sibenik.obj (docs/scenes.md)");
+    }
+    return scenes;
+}
+
+int bench_scenes(const BenchFlags& flags) {
+    if (flags.threads > 0) set_thread_count(flags.threads);
+    Reporter reporter(flags.quiet, flags.json);
+    Messages messages;
+    std::vector<std::unique_ptr<Queue>> queues;
+    queues.push_back(choose_device(flags.device, messages));
+    if (flags.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
+    reporter.say(messages);
+    if (!flags.json && !flags.quiet) {
+        fmt::print("seconds: load the file, build the trees, read them from the cache, first sample of every pixel, "
+                   "render; Mrays/s by kind\n{:10} {:12} {:>9} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>8} "
+                   "{:>6}\n",
+                   "scene", "device", "triangles", "load", "build", "cached", "first", "render", "Msample/s", "camera",
+                   "bounce", "shadow", "B/tri");
+    }
+    const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
+    for (const std::string& scene : scenes) {
+        for (const auto& queue : queues) print(measure(scene, *queue, flags), reporter);
+    }
+    return 0;
+}
+
+void add_shared_flags(CLI::App& verb, BenchFlags& flags) {
+    verb.add_option("--size", flags.size, "WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--spp", flags.samples, "samples a pixel");
+    verb.add_option("--device", flags.device, "auto, cpu, cuda or cuda:N")->capture_default_str();
+    verb.add_option("--threads", flags.threads, "of the CPU (all)")->check(CLI::Range(1, 4096));
+    verb.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
+    verb.add_flag("--json", flags.json, "figures as JSON lines");
+}
+
+} // namespace
+
+void add_bench_command(CLI::App& app, int& status) {
+    CLI::App& verb = *app.add_subcommand("bench", "Measure loading, building and rendering on this machine");
+    const auto flags = std::make_shared<BenchFlags>();
+    verb.add_option("--scene", flags->scenes, "scene files (Sponza and Sibenik under PERTEV_SCENES)");
+    add_shared_flags(verb, *flags);
+
+    CLI::App& job = *verb.add_subcommand("render", "One job that other renderers can be timed on");
+    const auto job_flags = std::make_shared<BenchFlags>();
+    job.add_option("--job", job_flags->job,
+                   "S5 or S8: grey geometry under a constant sky, at most 5 or 8 scatterings, Russian roulette from the "
+                   "second")
+        ->check(CLI::IsMember({"S5", "S8"}))->capture_default_str();
+    job.add_option("--scene", job_flags->scenes, "the mesh, Crytek's Sponza")->required()->expected(1);
+    job.add_option("-o,--output", job_flags->output, "keep the picture");
+    add_shared_flags(job, *job_flags);
+    job.callback([job_flags, &status] { status = bench_job(*job_flags); });
+    verb.callback([&verb, flags, &status] {
+        if (verb.get_subcommands().empty()) status = bench_scenes(*flags);
+    });
+}
+
+} // namespace pertev
