@@ -139,10 +139,11 @@ void measure(const char* name, const SceneBvhView& scene, const EmbreeScene& emb
             embree_any += ray.tfar < 0 ? 1 : 0;
         }
     });
-    uint64_t nodes = 0, triangles = 0, other = 0;
+    uint64_t nodes = 0, triangles = 0, any_nodes = 0, any_triangles = 0, other = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit hit;
         trace_closest(scene, rays[i], AcceptAll{}, hit, WalkCounter{&nodes, &triangles});
+        trace_any(scene, rays[i], AcceptAll{}, WalkCounter{&any_nodes, &any_triangles});
         other += (results[i].hit.geomID == RTC_INVALID_GEOMETRY_ID) != (hit.instance == kNoHit) ||
                          (hit.instance != kNoHit && results[i].hit.primID != hit.primitive)
                      ? 1
@@ -151,10 +152,11 @@ void measure(const char* name, const SceneBvhView& scene, const EmbreeScene& emb
     const double n = static_cast<double>(rays.size());
     std::printf(
         "%-9s %7zu rays  closest %6.2f  Embree %6.2f Mrays/s  ratio %.2f | any %6.2f  Embree %6.2f  ratio %.2f | "
-        "%.1f nodes, %.1f triangles a ray; hit share %.3f; %llu other primitives\n",
+        "nodes and triangles a ray: %.1f %.1f, any %.1f %.1f; hit share %.3f; %llu other primitives\n",
         name, rays.size(), m / closest_s, m / embree_closest_s, embree_closest_s / closest_s, m / any_s,
         m / embree_any_s, embree_any_s / any_s, static_cast<double>(nodes) / n, static_cast<double>(triangles) / n,
-        static_cast<double>(any) / n, static_cast<unsigned long long>(other));
+        static_cast<double>(any_nodes) / n, static_cast<double>(any_triangles) / n, static_cast<double>(any) / n,
+        static_cast<unsigned long long>(other));
 }
 
 } // namespace
@@ -175,6 +177,10 @@ int main(int argc, char** argv) {
                 triangles.size(), build_s * 1e3, bvh.nodes.size(), bvh.depth, static_cast<double>(bvh.sah_cost),
                 static_cast<double>(bvh.nodes.size() * sizeof(BvhNode) + triangles.size() * sizeof(BvhTriangle)) /
                     static_cast<double>(triangles.size()));
+    if (std::getenv("NARROW") == nullptr) {
+        const double widen_s = fastest(3, [&] { bvh.wide = make_wide_nodes(bvh); });
+        std::printf("widened in %.1f ms, %zu nodes\n", widen_s * 1e3, bvh.wide.size());
+    }
     const EmbreeScene embree(mesh);
     SceneBvhView scene;
     scene.baked = view_of(bvh);

@@ -16,10 +16,10 @@ import sys
 
 import numpy as np
 
-MU_NODES, R_NODES, ETA_NODES, AVERAGE_NODES = 40, 24, 16, 64
+MU_NODES, R_NODES, ETA_NODES, AVERAGE_NODES = 36, 20, 14, 64
 ALPHA_MIN, ETA_MIN, ETA_MAX = 1e-3, 1.1, 3.0
 R_MIN = np.sqrt(ALPHA_MIN)
-OVERSHOOT = 3e-4
+OVERSHOOT = 2e-4
 
 
 def kappa_sqrt(eta):
@@ -79,12 +79,15 @@ def scattered(mu, alpha, eta=None):
 
 
 def mu_at(x, alpha):
+    p = x * (MU_NODES - 1)
+    x = np.where(p < 1, np.sqrt(p), p) / (MU_NODES - 1)  # in the first cell the curves are linear in mu
     t = alpha * x * x
-    return np.maximum(t / ((1 - x) ** 2 + t), 1e-6)
+    return np.maximum(t / ((1 - x) ** 2 + t), 1e-7)
 
 
 def x_at(mu, alpha):
-    return np.sqrt(mu) / (np.sqrt(mu) + np.sqrt(alpha * (1 - mu)))
+    p = np.sqrt(mu) / (np.sqrt(mu) + np.sqrt(alpha * (1 - mu))) * (MU_NODES - 1)
+    return np.where(p < 1, p * p, p) / (MU_NODES - 1)
 
 
 def alpha_at(r):
@@ -104,34 +107,37 @@ def lowered(value_at, table):
     """`table` over nodes of each axis, lowered where linear interpolation overshoots inside a cell."""
     corners = np.stack(np.meshgrid(*[[0, 1]] * table.ndim, indexing="ij"), -1).reshape(-1, table.ndim)
     inner = [n - 1 for n in table.shape]
-    excess = np.zeros(inner)
     # The middle of the cell, of each face and of each edge, and three places along mu, where the curves bend most.
-    for place in np.stack(np.meshgrid(*[[0, 0.5]] * (table.ndim - 1), [0, 0.25, 0.5, 0.75], indexing="ij"),
-                          -1).reshape(-1, table.ndim):
-        if not np.any(place):
-            continue  # a corner
-        cells = [n - 1 if p else n for n, p in zip(table.shape, place)]
-        grid = [(np.arange(c) + p) / (n - 1) for c, p, n in zip(cells, place, table.shape)]
+    places = np.stack(np.meshgrid(*[[0, 0.5]] * (table.ndim - 1), [0, 0.25, 0.5, 0.75], indexing="ij"), -1)
+    checks = []
+    for place in places.reshape(-1, table.ndim)[1:]:  # the first is a corner
+        counts = [n - 1 if p else n for n, p in zip(table.shape, place)]
+        grid = [(np.arange(c) + p) / (n - 1) for c, p, n in zip(counts, place, table.shape)]
         points = np.stack(np.meshgrid(*grid, indexing="ij"), -1).reshape(-1, table.ndim)
-        truth = np.array([value_at(*p) for p in points]).reshape(cells)
-        chord = np.zeros(cells)
+        checks.append((place, counts, np.array([value_at(*p) for p in points]).reshape(counts)))
+
+    for _ in range(4):  # a node that would fall below 0 leaves the rest to its neighbours
+        excess, worst = np.zeros(inner), 0
+        for place, counts, truth in checks:
+            error = -truth
+            for corner in corners:
+                weight = np.prod(np.where(corner == 1, place, 1 - place))
+                if weight > 0:
+                    error = error + weight * table[tuple(slice(c, c + k) if p else slice(0, k)
+                                                         for c, k, p in zip(corner, counts, place))]
+            worst = max(worst, error.max())
+            for corner in corners:  # a face belongs to both cells beside it
+                if np.all((corner == 0) | (place == 0)):
+                    part = error[tuple(slice(c, c + k) if p == 0 else slice(None)
+                                       for c, k, p in zip(corner, inner, place))]
+                    excess = np.maximum(excess, part - OVERSHOOT)
+        print(f"  largest overshoot {worst:.5f}", file=sys.stderr)
+        drop = np.zeros(table.shape)
         for corner in corners:
-            weight = np.prod(np.where(corner == 1, place, 1 - place))
-            if weight > 0:
-                chord += weight * table[tuple(slice(c, c + k) if p else slice(0, k)
-                                              for c, k, p in zip(corner, cells, place))]
-        error = chord - truth
-        print(f"  {place}: interpolation error {error.min():.5f} .. {error.max():.5f}", file=sys.stderr)
-        for corner in corners:  # a face belongs to both cells beside it
-            if np.all((corner == 0) | (place == 0)):
-                part = error[tuple(slice(c, c + k) if p == 0 else slice(None)
-                                   for c, k, p in zip(corner, inner, place))]
-                excess = np.maximum(excess, part - OVERSHOOT)
-    drop = np.zeros(table.shape)
-    for corner in corners:
-        at = tuple(slice(c, c + k) for c, k in zip(corner, inner))
-        drop[at] = np.maximum(drop[at], excess)
-    return table - drop
+            at = tuple(slice(c, c + k) for c, k in zip(corner, inner))
+            drop[at] = np.maximum(drop[at], excess)
+        table = np.maximum(table - drop, 0)
+    return table
 
 
 def tabulate(value_at, shape):
@@ -152,6 +158,7 @@ def interpolate(table, position):
 _am, _aw = np.polynomial.legendre.leggauss(400)
 _am, _aw = ((_am + 1) / 2) ** 2, _aw / 2 * (_am + 1)  # mu = x^2: dmu = 2 x dx
 AVERAGE_WEIGHT = 2 * _am * _aw
+AVERAGE_R = nodes(AVERAGE_NODES) ** 2  # dense where roughness is least: there the averages change the fastest
 
 
 def average(row, alpha):
@@ -188,7 +195,7 @@ def main():
     schlick_part = quantised(1 - lowered(schlick, tabulate(schlick, (R_NODES, MU_NODES))))
 
     average_lost, average_schlick = [], []
-    for r in nodes(AVERAGE_NODES):
+    for r in AVERAGE_R:
         row = interpolate(lost / 65535, [r])
         average_lost.append(average(row, alpha_at(r)) / alpha_at(r))
         x = x_at(_am, alpha_at(r))
@@ -205,7 +212,7 @@ def main():
         table = quantised(lowered(value, tabulate(value, (ETA_NODES, R_NODES, MU_NODES))))
         glass.append(table)
         average_glass.append([[average(interpolate(table[q] / 65535, [r]), alpha_at(r)) / alpha_at(r)
-                               for r in nodes(AVERAGE_NODES)] for q in range(ETA_NODES)])
+                               for r in AVERAGE_R] for q in range(ETA_NODES)])
 
     flat = lambda t: np.asarray(t).reshape(-1)
     header = f"""#pragma once

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "math/portable_math.h"
 
 namespace pertev {
 namespace {
@@ -92,7 +93,13 @@ double mean_squared_error(const Image& picture, const Image& reference) {
 }
 
 double peak_signal_to_noise(double mean_squared_error, double peak) {
-    return mean_squared_error == 0 ? kInfinite : 10 * std::log10(peak * peak / mean_squared_error);
+    if (mean_squared_error == 0) return kInfinite;
+    if (mean_squared_error == kInfinite) return -kInfinite;
+    // Our own log2 is of floats: the exponent goes apart, so that no ratio is out of their range.
+    int exponent = 0;
+    const double mantissa = std::frexp(peak * peak / mean_squared_error, &exponent);
+    constexpr double kDecibelsPerDoubling = 3.0102999566398120; // 10 log10(2)
+    return kDecibelsPerDoubling * (exponent + double(log2(static_cast<float>(mantissa))));
 }
 
 } // namespace pertev

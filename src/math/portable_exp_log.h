@@ -64,14 +64,14 @@ HD inline float exp(float x) {
     if (x != x) return kNaN;
     x = clamp(x, -104.0f, 89.0f); // e^-104 rounds to 0, e^89 to infinity
     const float n = portable::round_to_integer(x * 0x1.715476p0f);
-    // x - n ln 2; the first step is exact.
-    const float r = fma(n, 0x1.05c61p-29f, fma(n, -0x1.62e43p-1f, x));
+    const float a = fma(n, -0x1.62e43p-1f, x);                                        // exact
+    const float r = fma(n, 0x1.05c61p-29f, a), r_low = fma(n, 0x1.05c61p-29f, a - r); // x - n ln 2
     float p = 0x1.6a493ap-10f;
     p = fma(p, r, 0x1.12399ep-7f);
     p = fma(p, r, 0x1.5558b4p-5f);
     p = fma(p, r, 0x1.555492p-3f);
     p = fma(p, r, 0x1.fffffcp-2f);
-    return portable::scale_by_power_of_2(fma(r * r, p, r) + 1.0f, static_cast<int>(n));
+    return portable::scale_by_power_of_2((r + fma(r * r, p, r_low)) + 1.0f, static_cast<int>(n));
 }
 
 /// 2^x. At most 1 ulp off; exact for integers.

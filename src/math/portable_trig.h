@@ -64,20 +64,12 @@ HD inline ReducedAngle reduce_large_angle(float x) {
 
 HD inline bool is_large_angle(float x) { return (bits_of(x) & 0x7fffffffu) >= 0x47800000u; } // 2^16, or NaN
 
-/// For finite x; `low` is left 0 below 2^16: high alone is within 1 ulp.
+/// For finite x; high + low is good to about 2^-45.
 HD inline ReducedAngle reduce_angle(float x) {
-    if (is_large_angle(x)) return reduce_large_angle(x);
+    const bool large = (bits_of(x) & 0x7fffffffu) >= 0x47800000u; // 2^16
+    if (large) return reduce_large_angle(x);
     const float q = round_to_integer(x * 0x1.45f306p-1f);
-    // The first step is exact.
-    const float r = fma(q, 0x1.ee59dap-50f, fma(q, 0x1.777a5cp-25f, fma(q, -0x1.921fb6p0f, x)));
-    return {r, 0, static_cast<int>(q)};
-}
-
-/// The same with high + low good to about 2^-45.
-HD inline ReducedAngle reduce_angle_in_two_floats(float x) {
-    if (is_large_angle(x)) return reduce_large_angle(x);
-    const float q = round_to_integer(x * 0x1.45f306p-1f);
-    const float a = fma(q, -0x1.921fb6p0f, x);
+    const float a = fma(q, -0x1.921fb6p0f, x); // exact
     const float b = q * 0x1.777a5cp-25f, b_low = fma(q, 0x1.777a5cp-25f, -b);
     const float sum = a + b, b_part = sum - a; // Knuth's two-sum
     const float error = (a - (sum - b_part)) + (b - b_part);
@@ -99,12 +91,13 @@ HD inline float cos_near_0(float r, float low) {
     float p = 0x1.99e528p-16f;
     p = fma(p, s, -0x1.6c0c22p-10f);
     p = fma(p, s, 0x1.55554ap-5f);
-    return fma(s, -0.5f, 1.0f) + fma(s * s, p, -r * low);
+    const float half = 0.5f * s, most = 1.0f - half;
+    return most + (((1.0f - most) - half) + fma(s * s, p, -r * low));
 }
 
 } // namespace portable
 
-/// Sine and cosine of x radians; NaN for infinity. At most 2 ulp off for every float.
+/// Sine and cosine of x radians; NaN for infinity. At most 1 ulp off for every float.
 HD inline void sin_cos(float x, float& s, float& c) {
     s = c = kNaN;
     if (!is_finite(x)) return;
@@ -118,7 +111,7 @@ HD inline void sin_cos(float x, float& s, float& c) {
     if (x == 0) s = x; // the reduction loses the sign of zero
 }
 
-/// Sine of x radians; NaN for infinity. At most 2 ulp off for every float.
+/// Sine of x radians; NaN for infinity. At most 1 ulp off for every float.
 HD inline float sin(float x) {
     if (!is_finite(x)) return kNaN;
     const portable::ReducedAngle angle = portable::reduce_angle(x);
@@ -127,7 +120,7 @@ HD inline float sin(float x) {
     return x == 0 ? x : ((angle.quadrant & 2) != 0 ? -s : s);
 }
 
-/// Cosine of x radians; NaN for infinity. At most 2 ulp off for every float.
+/// Cosine of x radians; NaN for infinity. At most 1 ulp off for every float.
 HD inline float cos(float x) {
     if (!is_finite(x)) return kNaN;
     const portable::ReducedAngle angle = portable::reduce_angle(x);
@@ -140,7 +133,7 @@ HD inline float cos(float x) {
 HD inline float tan(float x) {
     if (!is_finite(x)) return kNaN;
     if (x == 0) return x;
-    const portable::ReducedAngle angle = portable::reduce_angle_in_two_floats(x);
+    const portable::ReducedAngle angle = portable::reduce_angle(x);
     const float r = angle.high, s = r * r, cube = r * s;
     float p = 0x1.24a82ap-8f;
     p = fma(p, s, -0x1.74ac5ap-14f);

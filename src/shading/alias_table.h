@@ -47,7 +47,7 @@ HD inline AliasSample sample_alias(const AliasEntry* entries, uint32_t count, fl
 /// the upper level, and the second random number is left as it was.
 struct AliasTableView {
     const AliasEntry* blocks = nullptr;  // [ceil(count / block_size)]
-    const AliasEntry* entries = nullptr; // [count], aliases and pmf within the block; null for blocks of one
+    const AliasEntry* entries = nullptr; // [count], aliases and pmf within the block; none for blocks of one
     uint32_t count = 0;                  // 0: nothing to draw from
     uint32_t block_size = 1;
 };
@@ -92,7 +92,7 @@ AliasTable build_alias_table(std::span<const float> weights, uint32_t block_size
 
 /// View of a table in host memory; valid as long as the table is.
 inline AliasTableView view_of(const AliasTable& table) {
-    return {table.blocks.data(), table.entries.empty() ? nullptr : table.entries.data(), table.count, table.block_size};
+    return {table.blocks.data(), table.entries.data(), table.count, table.block_size};
 }
 
 } // namespace pertev

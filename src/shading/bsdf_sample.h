@@ -28,4 +28,11 @@ struct BsdfValue {
     float pdf = 0; // density of sample() at wi, 1/sr; without delta lobes
 };
 
+/// The sample of a lobe that is not delta. A density so small that 1 / pdf would overflow (wi within 1e-30 of the
+/// horizon) counts as no sample.
+HD inline BsdfSample make_bsdf_sample(Vec3 wi, BsdfValue value, bool is_transmission = false) {
+    if (!(value.pdf > 1e-30f)) return {};
+    return {.wi = wi, .weight = (1.0f / value.pdf) * value.f, .pdf = value.pdf, .is_transmission = is_transmission};
+}
+
 } // namespace pertev

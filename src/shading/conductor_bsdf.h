@@ -65,9 +65,7 @@ struct ConductorBsdf {
             if (!(wi.z > 0)) return {}; // into the surface: lost, and part of what the second lobe returns
         }
         wi.z = copysign(wi.z, wo.z);
-        const BsdfValue value = evaluate(wo, wi);
-        if (!(value.pdf > 0)) return {};
-        return {.wi = wi, .weight = (1.0f / value.pdf) * value.f, .pdf = value.pdf};
+        return make_bsdf_sample(wi, evaluate(wo, wi));
     }
 };
 

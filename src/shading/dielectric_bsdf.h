@@ -97,9 +97,7 @@ struct DielectricBsdf {
             }
         }
         const Vec3 wi = {i.x, i.y, wo.z < 0 ? -i.z : i.z};
-        const BsdfValue value = evaluate(wo, wi);
-        if (!(value.pdf > 0)) return {};
-        return {.wi = wi, .weight = (1.0f / value.pdf) * value.f, .pdf = value.pdf, .is_transmission = i.z < 0};
+        return make_bsdf_sample(wi, evaluate(wo, wi), i.z < 0);
     }
 
 private:

@@ -29,9 +29,7 @@ struct DiffuseBsdf {
     HD BsdfSample sample(Vec3 wo, float, Vec2 u) const { // lobe choice unused: there is one lobe
         Vec3 wi = sample_cosine_hemisphere(u);
         wi.z = copysign(wi.z, wo.z);
-        const float density = pdf(wo, wi);
-        if (!(density > 0)) return {};
-        return {.wi = wi, .weight = albedo, .pdf = density};
+        return make_bsdf_sample(wi, evaluate(wo, wi));
     }
 };
 

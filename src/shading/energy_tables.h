@@ -33,12 +33,18 @@ HD inline Cell make_cell(float x, int nodes) {
 
 HD inline Cell mu_cell(float mu, float alpha) {
     const float root = sqrt(mu);
-    return make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
+    Cell cell = make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
+    if (cell.node == 0) cell.fraction *= cell.fraction; // there the curves are linear in mu
+    return cell;
 }
-HD inline Cell roughness_cell(float alpha, int nodes) {
+/// Share of the way from the least roughness to 1.
+HD inline float roughness_position(float alpha) {
     constexpr float lowest = 0.031622776f; // sqrt(kAlphaMin)
-    return make_cell((sqrt(alpha) - lowest) * (1.0f / (1.0f - lowest)), nodes);
+    return (sqrt(alpha) - lowest) * (1.0f / (1.0f - lowest));
 }
+HD inline Cell roughness_cell(float alpha) { return make_cell(roughness_position(alpha), kRoughnessNodes); }
+/// Of the averages, which change the fastest where roughness is least.
+HD inline Cell average_cell(float alpha) { return make_cell(safe_sqrt(roughness_position(alpha)), kAverageNodes); }
 HD inline Cell ior_cell(float ior) {
     constexpr float lowest = 0.21821789f, highest = 0.70710678f; // of kIorMin and kIorMax
     return make_cell((safe_sqrt((ior - 1.0f) / (ior + 1.0f)) - lowest) * (1.0f / (highest - lowest)), kIorNodes);
@@ -63,27 +69,27 @@ HD inline float along(Table table, int first, Cell row, Cell column, int columns
 /// Share lost by a reflector with F = 1, seen at cosine `mu` in [0, 1]. alpha in [kSmoothAlpha, 1] here and below.
 HD inline float metal_lost(float mu, float alpha) {
     using namespace energy_table;
-    return kUnit * along([](int i) { return metal_lost_at(i); }, 0, roughness_cell(alpha, kRoughnessNodes),
-                         mu_cell(mu, alpha), kMuNodes);
+    return kUnit *
+           along([](int i) { return metal_lost_at(i); }, 0, roughness_cell(alpha), mu_cell(mu, alpha), kMuNodes);
 }
 /// 2 int metal_lost(mu) mu dmu
 HD inline float metal_average_lost(float alpha) {
     using namespace energy_table;
-    const Cell c = roughness_cell(alpha, kAverageNodes);
+    const Cell c = average_cell(alpha);
     return alpha * along([](int i) { return metal_average_lost_at(i); }, c.node, c.fraction);
 }
 
 /// Average of (1 - cos)^5, Schlick's weight, over what a reflector with F = 1 reflects at cosine `mu`.
 HD inline float metal_schlick(float mu, float alpha) {
     using namespace energy_table;
-    const float beyond = along([](int i) { return metal_schlick_at(i); }, 0, roughness_cell(alpha, kRoughnessNodes),
-                               mu_cell(mu, alpha), kMuNodes);
-    return schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f);
+    const float beyond =
+        along([](int i) { return metal_schlick_at(i); }, 0, roughness_cell(alpha), mu_cell(mu, alpha), kMuNodes);
+    return max(schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f), 0.0f);
 }
 /// 2 int (1 - metal_lost(mu)) metal_schlick(mu) mu dmu
 HD inline float metal_average_schlick(float alpha) {
     using namespace energy_table;
-    const Cell c = roughness_cell(alpha, kAverageNodes);
+    const Cell c = average_cell(alpha);
     return along([](int i) { return metal_average_schlick_at(i); }, c.node, c.fraction);
 }
 
@@ -91,8 +97,7 @@ HD inline float metal_average_schlick(float alpha) {
 /// when the other's is `eta`: in [kIorMin, kIorMax] from outside, in [1 / kIorMax, 1 / kIorMin] from inside.
 HD inline float glass_lost(float mu, float alpha, float eta) {
     using namespace energy_table;
-    const Cell ior = ior_cell(eta > 1 ? eta : 1.0f / eta), row = roughness_cell(alpha, kRoughnessNodes),
-               column = mu_cell(mu, alpha);
+    const Cell ior = ior_cell(eta > 1 ? eta : 1.0f / eta), row = roughness_cell(alpha), column = mu_cell(mu, alpha);
     constexpr int stride = kRoughnessNodes * kMuNodes;
     const int first = ((eta > 1 ? 0 : kIorNodes) + ior.node) * stride;
     const auto table = [](int i) { return glass_lost_at(i); };
@@ -104,7 +109,7 @@ HD inline float glass_average_lost(float alpha, float eta) {
     using namespace energy_table;
     const int first = (eta > 1 ? 0 : kIorNodes) * kAverageNodes;
     return alpha * along([](int i) { return glass_average_lost_at(i); }, first, ior_cell(eta > 1 ? eta : 1.0f / eta),
-                         roughness_cell(alpha, kAverageNodes), kAverageNodes);
+                         average_cell(alpha), kAverageNodes);
 }
 
 /// Colour of the light that comes back after more than one bounce off facets of average reflectance `f_average`, when

@@ -4,7 +4,7 @@
 //
 // Source: Born & Wolf, "Principles of Optics", 7th ed., sections 1.5.2 and 14.2; Schlick, "An Inexpensive BRDF Model
 // for Physically-based Rendering", 1994; average of the dielectric: fit of Kulla & Conty, "Revisiting Physically Based
-// Shading at Imageworks", 2017 (off by at most 0.3 %).
+// Shading at Imageworks", 2017 (off by at most 0.007).
 
 #include "base/host_device.h"
 #include "math/rgb.h"

@@ -68,9 +68,7 @@ struct MetallicRoughnessBsdf {
             if (!(wi.z > 0)) return {};
         }
         wi.z = copysign(wi.z, wo.z);
-        const BsdfValue value = evaluate(wo, wi);
-        if (!(value.pdf > 0)) return {};
-        return {.wi = wi, .weight = (1.0f / value.pdf) * value.f, .pdf = value.pdf};
+        return make_bsdf_sample(wi, evaluate(wo, wi));
     }
 
 private:

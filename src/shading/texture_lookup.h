@@ -79,6 +79,7 @@ HD inline Vec4 load_texel(const TextureImageView& image, uint32_t x, uint32_t y,
         return {static_cast<float>(r) * unit, static_cast<float>(g) * unit, static_cast<float>(b) * unit, alpha};
     }
     Vec4 value;
+    // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): one of the two pointers is set
     memcpy(&value, __builtin_assume_aligned(image.rgba_float + texel, 16), 16);
     return value;
 }
@@ -155,6 +156,7 @@ inline TextureImageView view_of(const TextureImage& image) {
 /// Views of all images of a scene, at the same indices.
 inline std::vector<TextureImageView> views_of_images(const Scene& scene) {
     std::vector<TextureImageView> views;
+    views.reserve(scene.images.size());
     for (const TextureImage& image : scene.images) views.push_back(view_of(image));
     return views;
 }

@@ -11,6 +11,7 @@ namespace pertev {
 
 template <class Accept>
 struct AnyVisitor {
+    static constexpr bool kNearestFirst = false;
     const Accept& accept;
     float t_max;
     bool found = false;

@@ -17,6 +17,7 @@ struct AcceptAll {
 
 template <class Accept>
 struct ClosestVisitor {
+    static constexpr bool kNearestFirst = true;
     const Accept& accept;
     Hit best;
 

@@ -2,6 +2,7 @@
 
 // The walk of a whole scene: the baked tree first, then each instance that the top level leads to. Closest and any hit
 // differ only in the visitor:
+//   static constexpr bool kNearestFirst              whether nearer boxes should be entered first
 //   float limit() const                              a box whose entry is greater holds nothing of interest
 //   bool visit(instance, primitive, TriangleHit)     sees each candidate; true ends the walk
 // The set of triangles that a visitor sees may differ between structures; what it makes of them may not.
@@ -13,6 +14,9 @@
 #include "trace/intersect_triangle.h"
 #include "trace/scene_bvh.h"
 #include "trace/walk_tree.h"
+#if !PERTEV_ON_DEVICE
+#include "trace/walk_wide.h"
+#endif
 
 namespace pertev {
 
@@ -20,11 +24,15 @@ namespace pertev {
 template <class Visitor, class Counter>
 HD inline bool walk_triangles(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                               WalkStackEntry* stack, const Counter& counter) {
+#if !PERTEV_ON_DEVICE
+    if (bvh.wide != nullptr) return walk_wide(bvh, ray, instance, visitor, counter);
+#endif
     const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, bvh.bounds_max_abs);
     const RayShear shear = make_ray_shear(ray.direction);
     TreeWalk walk = {bvh.root};
     for (;;) {
-        const uint32_t leaf = next_leaf(walk, bvh.nodes, boxes, ray.t_min, visitor.limit(), stack, counter);
+        const uint32_t leaf =
+            next_leaf<Visitor::kNearestFirst>(walk, bvh.nodes, boxes, ray.t_min, visitor.limit(), stack, counter);
         if (leaf == kNoLink) return false;
         for (const BvhTriangle* at = bvh.triangles + (leaf & ~kLeafBit);; ++at) {
             counter.add_triangle();
@@ -53,7 +61,8 @@ HD inline void walk_scene(const SceneBvhView& scene, const Ray& ray, Visitor& vi
         if (top.link == kNoLink) return;
         // Made anew at each turn: cheaper than keeping it in registers through the inner walk.
         const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, scene.top_reach, scene.top_growth);
-        const uint32_t leaf = next_leaf(top, scene.top_nodes, boxes, ray.t_min, visitor.limit(), top_stack, counter);
+        const uint32_t leaf = next_leaf<Visitor::kNearestFirst>(top, scene.top_nodes, boxes, ray.t_min, visitor.limit(),
+                                                                top_stack, counter);
         if (leaf == kNoLink) return;
         const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
         instance = record.instance;

@@ -78,7 +78,7 @@ TEST_CASE("a difference of products has the right sign however close the product
         const float d = float_of(bits_of(a * b / c) + (hash_word(i) & 3) - 1); // c d is within a few ulp of a b
         const double exact =
             static_cast<double>(a) * static_cast<double>(b) - static_cast<double>(c) * static_cast<double>(d);
-        const auto has_sign = [&](float x) { return (x > 0) == (exact > 0) && (x < 0) == (exact < 0); };
+        const auto has_sign = [&](auto x) { return (x > 0) == (exact > 0) && (x < 0) == (exact < 0); };
         wrong += !has_sign(difference_of_products(a, b, c, d));
         wrong += !has_sign(difference_of_products_in_double(a, b, c, d));
         naive_wrong += !has_sign(a * b - c * d);
@@ -94,7 +94,7 @@ TEST_CASE("a difference of products has the right sign however close the product
 
 TEST_CASE("a difference of products keeps its sign where float products vanish, in double") {
     const float tiny = 0x1p-80f, next = float_of(bits_of(tiny) + 1);
-    CHECK(difference_of_products_in_double(next, 0x1p-60f, tiny, 0x1p-60f) == 0); // 2^-163: below float, rounds to 0
-    CHECK(difference_of_products_in_double(next, 0x1p-40f, tiny, 0x1p-40f) == 0x1p-143f);
-    CHECK(difference_of_products_in_double(tiny, 0x1p-40f, next, 0x1p-40f) == -0x1p-143f);
+    CHECK(difference_of_products_in_double(next, 0x1p-80f, tiny, 0x1p-80f) == 0x1p-183);
+    CHECK(difference_of_products_in_double(tiny, 0x1p-80f, next, 0x1p-80f) == -0x1p-183);
+    CHECK(difference_of_products(next, 0x1p-80f, tiny, 0x1p-80f) == 0); // so the double form is needed
 }

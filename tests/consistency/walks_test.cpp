@@ -153,11 +153,15 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
         if (c.triangles.size() > 1) CHECK(hits > rays.size() / 20);
         for (const BvhBuildSettings& settings : kSettings) {
             CAPTURE(settings.bins);
-            const Bvh bvh = build_bvh(c.triangles, settings);
-            SceneBvhView scene;
-            scene.baked = view_of(bvh);
-            check_rays(scene, rays, all, AcceptAll{});
-            check_rays(scene, rays, some, AcceptSome{});
+            Bvh bvh = build_bvh(c.triangles, settings);
+            for (const bool wide : {false, true}) {
+                CAPTURE(wide);
+                if (wide) bvh.wide = make_wide_nodes(bvh);
+                SceneBvhView scene;
+                scene.baked = view_of(bvh);
+                check_rays(scene, rays, all, AcceptAll{});
+                check_rays(scene, rays, some, AcceptSome{});
+            }
         }
     }
 }
@@ -169,6 +173,7 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
     std::vector<Bvh> trees;
     std::vector<BvhView> views;
     for (const auto& mesh : meshes) trees.push_back(build_bvh(mesh));
+    for (std::size_t i = 0; i < trees.size(); i += 2) trees[i].wide = make_wide_nodes(trees[i]);
     for (const Bvh& tree : trees) views.push_back(view_of(tree));
 
     Random random(5);

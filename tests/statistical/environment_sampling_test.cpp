@@ -172,8 +172,8 @@ TEST_CASE("environment: samples follow the density, within texels too") {
     const uint32_t samples = static_cast<uint32_t>(test::effort(300'000, 10'000'000));
     // Cells: each texel cut into 3 x 3 parts of equal solid angle, placed by the convention's own formulas in double.
     const auto height_at = [&](uint32_t edge) { // cos(theta) at the upper edge of a row of cells
-        const double upper = std::cos(kPiDouble * (edge / parts) / height);
-        const double lower = std::cos(kPiDouble * (edge / parts + 1) / height);
+        const uint32_t row = edge / parts;
+        const double upper = std::cos(kPiDouble * row / height), lower = std::cos(kPiDouble * (row + 1) / height);
         return upper + (lower - upper) * (edge % parts) / parts;
     };
     std::vector<double> observed(width * height * parts * parts), expected(observed.size());

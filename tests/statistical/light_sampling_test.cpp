@@ -413,6 +413,7 @@ TEST_CASE("lights: what cannot be lit is no sample, never a value that is not fi
     Scene scene;
     Mesh mesh = make_square(1);
     mesh.positions.push_back(mesh.positions[0]);
+    mesh.uv[0].push_back({});
     mesh.indices.insert(mesh.indices.end(), {0, 4, 1}); // no area
     add_emitter(scene, mesh, {1, 1, 1}, {});
     scene.lights = {make_light(LightKind::Point, {0, 1, 0}, {})};

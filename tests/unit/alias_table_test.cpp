@@ -65,9 +65,9 @@ TEST_CASE("alias table: what is drawn, what is stored and the weights are one di
 TEST_CASE("alias table: equal weights give equal probabilities without a detour") {
     std::vector<AliasEntry> entries(1000);
     build_alias_entries(std::vector<float>(1000, 0.1f), entries);
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        CHECK(entries[i].threshold == 1);
-        CHECK(entries[i].pmf == 1e-3f);
+    for (const AliasEntry& entry : entries) {
+        CHECK(entry.threshold == 1);
+        CHECK(entry.pmf == 1e-3f);
     }
 }
 

@@ -17,7 +17,7 @@ namespace {
 struct JpegSource {
     J_COLOR_SPACE in = JCS_GRAYSCALE, stored = JCS_GRAYSCALE;
     int components = 1;
-    bool adobe_marker = false, progressive = false;
+    bool adobe_marker = false, progressive = false, scan_per_component = false;
     std::vector<unsigned char> pixel = {}; // repeated over 20 x 10 pixels
 };
 
@@ -38,6 +38,11 @@ std::vector<std::byte> make_jpeg(const JpegSource& from) {
     info.write_Adobe_marker = from.adobe_marker ? TRUE : FALSE;
     jpeg_set_quality(&info, 100, TRUE);
     if (from.progressive) jpeg_simple_progression(&info);
+    const jpeg_scan_info scans[3] = {{1, {0}, 0, 63, 0, 0}, {1, {1}, 0, 63, 0, 0}, {1, {2}, 0, 63, 0, 0}};
+    if (from.scan_per_component) {
+        info.scan_info = scans;
+        info.num_scans = 3;
+    }
     jpeg_start_compress(&info, TRUE);
     std::vector<unsigned char> row;
     for (int x = 0; x < 20; ++x) row.insert(row.end(), from.pixel.begin(), from.pixel.end());
@@ -114,6 +119,24 @@ TEST_CASE("a JPEG cut short is an error, not a picture with a grey end") {
             CHECK(std::string(error.what()).starts_with("floor.jpg: "));
             CHECK(std::string(error.what()).find("cut short") != std::string::npos);
         }
+    }
+}
+
+TEST_CASE("a JPEG that passes over its pixels again and again is refused, since each pass costs the whole picture") {
+    const std::vector<std::byte> bytes = make_jpeg(
+        {.in = JCS_RGB, .stored = JCS_YCbCr, .components = 3, .scan_per_component = true, .pixel = {200, 100, 50}});
+    check_is_filled_with(bytes, {200, 100, 50, 255});
+    const auto is_scan = [&](std::size_t i) { return bytes[i] == std::byte{0xff} && bytes[i + 1] == std::byte{0xda}; };
+    std::size_t last_scan = bytes.size() - 2;
+    while (!is_scan(last_scan)) --last_scan;
+    const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(last_scan), end = bytes.end() - 2; // before EOI
+    std::vector<std::byte> many = bytes;
+    for (int k = 0; k < 200; ++k) many.insert(many.end() - 2, begin, end);
+    try {
+        decode_image(many, "slow.jpg");
+        FAIL("no error");
+    } catch (const Error& error) {
+        CHECK(std::string(error.what()).find("more than 100 scans") != std::string::npos);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "accel/bvh/wide_bvh.h"
 #include "base/host_device.h"
 #include "math/bounds3.h"
 
@@ -51,7 +52,8 @@ inline Bounds3 child_bounds(const BvhNode& node, int k) {
 struct Bvh {
     std::vector<BvhNode> nodes; // depth first, the near half of memory first; nodes[0] is the root where root == 0
     std::vector<BvhTriangle> triangles;
-    uint32_t root = kNoLink; // kNoLink: no triangle; a leaf link: no inner node
+    std::vector<WideBvhNode> wide; // for the host's walk, where it was asked for: bvh.wide = make_wide_nodes(bvh)
+    uint32_t root = kNoLink;       // kNoLink: no triangle; a leaf link: no inner node
     Bounds3 bounds;
     int depth = 0;      // inner nodes on the longest way down; at most kMaxBvhDepth
     float sah_cost = 0; // expected cost of a ray that meets the bounds, in the builder's unit
@@ -61,13 +63,15 @@ struct Bvh {
 struct BvhView {
     const BvhNode* nodes = nullptr;
     const BvhTriangle* triangles = nullptr;
+    const WideBvhNode* wide = nullptr; // host only: walked in place of nodes where it is there
     uint32_t root = kNoLink;
     float bounds_max_abs = 0; // largest |coordinate| of the bounds
 };
 
 inline BvhView view_of(const Bvh& bvh) {
     const bool empty = bvh.root == kNoLink;
-    return {bvh.nodes.data(), bvh.triangles.data(), bvh.root, empty ? 0.0f : bvh.bounds.max_abs()};
+    return {bvh.nodes.data(), bvh.triangles.data(), bvh.wide.empty() ? nullptr : bvh.wide.data(), bvh.root,
+            empty ? 0.0f : bvh.bounds.max_abs()};
 }
 
 } // namespace pertev

@@ -1,0 +1,98 @@
+#pragma once
+
+// intersect_triangle for four triangles at once, host only: the same operations in the same order, so the same bits.
+// tests/consistency/walks_test.cpp holds the two together.
+
+#include <immintrin.h>
+
+#include "accel/bvh/bvh.h"
+#include "trace/intersect_triangle.h"
+#include "trace/ray.h"
+
+namespace pertev {
+
+struct RayShear4 {
+    __m128i order; // kx, ky, kz, and the fourth as it is
+    __m128 sx, sy, sz;
+    __m128 ox, oy, oz; // origin, in that order of axes
+};
+
+inline RayShear4 make_ray_shear_4(Vec3 origin, const RayShear& s) {
+    return {_mm_setr_epi32(s.kx, s.ky, s.kz, 3),
+            _mm_set1_ps(s.sx),
+            _mm_set1_ps(s.sy),
+            _mm_set1_ps(s.sz),
+            _mm_set1_ps(component(origin, s.kx)),
+            _mm_set1_ps(component(origin, s.ky)),
+            _mm_set1_ps(component(origin, s.kz))};
+}
+
+struct TriangleHit4 {
+    alignas(16) float t[4], u[4], v[4];
+};
+
+/// Bit k of the result: triangle k is hit with t_min < t < t_max and t <= t_limit; its hit is in `hits`. `count` of the
+/// triangles from `first` on are looked at, at most 4.
+inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const RayShear4& ray, float t_min,
+                                      float t_max, float t_limit, const BvhTriangle* first, uint32_t count,
+                                      TriangleHit4& hits) {
+    struct Vertex {
+        __m128 x, y, z;
+    };
+    const BvhTriangle* t[4] = {first, first + (count > 1 ? 1 : 0), first + (count > 2 ? 2 : 0),
+                               first + (count > 3 ? 3 : 0)};
+    const auto sheared = [&](const Vec3 BvhTriangle::*corner) {
+        const auto load = [&](int k) { return _mm_permutevar_ps(_mm_load_ps(&(t[k]->*corner).x), ray.order); };
+        __m128 r0 = load(0), r1 = load(1), r2 = load(2), r3 = load(3);
+        _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+        const __m128 z = _mm_sub_ps(r2, ray.oz);
+        return Vertex{_mm_fnmadd_ps(ray.sx, z, _mm_sub_ps(r0, ray.ox)),
+                      _mm_fnmadd_ps(ray.sy, z, _mm_sub_ps(r1, ray.oy)), z};
+    };
+    const Vertex pa = sheared(&BvhTriangle::a), pb = sheared(&BvhTriangle::b), pc = sheared(&BvhTriangle::c);
+
+    const auto difference = [](__m128 a, __m128 b, __m128 c, __m128 d) {
+        const __m128 cd = _mm_mul_ps(c, d);
+        return _mm_add_ps(_mm_fmsub_ps(a, b, cd), _mm_fnmadd_ps(c, d, cd));
+    };
+    const __m128 ea = difference(pc.x, pb.y, pc.y, pb.x);
+    const __m128 eb = difference(pa.x, pc.y, pa.y, pc.x);
+    const __m128 ec = difference(pb.x, pa.y, pb.y, pa.x);
+    const __m128 sign = _mm_set1_ps(-0.0f), zero = _mm_setzero_ps();
+    const __m128 least =
+        _mm_min_ps(_mm_andnot_ps(sign, ea), _mm_min_ps(_mm_andnot_ps(sign, eb), _mm_andnot_ps(sign, ec)));
+    const unsigned asked = (1u << count) - 1;
+    // Not "less than": NaN goes the slow way too, where it is a miss.
+    unsigned slow = asked & static_cast<unsigned>(_mm_movemask_ps(_mm_cmpnge_ps(least, _mm_set1_ps(0x1p-100f))));
+
+    const __m128 below = _mm_min_ps(ea, _mm_min_ps(eb, ec)), above = _mm_max_ps(ea, _mm_max_ps(eb, ec));
+    const __m128 outside = _mm_and_ps(_mm_cmplt_ps(below, zero), _mm_cmpgt_ps(above, zero));
+    unsigned hit = asked & ~slow & ~static_cast<unsigned>(_mm_movemask_ps(outside));
+    if ((hit | slow) == 0) return 0;
+    if (hit != 0) {
+        const __m128 det = _mm_add_ps(_mm_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0
+        const __m128 inv = _mm_div_ps(_mm_set1_ps(1.0f), det);
+        const __m128 u = _mm_mul_ps(eb, inv), v = _mm_mul_ps(ec, inv);
+        const __m128 z =
+            _mm_add_ps(_mm_add_ps(_mm_mul_ps(_mm_mul_ps(ea, inv), pa.z), _mm_mul_ps(u, pb.z)), _mm_mul_ps(v, pc.z));
+        const __m128 at = _mm_mul_ps(z, ray.sz);
+        const __m128 in_range =
+            _mm_and_ps(_mm_and_ps(_mm_cmpgt_ps(at, _mm_set1_ps(t_min)), _mm_cmplt_ps(at, _mm_set1_ps(t_max))),
+                       _mm_cmple_ps(at, _mm_set1_ps(t_limit)));
+        hit &= static_cast<unsigned>(_mm_movemask_ps(in_range));
+        _mm_store_ps(hits.t, at);
+        _mm_store_ps(hits.u, u);
+        _mm_store_ps(hits.v, v);
+    }
+    for (; slow != 0; slow &= slow - 1) {
+        const int k = __builtin_ctz(slow);
+        TriangleHit one;
+        if (!intersect_triangle(origin, shear, t_min, t_max, t[k]->a, t[k]->b, t[k]->c, one) || one.t > t_limit)
+            continue;
+        hits.t[k] = one.t, hits.u[k] = one.u, hits.v[k] = one.v;
+        hit |= 1u << k;
+    }
+    return hit;
+}
+
+} // namespace pertev

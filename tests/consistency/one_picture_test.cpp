@@ -1,0 +1,115 @@
+// The one-picture law, held on the CPU: the picture and all its layers are the same bytes for any number of threads, any
+// split of the samples, either body of the path tracer, any batch, any tree. With --device cuda the GPU joins in.
+
+#include <doctest/doctest.h>
+
+#include "base/parallel_for.h"
+#include "image/picture_hash.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+RenderSettings small_settings() {
+    RenderSettings settings;
+    settings.width = 61; // odd on purpose: tiles do not fit
+    settings.height = 35;
+    settings.samples = 6;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    settings.transparent = true;
+    return settings;
+}
+
+/// Hash of the picture, the layers and the ids.
+Hash128 hash_of(const RenderResult& result) {
+    Hasher hasher;
+    hasher.add_value(picture_hash(result.picture).high);
+    hasher.add_value(picture_hash(result.picture).low);
+    for (const FilmLayer& layer : result.layers) hasher.add_values(std::span<const float>(layer.image.pixels));
+    for (const PixelIds& ids : result.ids) {
+        for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
+    }
+    return hasher.result();
+}
+
+Hash128 cpu_hash(const RenderSettings& settings, const PrepareOptions& prepare = {}) {
+    Queue queue = Queue::make_cpu();
+    return hash_of(test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings, prepare));
+}
+
+const Hash128& reference_hash() {
+    static const Hash128 hash = cpu_hash(small_settings());
+    return hash;
+}
+
+} // namespace
+
+TEST_CASE("the picture does not depend on the number of threads") {
+    for (const int threads : {1, 2, 5}) {
+        CAPTURE(threads);
+        set_thread_count(threads);
+        CHECK(cpu_hash(small_settings()) == reference_hash());
+    }
+    set_thread_count(0);
+}
+
+TEST_CASE("the picture does not depend on how the samples are split into passes") {
+    RenderSettings settings = small_settings();
+    for (const uint32_t pass : {1u, 4u, 6u}) {
+        CAPTURE(pass);
+        settings.pass_samples = pass;
+        CHECK(cpu_hash(settings) == reference_hash());
+    }
+}
+
+TEST_CASE("the wavefront gives the bytes of the loop, for any number of paths in flight") {
+    RenderSettings settings = small_settings();
+    settings.body = PathBody::Wavefront;
+    for (const uint32_t batch : {777u, 5000u, 1u << 20}) { // less than a picture, two samples, all
+        CAPTURE(batch);
+        settings.batch = batch;
+        CHECK(cpu_hash(settings) == reference_hash());
+    }
+}
+
+TEST_CASE("the picture does not depend on how the trees were built") {
+    for (const int bins : {4, 32}) {
+        for (const int leaf : {1, 8}) {
+            CAPTURE(bins);
+            CAPTURE(leaf);
+            PrepareOptions prepare;
+            prepare.bvh.bins = bins;
+            prepare.bvh.max_leaf = leaf;
+            CHECK(cpu_hash(small_settings(), prepare) == reference_hash());
+        }
+    }
+}
+
+TEST_CASE("another seed or number of samples gives another hash: it can tell pictures apart") {
+    RenderSettings settings = small_settings();
+    settings.path.seed = 1;
+    CHECK(cpu_hash(settings) != reference_hash());
+    settings = small_settings();
+    settings.samples = 7;
+    CHECK(cpu_hash(settings) != reference_hash());
+}
+
+TEST_CASE("the GPU gives the bytes of the CPU") {
+    if (!test::cuda_requested()) return;
+    Queue queue = test::make_cuda_queue();
+    for (const uint32_t batch : {777u, 1u << 20}) {
+        for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent}) {
+            for (const PathLight light : {PathLight::Path, PathLight::Direct, PathLight::Indirect}) {
+                RenderSettings settings = small_settings();
+                settings.batch = batch;
+                settings.path.sampler = sampler;
+                settings.path.light = light;
+                const Hash128 gpu = hash_of(
+                    test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings));
+                CHECK(gpu == cpu_hash(settings));
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+#pragma once
+
+// The BSDFs that the statistical tests hold to their promises, and what those tests share.
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "math/random.h"
+#include "math/sampler.h"
+#include "shading/bsdf.h"
+
+namespace pertev::test {
+
+struct BsdfCase {
+    std::string name;
+    Bsdf bsdf;
+};
+
+inline constexpr Rgb kGoldEta = {0.2f, 0.92f, 1.1f}, kGoldK = {3.9f, 2.45f, 2.14f};
+
+/// One of each kind at several roughnesses; lobes that are not delta.
+inline std::vector<BsdfCase> rough_bsdf_cases() {
+    std::vector<BsdfCase> cases = {{"diffuse", make_diffuse({0.8f, 0.5f, 0.2f})}};
+    for (const float r : {0.1f, 0.3f, 0.6f, 1.0f}) {
+        const std::string at = " of roughness " + std::to_string(r);
+        cases.push_back({"gold" + at, make_conductor(kGoldEta, kGoldK, r)});
+        cases.push_back({"glass" + at, make_dielectric(1.5f, r, {1.0f, 0.9f, 0.7f})});
+        cases.push_back({"plastic" + at, make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, r, 1.5f)});
+    }
+    cases.push_back({"half a metal", make_metallic_roughness({0.9f, 0.5f, 0.1f}, 0.5f, 0.4f, 1.5f)});
+    cases.push_back({"glTF metal", make_metallic_roughness({0.9f, 0.5f, 0.1f}, 1, 0.5f, 1.5f)});
+    cases.push_back({"mirror coat", make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, 0, 1.5f)});
+    cases.push_back({"glass of index 1.1", make_dielectric(1.1f, 0.5f, grey(1))});
+    cases.push_back({"glass of index 2.4", make_dielectric(2.4f, 0.35f, grey(1))});
+    return cases;
+}
+
+/// Unit vector at height `z` in [-1, 1], `turns` of a full turn about the normal.
+inline Vec3 direction_at(float z, float turns = 0.1f) {
+    const float across = std::sqrt((1.0f - z) * (1.0f + z)), angle = 6.2831853f * turns;
+    return {across * std::cos(angle), across * std::sin(angle), z};
+}
+
+struct SamplePoint {
+    float lobe;
+    Vec2 u;
+};
+
+/// Independent points, by index and seed.
+inline SamplePoint random_point(uint32_t i, uint32_t seed) {
+    const Hash4 h = hash_words(i, seed, 0x9e3779b9u, i ^ seed);
+    return {unit_interval(h.x), {unit_interval(h.y), unit_interval(h.z)}};
+}
+
+/// Point i of the Hammersley set of `count` points: means over it are off by little more than 1 / count.
+inline SamplePoint even_point(uint32_t i, uint32_t count) {
+    double thirds = 0, digit = 1.0 / 3;
+    for (uint32_t rest = i; rest != 0; rest /= 3, digit /= 3) thirds += digit * (rest % 3);
+    const double lobe = (i + 0.5) / count;
+    return {static_cast<float>(lobe) * 0x1.fffffep-1f,
+            {static_cast<float>(thirds) * 0x1.fffffep-1f, unit_interval(reverse_bits(i))}};
+}
+
+struct MeanWeight {
+    double r = 0, g = 0, b = 0;
+    double largest() const { return std::fmax(r, std::fmax(g, b)); }
+    double least() const { return std::fmin(r, std::fmin(g, b)); }
+};
+
+/// Mean of sample()'s weight over `count` even points: the light that a closed furnace of radiance 1 sends to wo.
+inline MeanWeight mean_weight(const Bsdf& bsdf, Vec3 wo, uint32_t count) {
+    MeanWeight mean;
+    for (uint32_t i = 0; i < count; i++) {
+        const SamplePoint p = even_point(i, count);
+        const BsdfSample s = bsdf.sample(wo, p.lobe, p.u);
+        if (!(s.pdf > 0)) continue;
+        mean.r += static_cast<double>(s.weight.r);
+        mean.g += static_cast<double>(s.weight.g);
+        mean.b += static_cast<double>(s.weight.b);
+    }
+    const double scale = 1.0 / count;
+    return {scale * mean.r, scale * mean.g, scale * mean.b};
+}
+
+} // namespace pertev::test

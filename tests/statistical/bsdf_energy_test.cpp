@@ -1,0 +1,145 @@
+// White furnace, energy bound and reciprocity. Under uniform light of radiance 1 from everywhere the mean weight of
+// sample() is what the surface sends back: 1 where nothing is absorbed, and never more.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "tests/statistical/bsdf_cases.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr float kRoughnesses[] = {0.033f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f};
+constexpr float kCosines[] = {1e-4f, 3e-3f, 0.03f, 0.12f, 0.35f, 0.65f, 1.0f};
+
+/// Least and largest mean weight over roughness times angle, on the side that `side` (+-1) says.
+template <class Make>
+MeanWeight furnace_range(Make make, float side, uint32_t points) {
+    double least = 1e9, largest = 0;
+    for (const float roughness : kRoughnesses)
+        for (const float cosine : kCosines) {
+            const MeanWeight mean = mean_weight(make(roughness), direction_at(side * cosine), points);
+            least = std::min(least, mean.least());
+            largest = std::max(largest, mean.largest());
+        }
+    return {least, 0, largest};
+}
+
+uint32_t furnace_points() { return static_cast<uint32_t>(effort(1 << 14, 1 << 20)); }
+
+Rgb f_of(const Bsdf& bsdf, Vec3 wo, Vec3 wi) { return (1.0f / std::fabs(wi.z)) * bsdf.eval(wo, wi); }
+
+} // namespace
+
+TEST_CASE("a white diffuse surface, a perfect mirror and smooth glass return all light to 0.1 %") {
+    const Bsdf bsdfs[] = {make_diffuse(grey(1)), make_conductor(grey(0), grey(2), 0), make_dielectric(1.5f, 0, grey(1)),
+                          make_dielectric(2.4f, 0, grey(1)), make_dielectric(1, 0.5f, grey(1))};
+    for (const Bsdf& bsdf : bsdfs)
+        for (const float cosine : {1e-4f, 0.01f, 0.2f, 0.6f, 0.7f, 0.8f, 1.0f})
+            for (const float side : {1.0f, -1.0f}) {
+                const MeanWeight mean = mean_weight(bsdf, direction_at(side * cosine), 20'000);
+                INFO("cos(wo) = " << side * cosine << " kind " << static_cast<int>(bsdf.kind));
+                CHECK(mean.least() > 0.999);
+                CHECK(mean.largest() < 1.001);
+            }
+}
+
+TEST_CASE("a rough conductor that absorbs nothing returns all light to 0.5 %") {
+    const MeanWeight range =
+        furnace_range([](float r) { return make_conductor(grey(0), grey(2), r); }, 1, furnace_points());
+    INFO("mean weight from " << range.least() << " to " << range.largest());
+    CHECK(range.r > 0.995);
+    CHECK(range.b < 1.005);
+}
+
+TEST_CASE("without its second lobe the rough conductor loses half the light, and the furnace shows it") {
+    double mean = 0;
+    constexpr uint32_t kPoints = 10'000;
+    const Vec3 wo = direction_at(0.9f);
+    for (uint32_t i = 0; i < kPoints; i++) {
+        const Vec3 wi = reflect(wo, sample_ggx_visible_normal(wo, 1, even_point(i, kPoints).u));
+        if (!(wi.z > 0)) continue;
+        const GgxReflection once = evaluate_ggx_reflection(wo, normalize(wi), 1);
+        mean += static_cast<double>(once.f / once.pdf) / kPoints;
+    }
+    CHECK(mean > 0.2);
+    CHECK(mean < 0.5);
+}
+
+TEST_CASE("rough glass returns all light to 1 %, from outside and from inside") {
+    for (const float ior : {1.1f, 1.33f, 1.5f, 2.4f})
+        for (const float side : {1.0f, -1.0f}) {
+            const MeanWeight range =
+                furnace_range([ior](float r) { return make_dielectric(ior, r, grey(1)); }, side, furnace_points());
+            INFO("ior " << ior << " side " << side << ": mean weight from " << range.least() << " to "
+                        << range.largest());
+            CHECK(range.r > 0.99);
+            CHECK(range.b < 1.01);
+        }
+}
+
+TEST_CASE("white glTF materials return all light to 1 %") {
+    for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+        const MeanWeight range = furnace_range(
+            [metallic](float r) { return make_metallic_roughness(grey(1), metallic, r, 1.5f); }, 1, furnace_points());
+        INFO("metallic " << metallic << ": mean weight from " << range.least() << " to " << range.largest());
+        CHECK(range.r > 0.99);
+        CHECK(range.b < 1.01);
+    }
+}
+
+TEST_CASE("no bsdf returns more than 1 + 1e-3 of the light") {
+    const auto count = static_cast<uint32_t>(effort(300, 10'000));
+    for (uint32_t i = 0; i < count; i++) {
+        const Hash4 a = hash_words(i, 1, 2, 3), b = hash_words(i, 4, 5, 6);
+        // Half of the colours are saturated at 1, half of the directions gather at grazing.
+        const auto channel = [](uint32_t bits) { return std::min(2.0f * unit_interval(bits), 1.0f); };
+        const Rgb color = {channel(a.x), channel(a.y), channel(a.z)};
+        const float roughness = unit_interval(a.w), u = unit_interval(b.x);
+        const float z = ((i >> 2) & 1) != 0 ? u : std::pow(10.0f, -5.0f * u);
+        const float ior = 1.0f + 1.8f * unit_interval(b.y), metallic = unit_interval(b.z);
+        const Bsdf bsdfs[] = {make_metallic_roughness(color, metallic, roughness, ior),
+                              make_dielectric(ior, roughness, color),
+                              make_conductor(0.2f * color, grey(4.0f * metallic), roughness),
+                              make_metallic_roughness(grey(1), (i & 16) != 0 ? metallic : 0.0f, roughness, ior)};
+        const Bsdf& bsdf = bsdfs[i & 3];
+        const Vec3 wo = direction_at((b.w & 1) != 0 ? z : -z);
+        MeanWeight mean = mean_weight(bsdf, wo, 1 << 14);
+        if (mean.largest() > 1 - 2e-3) mean = mean_weight(bsdf, wo, 1 << 16); // the first try may be off by as much
+        if (mean.largest() > 1 + 3e-4) mean = mean_weight(bsdf, wo, 1 << 20);
+        INFO("case " << i << " kind " << static_cast<int>(bsdf.kind) << " cos(wo) " << wo.z << " alpha " << bsdf.alpha
+                     << " ior " << bsdf.ior << " metallic " << bsdf.metallic << " mean " << mean.largest());
+        CHECK(mean.largest() < 1 + 1e-3);
+    }
+}
+
+TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices") {
+    const auto count = static_cast<uint32_t>(effort(20'000, 1'000'000));
+    uint32_t compared = 0;
+    for (const BsdfCase& c : rough_bsdf_cases())
+        for (uint32_t i = 0; i < count / 10; i++) {
+            const SamplePoint p = random_point(i, 77), q = random_point(i, 78);
+            const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y);
+            // Half of the pairs where the lobes are, half anywhere.
+            const BsdfSample s = c.bsdf.sample(wo, q.lobe, q.u);
+            const Vec3 wi = (i & 1) != 0 && s.pdf > 0 ? s.wi : direction_at(2.0f * q.u.x - 1.0f, q.u.y);
+            const Rgb there = f_of(c.bsdf, wo, wi);
+            Rgb back = f_of(c.bsdf, wi, wo);
+            if (c.bsdf.kind == BsdfKind::Dielectric && wo.z * wi.z < 0) {
+                const float eta = wo.z > 0 ? c.bsdf.ior : 1.0f / c.bsdf.ior; // f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2
+                back = (eta * eta) * back;
+            }
+            const float size = std::max(max_component(there), max_component(back));
+            if (size < 1e-12f) continue;
+            compared++;
+            // The half vectors of the two ways round differently, by about 1e-7 / alpha of the lobe's width.
+            const float error = std::max(std::fabs(there.r - back.r), std::fabs(there.b - back.b)) / size;
+            INFO(c.name << " wo.z " << wo.z << " wi.z " << wi.z << " there " << there.r << " back " << back.r);
+            CHECK(error < 5e-4f + 1e-5f / std::max(c.bsdf.alpha, 1e-2f));
+        }
+    CHECK(compared > count);
+}

@@ -1,0 +1,175 @@
+// Every BSDF's sample() draws from its pdf(), its weight is eval / pdf, and the mean weight is the integral of eval.
+// Directions are counted in a chart about the mirror direction, so that narrow lobes spread over many cells.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "tests/statistical/bsdf_cases.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/direction_chart.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+struct SamplingReport {
+    ChiSquareResult chi_square;
+    double weight_error = 0;    // largest |weight pdf - eval| / |eval|
+    double pdf_error = 0;       // largest |sample's pdf - pdf()| / pdf()
+    double mean_deviations = 0; // |mean weight - integral of eval| in standard errors, the worst channel
+};
+
+template <class AnyBsdf>
+SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart& chart, uint32_t samples,
+                             uint32_t seed) {
+    constexpr int kAcross = 30, kAround = 20, kCells = kAcross * kAround;
+    std::vector<double> observed(kCells + 1), expected(kCells + 1);
+    SamplingReport report;
+    double sum[3] = {}, squares[3] = {};
+    for (uint32_t i = 0; i < samples; i++) {
+        const SamplePoint p = random_point(i, seed);
+        const BsdfSample s = bsdf.sample(wo, p.lobe, p.u);
+        if (!(s.pdf > 0) || s.is_delta) {
+            observed[kCells] += 1;
+            continue;
+        }
+        const auto at = chart.point_of(s.wi);
+        const int x = std::min(static_cast<int>(at.x * kAcross), kAcross - 1);
+        const int y = std::min(static_cast<int>(at.y * kAround), kAround - 1);
+        observed[static_cast<size_t>(y * kAcross + x)] += 1;
+
+        const double weight[3] = {static_cast<double>(s.weight.r), static_cast<double>(s.weight.g),
+                                  static_cast<double>(s.weight.b)};
+        for (int c = 0; c < 3; c++) {
+            sum[c] += weight[c];
+            squares[c] += weight[c] * weight[c];
+        }
+        const double pdf = static_cast<double>(bsdf.pdf(wo, s.wi)), drawn = static_cast<double>(s.pdf);
+        const Rgb f = bsdf.eval(wo, s.wi);
+        report.pdf_error = std::max(report.pdf_error, std::fabs(drawn - pdf) / pdf);
+        report.weight_error = std::max(report.weight_error, std::fabs(weight[1] * drawn - static_cast<double>(f.g)) /
+                                                                static_cast<double>(f.g));
+    }
+
+    double total[4] = {};
+    for (int k = 0; k < kCells; k++) {
+        const int x = k % kAcross, y = k / kAcross;
+        const ChartRectangle cell = {double(x) / kAcross, double(x + 1) / kAcross, double(y) / kAround,
+                                     double(y + 1) / kAround};
+        const auto density = [&](Vec3 wi) {
+            ChartIntegral v;
+            v.value[0] = static_cast<double>(bsdf.pdf(wo, wi));
+            return v;
+        };
+        const auto value = [&](Vec3 wi) {
+            const Rgb f = bsdf.eval(wo, wi);
+            return ChartIntegral{{static_cast<double>(f.r), static_cast<double>(f.g), static_cast<double>(f.b)}};
+        };
+        const double part = integrate_over(chart, cell, 3e-7, density).value[0];
+        expected[static_cast<size_t>(k)] = samples * part;
+        total[3] += part;
+        const ChartIntegral eval = integrate_over(chart, cell, 3e-7, value);
+        for (int c = 0; c < 3; c++) total[c] += eval.value[c];
+    }
+    // What is not drawn is one more cell.
+    expected[kCells] = samples * (1 - total[3]);
+    // The horizon may leave a sliver of a cell that the integration misses: so small a count only joins it to the pool
+    // of rare cells.
+    for (double& count : expected) count = std::max(count, 1e-3);
+    report.chi_square = chi_square(observed, expected);
+    report.chi_square.integral = total[3];
+    if (total[3] > 1 + 1e-4) report.chi_square.p_value = 0;
+    for (int c = 0; c < 3; c++) {
+        const double mean = sum[c] / samples, variance = std::max(squares[c] / samples - mean * mean, 0.0);
+        const double error = std::sqrt(variance / samples) + 2e-5; // the latter for the integration
+        report.mean_deviations = std::max(report.mean_deviations, std::fabs(mean - total[c]) / error);
+    }
+    return report;
+}
+
+/// About the mirror direction of wo; as wide as the lobe of GGX width alpha.
+DirectionChart chart_for(Vec3 wo, float alpha) {
+    if (alpha > 0.3f || alpha < kSmoothAlpha) return {make_frame({0, 0, 1}), 1.0};
+    return {make_frame(normalize({-wo.x, -wo.y, wo.z})), static_cast<double>(alpha)};
+}
+
+/// About the refracted direction.
+DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
+    const float eta = wo.z > 0 ? glass.ior : 1.0f / glass.ior, across = std::sqrt(1.0f - wo.z * wo.z);
+    const float down = std::sqrt(std::max(1.0f - square(across / eta), 0.0f));
+    const Vec3 wi = normalize({-wo.x / eta, -wo.y / eta, wo.z > 0 ? -down : down});
+    return {make_frame(wi), std::max(0.5 * static_cast<double>(glass.alpha), 0.02)};
+}
+
+} // namespace
+
+TEST_CASE("every bsdf draws directions as its pdf says, with weight eval over pdf") {
+    const auto samples = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
+    const auto angles = effort(0, 1) != 0 ? std::vector<float>{1, 0.9f, 0.5f, 0.2f, 0.03f, -0.03f, -0.3f, -0.8f}
+                                          : std::vector<float>{0.85f, -0.25f};
+    const std::vector<BsdfCase> cases = rough_bsdf_cases();
+    const int tests = static_cast<int>(2 * cases.size() * angles.size());
+    uint32_t seed = 1;
+    for (const BsdfCase& c : cases)
+        for (const float z : angles) {
+            const Vec3 wo = direction_at(z);
+            const bool through = c.bsdf.kind == BsdfKind::Dielectric && c.bsdf.alpha < 0.3f;
+            const DirectionChart chart = through ? chart_through(wo, c.bsdf) : chart_for(wo, c.bsdf.alpha);
+            const SamplingReport report = test_sampling(c.bsdf, wo, chart, samples, seed++);
+            INFO(c.name << " from cos(wo) = " << z << ": " << report.chi_square.describe());
+            CHECK(report.chi_square.passes(tests));
+            CHECK(report.mean_deviations < 5);
+            CHECK(report.weight_error < 1e-4);
+            CHECK(report.pdf_error < 1e-4);
+        }
+}
+
+namespace {
+
+/// Diffuse, with the flaw that its pdf lacks the cosine.
+struct NoCosineInPdf : DiffuseBsdf {
+    float pdf(Vec3 wo, Vec3 wi) const { return wo.z * wi.z > 0 ? 0.5f * kInvPi : 0.0f; }
+};
+
+/// Diffuse, with the flaw that its value lacks the cosine.
+struct NoCosineInEval : DiffuseBsdf {
+    Rgb eval(Vec3 wo, Vec3 wi) const { return wo.z * wi.z > 0 ? kInvPi * albedo : Rgb{}; }
+};
+
+/// Rough metal that forgets, in its pdf alone, the lobe of returned energy.
+struct ForgottenLobe : ConductorBsdf {
+    float pdf(Vec3 wo, Vec3 wi) const { return wi.z > 0 ? evaluate_ggx_reflection(wo, wi, alpha).pdf : 0.0f; }
+};
+
+/// Rough metal whose weights are 2 % too bright, in the samples alone.
+struct BrightWeights : ConductorBsdf {
+    BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
+        BsdfSample s = ConductorBsdf::sample(wo, u_lobe, u);
+        s.weight = 1.02f * s.weight;
+        return s;
+    }
+};
+
+} // namespace
+
+TEST_CASE("the sampling test notices a missing cosine, a forgotten lobe and bright weights") {
+    const Vec3 wo = direction_at(0.7f);
+    const DirectionChart chart = chart_for(wo, 1);
+    const NoCosineInPdf pdf = {{grey(0.5f)}};
+    CHECK_FALSE(test_sampling(pdf, wo, chart, 100'000, 1).chi_square.passes(1000));
+    const NoCosineInEval eval = {{grey(0.5f)}};
+    const SamplingReport of_eval = test_sampling(eval, wo, chart, 100'000, 1);
+    CHECK(of_eval.chi_square.passes(1));
+    CHECK(of_eval.mean_deviations > 5);
+    CHECK(of_eval.weight_error > 1e-2);
+    const ForgottenLobe lobe = {{kGoldEta, kGoldK, 0.25f}};
+    CHECK_FALSE(test_sampling(lobe, wo, chart, 100'000, 1).chi_square.passes(1000));
+    const BrightWeights bright = {{kGoldEta, kGoldK, 0.25f}};
+    const SamplingReport of_bright = test_sampling(bright, wo, chart, 100'000, 1);
+    CHECK(of_bright.chi_square.passes(1));
+    CHECK(of_bright.mean_deviations > 5);
+    CHECK(of_bright.weight_error > 1e-2);
+}

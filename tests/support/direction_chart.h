@@ -1,0 +1,41 @@
+#pragma once
+
+// A flat chart of all directions about an axis, stretched so that a lobe of a given width there fills the chart: for
+// counting samples of a BSDF in cells and for integrating over the sphere. x in [0, 1] is t / (t + width) with t the
+// tangent of half the angle to the axis, y in [0, 1] the turn about it.
+
+#include <functional>
+
+#include "math/frame.h"
+#include "math/vec3.h"
+
+namespace pertev::test {
+
+struct DirectionChart {
+    Frame frame;  // +z is the axis
+    double width; // > 0; about the lobe's half width in radians, 1 for an even chart
+
+    struct Point {
+        double x, y;
+    };
+    Point point_of(Vec3 direction) const;
+    struct Place {
+        Vec3 direction;
+        double area; // solid angle over dx dy
+    };
+    Place place_of(Point p) const;
+};
+
+struct ChartRectangle {
+    double x0, x1, y0, y1;
+};
+
+/// Integral over the rectangle by solid angle, in up to three channels at once; quartered until two rules agree to
+/// `tolerance` or down to 1/256 of the side.
+struct ChartIntegral {
+    double value[3] = {0, 0, 0};
+};
+ChartIntegral integrate_over(const DirectionChart& chart, const ChartRectangle& rectangle, double tolerance,
+                             const std::function<ChartIntegral(Vec3)>& f);
+
+} // namespace pertev::test

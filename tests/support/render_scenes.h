@@ -1,0 +1,27 @@
+#pragma once
+
+// Scenes made by the tests, with something of everything a path can meet, and the shortest way to a picture of one.
+
+#include <cstdint>
+
+#include "integrators/render_picture.h"
+#include "scene/scene.h"
+
+namespace pertev::test {
+
+/// A room open to a panorama: diffuse, metal, glass and glTF spheres (two of them instances of one mesh), a textured
+/// floor, a cut-out and a blended sheet, an emissive quad, a point, a spot and a directional light.
+Scene make_mixed_scene();
+/// A camera that sees all of it.
+Camera mixed_scene_camera();
+
+/// A sphere of `albedo` with smooth normals, about the origin, radius 1, under an environment of radiance 1.
+Scene make_furnace_scene(float albedo);
+
+Queue make_cuda_queue(); // for tests under cuda_requested()
+
+/// Renders with the scene's trees built afresh.
+RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
+                    const PrepareOptions& prepare = {});
+
+} // namespace pertev::test

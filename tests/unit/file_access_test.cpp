@@ -1,0 +1,79 @@
+#include <doctest/doctest.h>
+
+#include "formats/file_access.h"
+#include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
+
+namespace fs = std::filesystem;
+using namespace pertev;
+
+namespace {
+
+struct Folders {
+    fs::path top = fs::canonical(test::scratch_folder());
+    fs::path scene = top / "scene", other = top / "scene2";
+    fs::path file = scene / "a.obj";
+
+    Folders() {
+        fs::create_directories(scene / "textures");
+        fs::create_directories(other);
+        test::write_text(file, "");
+        test::write_text(scene / "textures" / "t.png", "");
+        test::write_text(other / "t.png", "");
+    }
+};
+
+} // namespace
+
+TEST_CASE("files in the scene's folder and below are resolved, also with backslashes, dots and spaces") {
+    const Folders f;
+    const FileAccess access(f.file, {});
+    CHECK(access.resolve(f.file, "textures/t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(f.file, "textures\\t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(f.file, "./textures/../textures/t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(f.scene / "textures" / "b.mtl", "t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(f.file, "no such file.png") == f.scene / "no such file.png");
+    CHECK(access.resolve(f.file, (f.scene / "a.obj").string()) == f.file);
+}
+
+TEST_CASE("a file outside the scene's folder is refused, with a message that names the file and --allow-path") {
+    const Folders f;
+    const FileAccess access(f.file, {});
+    fs::create_symlink(f.other, f.scene / "link");
+    fs::create_symlink(f.other / "t.png", f.scene / "link.png");
+    fs::create_symlink(f.other / "not yet", f.scene / "dangling");
+    for (const std::string& reference :
+         {std::string("../scene2/t.png"), std::string("..\\scene2\\t.png"), std::string("/etc/passwd"),
+          (f.other / "t.png").string(), std::string("link/t.png"), std::string("link.png"),
+          std::string("textures/../../scene2/t.png")}) {
+        CAPTURE(reference);
+        const auto error = test::thrown_error([&] { (void)access.resolve(f.file, reference); });
+        REQUIRE(error);
+        CHECK(error->code() == ErrorCode::BadInput);
+        CHECK(test::says(error, f.file.string()));
+        CHECK(test::says(error, "--allow-path"));
+    }
+    CHECK_THROWS_AS((void)access.resolve(f.file, "dangling"), Error);
+    CHECK_THROWS_AS((void)access.resolve(f.file, ""), Error);
+    CHECK_THROWS_AS((void)access.resolve(f.file, std::string("textures/t.png\0.txt", 18)), Error);
+    CHECK_THROWS_AS((void)access.resolve(f.file, std::string(10000, 'x') + "/a"), Error);
+}
+
+TEST_CASE("an allowed folder may be read, one beside it that begins alike may not") {
+    const Folders f;
+    const FileAccess access(f.file, {f.other});
+    CHECK(access.resolve(f.file, "../scene2/t.png") == f.other / "t.png");
+    fs::create_directories(f.top / "scene22");
+    CHECK_THROWS_AS((void)access.resolve(f.file, "../scene22/t.png"), Error);
+    CHECK_THROWS_AS(FileAccess(f.file, {f.top / "missing"}), Error);
+}
+
+TEST_CASE("a file named with a path of another machine is found beside the file that names it") {
+    const Folders f;
+    const FileAccess access(f.file, {});
+    CHECK(access.find(f.file, "C:\\models\\a.obj") == f.file);
+    CHECK(access.find(f.file, "maps/elsewhere/a.obj") == f.file);
+    CHECK(access.find(f.file, "textures/t.png") == f.scene / "textures/t.png");
+    CHECK(!access.find(f.file, "nothing.png"));
+}

@@ -1,0 +1,87 @@
+#include "shading/fresnel.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <complex>
+
+using namespace pertev;
+
+namespace {
+
+/// Textbook form in complex double arithmetic: n is the far side's index over the near side's.
+double reflectance(double cosine, std::complex<double> n) {
+    const std::complex<double> far = std::sqrt(1.0 - (1.0 - cosine * cosine) / (n * n));
+    const std::complex<double> s = (cosine - n * far) / (cosine + n * far);
+    const std::complex<double> p = (n * cosine - far) / (n * cosine + far);
+    return 0.5 * (std::norm(s) + std::norm(p));
+}
+
+template <class F>
+double cosine_average(F f) { // 2 int f(mu) mu dmu, midpoints
+    constexpr int kSteps = 20'000;
+    double sum = 0;
+    for (int i = 0; i < kSteps; i++) {
+        const double mu = (i + 0.5) / kSteps;
+        sum += 2 * mu * f(mu) / kSteps;
+    }
+    return sum;
+}
+
+} // namespace
+
+TEST_CASE("dielectric reflectance agrees with complex arithmetic to 1e-5, total reflection included") {
+    for (const float eta : {1.0f / 2.4f, 1.0f / 1.5f, 0.99f, 1.0f, 1.01f, 1.33f, 1.5f, 3.0f})
+        for (int i = 1; i <= 1000; i++) {
+            const float cosine = static_cast<float>(i) / 1000.0f;
+            const DielectricFresnel f = fresnel_dielectric(cosine, eta);
+            INFO("cosine " << cosine << " eta " << eta);
+            // The square root at the critical angle turns rounding of 1e-7 into 3e-4.
+            const double at_edge = std::fabs(1 - (1 - double(cosine) * double(cosine)) / (double(eta) * double(eta)));
+            CHECK(double(f.reflectance) ==
+                  doctest::Approx(reflectance(double(cosine), double(eta))).epsilon(at_edge < 1e-4 ? 2e-2 : 1e-5));
+            // Snell's law.
+            if (f.reflectance < 1)
+                CHECK(double(eta * std::sqrt(1 - f.cos_t * f.cos_t)) ==
+                      doctest::Approx(std::sqrt(1 - double(cosine) * double(cosine))).epsilon(1e-3));
+        }
+    CHECK(fresnel_dielectric(1, 1.5f).reflectance == doctest::Approx(0.04));
+    CHECK(fresnel_dielectric(0, 1.5f).reflectance == 1);
+    CHECK(fresnel_dielectric(0.5f, 1).reflectance < 1e-12f);
+}
+
+TEST_CASE("conductor reflectance agrees with complex arithmetic to 1e-4") {
+    for (const float eta : {0.05f, 0.2f, 1.0f, 3.0f})
+        for (const float k : {0.0f, 0.5f, 2.0f, 7.0f})
+            for (int i = 1; i <= 100; i++) {
+                const float cosine = static_cast<float>(i) / 100.0f;
+                // A real index below 1 is the dielectric's total reflection, where the complex root's branch is at
+                // stake.
+                if (k == 0 && eta < 1) continue;
+                INFO("cosine " << cosine << " eta " << eta << " k " << k);
+                const std::complex<double> n = {double(eta), double(k)};
+                CHECK(std::fabs(double(fresnel_conductor(cosine, eta, k)) - reflectance(double(cosine), n)) < 1e-4);
+            }
+    CHECK(fresnel_conductor(0.3f, 0, 2) == doctest::Approx(1));
+}
+
+TEST_CASE("the averages of reflectance agree with their integrals") {
+    for (const float eta : {1.0f / 2.5f, 1.0f / 1.5f, 1.1f, 1.33f, 1.5f, 2.5f}) {
+        INFO("eta " << eta);
+        const double exact = cosine_average([eta](double mu) { return reflectance(mu, double(eta)); });
+        CHECK(std::fabs(double(fresnel_dielectric_average(eta)) - exact) < 7e-3);
+    }
+    for (const float k : {2.0f, 4.0f}) {
+        const double exact =
+            cosine_average([k](double mu) { return reflectance(mu, std::complex<double>(0.9, double(k))); });
+        CHECK(std::fabs(double(fresnel_conductor_average(grey(0.9f), grey(k)).g) - exact) < 7e-3);
+    }
+    CHECK(fresnel_schlick_average(0.04f) ==
+          doctest::Approx(cosine_average([](double mu) { return 0.04 + 0.96 * std::pow(1 - mu, 5); })));
+}
+
+TEST_CASE("Schlick's approximation is exact at normal and grazing incidence") {
+    CHECK(fresnel_schlick(1, {0.04f, 0.5f, 1}) == Rgb{0.04f, 0.5f, 1});
+    CHECK(fresnel_schlick(0, {0.04f, 0.5f, 1}) == Rgb{1, 1, 1});
+    CHECK(f0_from_ior(1.5f) == doctest::Approx(0.04));
+}

@@ -1,0 +1,319 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "formats/read_obj.h"
+#include "formats/triangulate_polygon.h"
+#include "image/srgb.h"
+#include "image/write_png.h"
+#include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
+
+namespace fs = std::filesystem;
+using namespace pertev;
+
+namespace {
+
+struct Loaded {
+    Scene scene;
+    Messages messages;
+
+    bool said(const std::string& text) const {
+        return std::any_of(messages.all().begin(), messages.all().end(),
+                           [&](const Message& message) { return message.text.find(text) != std::string::npos; });
+    }
+    const Material& material(const std::string& name) const {
+        for (const Material& material : scene.materials) {
+            if (material.name == name) return material;
+        }
+        throw std::runtime_error("no material " + name);
+    }
+};
+
+Loaded load(const fs::path& path, const ReadOptions& options = {}) {
+    Loaded loaded;
+    loaded.scene = read_obj(path, FileAccess(path, options.allowed_paths), options, loaded.messages);
+    return loaded;
+}
+
+Loaded load_text(const std::string& obj, const std::string& mtl = "") {
+    const fs::path folder = test::scratch_folder();
+    test::write_text(folder / "a.mtl", mtl);
+    return load(test::write_text(folder / "a.obj", obj));
+}
+
+const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+/// Surface of one material m described by `lines`.
+Material material_of(const std::string& lines) {
+    return load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n", "newmtl m\n" + lines).material("m");
+}
+
+void write_picture(const fs::path& path, uint32_t size, uint8_t (*value)(uint32_t x, uint32_t channel)) {
+    Rgba8Image image{.width = size, .height = size, .pixels = {}};
+    for (uint32_t i = 0; i < size * size * 4; ++i) image.pixels.push_back(value(i / 4 % size, i % 4));
+    write_png(path, image, true);
+}
+
+double area(const std::vector<Vec3>& p, const std::vector<uint32_t>& indices) {
+    double sum = 0; // signed, seen from +z
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        const Vec3 n = cross(p[indices[i + 1]] - p[indices[i]], p[indices[i + 2]] - p[indices[i]]);
+        CHECK(n.z >= 0);
+        sum += 0.5 * static_cast<double>(n.z);
+    }
+    return sum;
+}
+
+} // namespace
+
+TEST_CASE("one mesh and one instance for each material, in the order of first use") {
+    const Loaded l = load_text("mtllib a.mtl\n" + kTriangle +
+                                   "usemtl b\nf 1 2 3\ng other\nusemtl a\nf 3 2 1\nusemtl b\nf 1 3 2\nusemtl unused\n",
+                               "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\nnewmtl unused\n");
+    REQUIRE(l.scene.meshes.size() == 2);
+    REQUIRE(l.scene.instances.size() == 2);
+    CHECK(l.scene.meshes[0].triangle_count() == 2);
+    CHECK(l.scene.meshes[0].positions.size() == 3);
+    CHECK(l.scene.materials[l.scene.instances[0].material].base_color == Rgb{0, 1, 0});
+    CHECK(l.scene.materials[l.scene.instances[1].material].base_color == Rgb{1, 0, 0});
+}
+
+TEST_CASE("corners share a vertex only where position, texture coordinate and normal agree") {
+    const Loaded l = load_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0.25\nvt 1 0\nvn 0 0 1\nvn 1 0 0\n"
+                               "f 1/1/1 2/2/1 3/1/1\nf 1/1/1 3/1/1 4/2/1\nf 1/2/1 2/2/1 3/1/2\n");
+    REQUIRE(l.scene.meshes.size() == 1);
+    const Mesh& mesh = l.scene.meshes[0];
+    CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3, 4, 1, 5});
+    CHECK(mesh.uv[0][0] == Vec2{0, 0.75f}); // v runs down
+    CHECK(mesh.normals[5] == Vec3{1, 0, 0});
+    CHECK(mesh.positions[5] == Vec3{1, 1, 0});
+}
+
+TEST_CASE("relative indices, comments, joined lines, CRLF and lone CR line ends are read") {
+    const std::vector<uint32_t> expected = {0, 1, 2};
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        std::string text = "\xef\xbb\xbf# a comment;v 0 0 0 # zero;v 1 \\;0 0;\tv  0 1\t0;;f -3 -2 -1 # end;";
+        for (std::size_t at = text.find(';'); at != text.npos; at = text.find(';', at)) text.replace(at, 1, end);
+        const Loaded l = load_text(text);
+        REQUIRE(l.scene.meshes.size() == 1);
+        CHECK(l.scene.meshes[0].indices == expected);
+        CHECK(l.scene.meshes[0].positions[1] == Vec3{1, 0, 0});
+        if (end != "\r") CHECK(l.messages.all().empty());
+    }
+}
+
+TEST_CASE("numbers are read to the nearest float") {
+    const Loaded l =
+        load_text("v 0.1 1e-3 +7.0064923216240854e-46\nv 16777217.0000001 1e39 -1e-60\nv .5 -5. 1e999999999\n"
+                  "f 1 2 3\n");
+    const std::vector<Vec3>& p = l.scene.meshes[0].positions;
+    CHECK(p[0] == Vec3{0.1f, 0.001f, 0.0f});
+    CHECK(p[1] == Vec3{16777218.0f, kInfinity, 0.0f});
+    CHECK(p[2] == Vec3{0.5f, -5.0f, kInfinity});
+}
+
+TEST_CASE("numbers that are not there or cannot be read become NaN, with a warning that names the first line") {
+    const Loaded l = load_text("v 0 0 0\nv 1 nan 0\nv 1 zero 0\nv 0 1\nf 1 2 3 4\n");
+    const std::vector<Vec3>& p = l.scene.meshes[0].positions;
+    CHECK(!is_finite(p[1]));
+    CHECK(!is_finite(p[2]));
+    CHECK(!is_finite(p[3]));
+    CHECK(l.said("a.obj:3: 2 lines have numbers"));
+}
+
+TEST_CASE("a vertex index that leads nowhere is an error that names the line") {
+    for (const std::string face :
+         {"f 1 2 4", "f 1 2 -4", "f 0 1 2", "f 1 2 99999999999999999999", "f 1 2 4294967296"}) {
+        CAPTURE(face);
+        const auto error = test::thrown_error([&] { load_text(kTriangle + "f 1 2 3\n" + face + "\n"); });
+        REQUIRE(error);
+        CHECK(error->code() == ErrorCode::BadInput);
+        CHECK(test::says(error, "a.obj:5: vertex index"));
+    }
+    for (const std::string face : {"f 1 2 c", "f 1/1/1/1 2 3", "f 1.5 2 3", "f / 2 3"}) {
+        CAPTURE(face);
+        CHECK(test::says(test::thrown_error([&] { load_text(kTriangle + face); }), "a.obj:4: a face's corner"));
+    }
+}
+
+TEST_CASE("an index may lead to a vertex further down, one of a texture coordinate to none") {
+    const Loaded l = load_text("f 1/7 2/7 3/7\n" + kTriangle);
+    CHECK(l.scene.meshes[0].triangle_count() == 1);
+    CHECK(l.scene.meshes[0].uv[0].empty());
+    CHECK(l.said("a.obj:1: 3 corners"));
+}
+
+TEST_CASE("lines, points, curves and garbage are left out, each kind with one warning") {
+    const Loaded l = load_text(kTriangle + "l 1 2\np 1\ncstype bezier\ncurv 0 1 1 2\nwhat is this\nf 1 2\nf 1 2 3\n");
+    CHECK(l.scene.meshes[0].triangle_count() == 1);
+    CHECK(l.messages.all().size() == 4);
+}
+
+TEST_CASE("vertex colours are read as sRGB, and the material is white") {
+    const Loaded l = load_text("v 0 0 0 1 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+    CHECK(l.scene.meshes[0].colors[0] == Vec4{1, srgb_decode(0.5f), 0, 1});
+    CHECK(l.scene.materials[0].base_color == grey(1));
+}
+
+TEST_CASE("polygons of any shape are cut into triangles that cover them once") {
+    const std::vector<Vec3> arrow = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 0.5f, 0}, {0, 2, 0}};
+    const std::vector<Vec3> dart = {{0, 0, 0}, {4, -3, 0}, {1, 0, 0}, {4, 3, 0}};
+    std::vector<Vec3> comb = {{0, 0, 0}, {100, 0, 0}};
+    for (int i = 99; i > 0; --i) comb.push_back({static_cast<float>(i), i % 2 ? 10.0f : 1.0f, 0});
+    for (const auto& [polygon, expected] : {std::pair(arrow, 2.5), std::pair(dart, 3.0), std::pair(comb, 549.5)}) {
+        for (const float far : {0.0f, 4096.0f}) {
+            std::vector<Vec3> moved = polygon;
+            for (Vec3& p : moved) p += Vec3{far, far, far};
+            std::vector<uint32_t> cut;
+            triangulate_polygon(moved, cut);
+            CHECK(cut.size() == 3 * (polygon.size() - 2));
+            CHECK(area(moved, cut) == doctest::Approx(expected).epsilon(1e-4));
+        }
+    }
+}
+
+TEST_CASE("a polygon of very many corners, spiral or scrambled, takes no time") {
+    std::vector<Vec3> polygon;
+    for (uint32_t i = 0; i < 300'000; ++i) {
+        const uint32_t scrambled = i * 2654435761u;
+        polygon.push_back({static_cast<float>(scrambled >> 16), static_cast<float>(scrambled & 0xffff), 0});
+    }
+    std::vector<uint32_t> cut;
+    triangulate_polygon(polygon, cut);
+    CHECK(cut.size() == 3 * (polygon.size() - 2));
+}
+
+TEST_CASE("mtl: what a Phong material is converted to") {
+    CHECK(material_of("Kd 0.2 0.3 0.4\nKs 0 0 0\nNs 10\nillum 2").kind == MaterialKind::Diffuse);
+    CHECK(material_of("Kd 0.2 0.3 0.4").base_color == Rgb{0.2f, 0.3f, 0.4f});
+    CHECK(material_of("Kd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nNs 225").kind == MaterialKind::Diffuse);
+    CHECK(material_of("Kd 0.8 0.8 0.8\nKs 0.4 0.4 0.4\nNs 225\nillum 1").kind == MaterialKind::Diffuse);
+
+    const Material glossy = material_of("Kd 0.5 0.5 0.5\nKs 0.04 0.04 0.04\nNs 30");
+    CHECK(glossy.kind == MaterialKind::MetallicRoughness);
+    CHECK(glossy.metallic == 0);
+    CHECK(glossy.roughness == doctest::Approx(0.5)); // alpha = sqrt(2 / 32) = 1 / 4
+    CHECK(glossy.ior == doctest::Approx(1.5));
+
+    const Material mirror = material_of("Kd 0 0 0\nKs 0.9 0.8 0.7\nNs 1000\nillum 3");
+    CHECK(mirror.kind == MaterialKind::MetallicRoughness);
+    CHECK(mirror.metallic == 1);
+    CHECK(mirror.roughness == 0);
+    CHECK(mirror.base_color == Rgb{0.9f, 0.8f, 0.7f});
+
+    const Material glass = material_of("Kd 0 0 0\nKs 1 1 1\nTf 0.25 1 1\nNi 1.33\nillum 7");
+    CHECK(glass.kind == MaterialKind::Dielectric);
+    CHECK(glass.ior == 1.33f);
+    CHECK(glass.roughness == 0);
+    CHECK(glass.base_color == Rgb{0.5f, 1, 1});
+    CHECK(material_of("Kd 0 0 0\nTf 1 1 1\nNi 1.5\nd 0.1").kind == MaterialKind::Dielectric);
+
+    const Material pbr = material_of("Kd 1 0 0\nPr 0.3\nPm 0.9");
+    CHECK(pbr.kind == MaterialKind::MetallicRoughness);
+    CHECK(pbr.roughness == 0.3f);
+    CHECK(pbr.metallic == 0.9f);
+
+    const Material clear = material_of("Kd 1 1 1\nd 0.25");
+    CHECK(clear.kind == MaterialKind::Diffuse);
+    CHECK(clear.alpha_mode == AlphaMode::Blend);
+    CHECK(clear.alpha == 0.25f);
+    CHECK(material_of("Kd 0 0 0\nKe 17 12 4").emission == Rgb{17, 12, 4});
+}
+
+TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
+    const fs::path folder = test::scratch_folder();
+    fs::create_directories(folder / "my maps");
+    const auto outline = [](uint32_t x, uint32_t channel) -> uint8_t { return channel < 3 ? 200 : (x < 8 ? 0 : 255); };
+    const auto fade = [](uint32_t x, uint32_t channel) -> uint8_t {
+        return channel == 3 ? 255 : static_cast<uint8_t>(16 * x);
+    };
+    const auto bluish = [](uint32_t, uint32_t channel) -> uint8_t { return channel < 2 ? 128 : 255; };
+    write_picture(folder / "my maps" / "leaf one.png", 16, outline);
+    write_picture(folder / "fade.png", 16, fade);
+    write_picture(folder / "normal.png", 16, bluish);
+    test::write_text(folder / "broken.png", "this is not an image");
+    test::write_text(folder / "a.mtl", "newmtl leaf\nKd 1 1 1\nmap_Kd -s 2 3 my maps\\leaf one.png\n"
+                                       "map_d -imfchan m my maps/leaf one.png\n"
+                                       "newmtl fade\nKd 1 1 1\nmap_d fade.png\nmap_Bump -bm 0.2 normal.png\n"
+                                       "newmtl offset\nKd 1 1 1\nmap_Kd -clamp on -o 0.25 fade.png\nbump fade.png\n"
+                                       "newmtl missing\nKd 0.3 0.3 0.3\nmap_Kd none.png\n"
+                                       "newmtl broken\nKd 0.3 0.3 0.3\nmap_Kd broken.png\nnorm normal.png\n");
+    std::string obj = "mtllib a.mtl\n" + kTriangle;
+    for (const char* name : {"leaf", "fade", "offset", "missing", "broken"}) {
+        obj += std::string("usemtl ") + name + "\nf 1 2 3\n";
+    }
+    const Loaded l = load(test::write_text(folder / "a.obj", obj));
+    REQUIRE(l.scene.images.size() == 3);
+
+    const Material& leaf = l.material("leaf");
+    CHECK(leaf.alpha_mode == AlphaMode::Mask);
+    CHECK(!leaf.alpha_texture.has_image()); // it is the base colour's own
+    CHECK(leaf.base_color_texture.is_srgb);
+    CHECK(leaf.base_color_texture.m00 == 2);
+    CHECK(leaf.base_color_texture.m11 == 3);
+    CHECK(leaf.base_color_texture.m12 == -2); // top stays v = 0 -> 1 - 3 + 3 v
+
+    const Material& faded = l.material("fade");
+    CHECK(faded.alpha_mode == AlphaMode::Blend);
+    REQUIRE(faded.alpha_texture.has_image());
+    CHECK(faded.alpha_texture.channel == 0);
+    CHECK(faded.normal_texture.has_image()); // recognised
+    CHECK(!faded.normal_texture.is_srgb);
+
+    const Material& offset = l.material("offset");
+    CHECK(offset.base_color_texture.m02 == 0.25f);
+    CHECK(offset.base_color_texture.wrap_s == Wrap::ClampToEdge);
+    CHECK(!offset.normal_texture.has_image());
+    CHECK(l.said("height map"));
+
+    CHECK(!l.material("missing").base_color_texture.has_image());
+    CHECK(l.said("there is no texture none.png"));
+    CHECK(!l.material("broken").base_color_texture.has_image());
+    CHECK(l.material("broken").normal_texture.image == faded.normal_texture.image);
+    CHECK(l.said("broken.png"));
+}
+
+TEST_CASE("mtl: a missing file and a missing material are grey with a warning; geometry only is grey without") {
+    const Loaded missing = load_text("mtllib none.mtl other.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
+    CHECK(missing.scene.materials[0].base_color == grey(0.8f));
+    CHECK(missing.said("there is no material file none.mtl"));
+    CHECK(missing.said("(x is the first)"));
+
+    const fs::path folder = test::scratch_folder();
+    test::write_text(folder / "a.mtl", "newmtl x\nKd 1 0 0\nmap_Kd none.png\n");
+    const fs::path path = test::write_text(folder / "a.obj", "mtllib a.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
+    const Loaded grey_only = load(path, {.allowed_paths = {}, .geometry_only = true});
+    CHECK(grey_only.scene.materials[0].base_color == grey(0.8f));
+    CHECK(grey_only.messages.all().empty());
+}
+
+TEST_CASE("mtl: a texture or material file outside the scene's folder is refused unless allowed") {
+    const fs::path folder = test::scratch_folder();
+    fs::create_directories(folder / "in");
+    test::write_text(folder / "out.mtl", "newmtl x\nKd 1 0 0\n");
+    const fs::path path =
+        test::write_text(folder / "in" / "a.obj", "mtllib ../out.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
+    CHECK(test::says(test::thrown_error([&] { load(path); }), "--allow-path"));
+    CHECK(load(path, {.allowed_paths = {folder}}).scene.materials[0].base_color == Rgb{1, 0, 0});
+
+    test::write_text(folder / "in" / "b.mtl", "newmtl x\nmap_Kd /etc/passwd\n");
+    const fs::path b = test::write_text(folder / "in" / "b.obj", "mtllib b.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
+    CHECK(test::says(test::thrown_error([&] { load(b); }), "--allow-path"));
+}
+
+TEST_CASE("Sponza comes in by material, its leaves and chains cut out") {
+    const auto path = test::test_scene("crytek-sponza/sponza.obj");
+    if (!path) return;
+    const Loaded l = load(*path);
+    CHECK(l.scene.meshes.size() == 24); // of its 25 materials one is not used
+    std::size_t triangles = 0;
+    for (const Mesh& mesh : l.scene.meshes) triangles += mesh.triangle_count();
+    CHECK(triangles == 262'205);
+    for (const Material& material : l.scene.materials) {
+        const bool is_cut_out = material.name == "leaf" || material.name == "chain";
+        CHECK(material.alpha_mode == (is_cut_out ? AlphaMode::Mask : AlphaMode::Opaque));
+    }
+    CHECK(l.messages.all().empty());
+}

@@ -1,0 +1,154 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "formats/read_ply.h"
+#include "image/srgb.h"
+#include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
+
+namespace fs = std::filesystem;
+using namespace pertev;
+
+namespace {
+
+Scene load(const std::string& bytes) {
+    const fs::path path = test::write_text(test::scratch_folder() / "a.ply", bytes);
+    Messages messages;
+    return read_ply(path, FileAccess(path, {}), {}, messages);
+}
+
+/// Body of a binary file, in one of the two byte orders.
+struct Bytes {
+    bool big_endian;
+    std::string text;
+
+    template <class T>
+    Bytes& add(T value) {
+        char bytes[sizeof(T)];
+        std::memcpy(bytes, &value, sizeof(T));
+        if (big_endian) std::reverse(bytes, bytes + sizeof(T));
+        text.append(bytes, sizeof(T));
+        return *this;
+    }
+};
+
+/// Odd on purpose: an unknown element first, faces before vertices, lists where none is expected, mixed types.
+const std::string kOddElements =
+    "comment made by a test\nobj_info nothing\n"
+    "element extra 2\nproperty list ushort double junk\nproperty char c\n"
+    "element face 2\nproperty uchar flags\nproperty list uchar ushort vertex_index\n"
+    "property list uint float texcoord\n"
+    "element empty 4000000000\n"
+    "element vertex 4\nproperty double z\nproperty list uchar int links\nproperty short y\n"
+    "property float x\nproperty uchar blue\nproperty uchar red\nproperty uchar green\n"
+    "property float nz\nproperty float nx\nproperty float ny\nproperty float t\n"
+    "property float s\n"
+    "end_header\n";
+
+void check_odd(const Scene& scene) {
+    REQUIRE(scene.meshes.size() == 1);
+    const Mesh& mesh = scene.meshes[0];
+    CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3, 3, 2, 1});
+    CHECK(mesh.positions == std::vector<Vec3>{{0, 0, -1.5f}, {2, 0, -1.5f}, {2, 3, -1.5f}, {0, 3, -1.5f}});
+    CHECK(mesh.normals[3] == Vec3{0, 0, 1});
+    CHECK(mesh.uv[0][1] == Vec2{2, 0.75f});
+    CHECK(mesh.colors[0] == Vec4{srgb_decode(255 / 255.0f), srgb_decode(128 / 255.0f), 0, 1});
+    CHECK(scene.materials[0].base_color == grey(1));
+}
+
+std::string odd_binary(bool big_endian) {
+    Bytes b{big_endian, ""};
+    b.add<uint16_t>(2).add(1.0).add(2.0).add<int8_t>(7);
+    b.add<uint16_t>(0).add<int8_t>(8);
+    b.add<uint8_t>(1).add<uint8_t>(4).add<uint16_t>(0).add<uint16_t>(1).add<uint16_t>(2).add<uint16_t>(3);
+    b.add<uint32_t>(1).add(0.5f);
+    b.add<uint8_t>(1).add<uint8_t>(3).add<uint16_t>(3).add<uint16_t>(2).add<uint16_t>(1).add<uint32_t>(0);
+    for (int i = 0; i < 4; ++i) {
+        b.add(-1.5).add<uint8_t>(1).add<int32_t>(-1).add<int16_t>(i < 2 ? 0 : 3).add(i == 1 || i == 2 ? 2.0f : 0.0f);
+        b.add<uint8_t>(0).add<uint8_t>(255).add<uint8_t>(128);
+        b.add(1.0f).add(0.0f).add(0.0f).add(0.25f).add(2.0f);
+    }
+    return std::string("ply\nformat binary_") + (big_endian ? "big" : "little") + "_endian 1.0\n" + kOddElements +
+           b.text;
+}
+
+std::string ascii(const std::string& elements, const std::string& body) {
+    return "ply\nformat ascii 1.0\n" + elements + "end_header\n" + body;
+}
+
+const std::string kVertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+const std::string kFaces = "property list uchar int vertex_indices\n";
+const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+} // namespace
+
+TEST_CASE("ply: ascii and binary of both byte orders, whatever stands where, give the same mesh") {
+    std::string body = "2 1 2 7\n0 8\n1 4 0 1 2 3 1 0.5\n1 3 3 2 1 0\n";
+    for (int i = 0; i < 4; ++i) {
+        body += std::string("-1.5 1 -1 ") + (i < 2 ? "0 " : "3 ") + (i == 1 || i == 2 ? "2" : "0") +
+                " 0 255 128 1 0 0 0.25 2\n";
+    }
+    check_odd(load("ply\nformat ascii 1.0\n" + kOddElements + body));
+    check_odd(load("ply\nformat ascii 1.0\n" + kOddElements + body.substr(0, body.size() - 1)));
+    check_odd(load(odd_binary(false)));
+    check_odd(load(odd_binary(true)));
+}
+
+TEST_CASE("ply: a header with CRLF line ends, and float colours, which are linear") {
+    std::string text = ascii("element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                             "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n"
+                             "element face 1\n" +
+                                 kFaces,
+                             "0 0 0 1 0.5 0 0.25\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2\n");
+    for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 2)) text.replace(at, 1, "\r\n");
+    CHECK(load(text).meshes[0].colors[0] == Vec4{1, 0.5f, 0, 0.25f});
+}
+
+TEST_CASE("ply: triangle strips turn every other triangle round and begin anew after -1") {
+    const Scene scene = load(ascii(kVertices + "element tristrips 1\n" + kFaces, kSquare + "8 0 1 3 2 -1 2 3 1\n"));
+    CHECK(scene.meshes[0].indices == std::vector<uint32_t>{0, 1, 3, 3, 1, 2, 2, 3, 1});
+}
+
+TEST_CASE("ply: every cut of a file is an error, never a crash") {
+    const std::string whole = odd_binary(false);
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        CAPTURE(size);
+        const auto error = test::thrown_error([&] { load(whole.substr(0, size)); });
+        REQUIRE(error);
+        CHECK(error->code() == ErrorCode::BadInput);
+    }
+}
+
+TEST_CASE("ply: what is wrong is said with the place") {
+    const auto error_of = [](const std::string& text) { return test::thrown_error([&] { load(text); }); };
+    CHECK(test::says(error_of(""), "a.ply:1:"));
+    CHECK(test::says(error_of("ply\nformat ascii 2.0\n"), "a.ply:2:"));
+    CHECK(test::says(error_of("ply\nformat ascii 1.0\nelement vertex -1\n"), "a.ply:3:"));
+    CHECK(test::says(error_of("ply\nformat ascii 1.0\nproperty int x\n"), "a.ply:3:"));
+    CHECK(test::says(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"), "a.ply:4: \"quad\""));
+    CHECK(test::says(error_of(ascii(kVertices, kSquare)), "no faces"));
+    CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "3 0 1 4\n")),
+                     "face 0: vertex index 4 is out of range; there are 4"));
+    CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "3 0 1 -1\n")), "index -1"));
+    CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "-3 0 1 2\n")), "count"));
+    CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, "0 0 zero\n" + kSquare)), "\"zero\""));
+    CHECK(test::says(error_of(ascii("element vertex 9\nelement face 1\n" + kFaces, "3 0 1 2\n")), "x, y and z"));
+}
+
+TEST_CASE("ply: counts are believed only as far as the file has bytes for them") {
+    for (const char* count : {"1000000000", "4294967295", "4294967296", "18446744073709551615"}) {
+        for (const char* format : {"ascii", "binary_little_endian"}) {
+            CAPTURE(count);
+            CAPTURE(format);
+            const std::string start = std::string("ply\nformat ") + format + " 1.0\n";
+            const std::string face = "element face 1\n" + kFaces + "end_header\n" + std::string(64, '1');
+            CHECK_THROWS_AS(load(start + "element vertex " + count + "\nproperty float x\n" + face), Error);
+            CHECK_THROWS_AS(load(start + kVertices + "element face " + count + "\n" + kFaces + "end_header\n" +
+                                 std::string(64, '1')),
+                            Error);
+        }
+    }
+}

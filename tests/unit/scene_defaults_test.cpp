@@ -1,0 +1,190 @@
+#include <doctest/doctest.h>
+
+#include <array>
+
+#include "formats/read_scene.h"
+#include "scene/cast_rays.h"
+#include "scene/defaults.h"
+#include "scene/surroundings.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+
+namespace {
+
+/// The six sides of a box as one instance; `sides`: which of -x +x -y +y -z +z are there.
+void add_box(Scene& scene, Vec3 lo, Vec3 hi, std::array<bool, 6> sides, bool faces_inwards) {
+    Mesh mesh;
+    for (int side = 0; side < 6; ++side) {
+        if (!sides[static_cast<std::size_t>(side)]) continue;
+        const int axis = side / 2;
+        const auto base = static_cast<uint32_t>(mesh.positions.size());
+        for (int corner = 0; corner < 4; ++corner) {
+            float p[3];
+            const int bits[3] = {corner == 1 || corner == 2, corner >= 2, side % 2};
+            for (int k = 0; k < 3; ++k) {
+                const int at = (axis + 1 + k) % 3;
+                p[at] = bits[k] ? component(hi, at) : component(lo, at);
+            }
+            mesh.positions.push_back({p[0], p[1], p[2]});
+        }
+        const bool flip = (side % 2 == 0) != faces_inwards;
+        for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(base + i);
+        if (flip) {
+            for (std::size_t i = mesh.indices.size() - 6; i < mesh.indices.size(); i += 3) {
+                std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+            }
+        }
+    }
+    const auto index = static_cast<uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(std::move(mesh));
+    if (scene.materials.empty()) scene.materials.emplace_back();
+    scene.instances.push_back({.name = "box", .mesh = index, .material = 0, .world_from_local = {}});
+}
+
+constexpr std::array<bool, 6> kAll = {true, true, true, true, true, true};
+constexpr std::array<bool, 6> kWithoutTop = {true, true, true, false, true, true};
+constexpr std::array<bool, 6> kWithoutFront = {true, true, true, true, true, false};
+
+Vec3 eye_of(const Camera& camera) { return camera.world_from_camera.translation; }
+Vec3 forward_of(const Camera& camera) { return -column(camera.world_from_camera, 2); }
+
+bool is_within(const Bounds3& box, Vec3 p) {
+    return p.x > box.lo.x && p.y > box.lo.y && p.z > box.lo.z && p.x < box.hi.x && p.y < box.hi.y && p.z < box.hi.z;
+}
+
+/// Every corner of the scene's box lies in the picture.
+void check_shows_all(const Scene& scene, const Camera& camera, float aspect) {
+    const Bounds3 box = bounds_of(scene);
+    const Transform view = inverse(camera.world_from_camera);
+    const float half = std::tan(0.5f * camera.fov_y);
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = transform_point(view, {corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                                              corner & 4 ? box.hi.z : box.lo.z});
+        CHECK(p.z < 0);
+        CHECK(abs(p.y) <= -p.z * half);
+        CHECK(abs(p.x) <= -p.z * half * aspect);
+    }
+}
+
+} // namespace
+
+TEST_CASE("rays find the nearest triangle and its side, also through a mirrored instance") {
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, kAll, false);
+    const LookRay ray = {{-5, 0.2f, 0.3f}, {1, 0, 0}};
+    LookHit hit = cast_rays(scene, {&ray, 1})[0];
+    CHECK(hit.distance == doctest::Approx(4));
+    CHECK(hit.is_front);
+    scene.instances[0].world_from_local = compose(make_translation({2, 0, 0}), make_scale({-1, 2, 1}));
+    hit = cast_rays(scene, {&ray, 1})[0];
+    CHECK(hit.distance == doctest::Approx(6));
+    CHECK(hit.is_front);
+    const LookRay inside = {{2, 0, 0}, {0, 1, 0}};
+    hit = cast_rays(scene, {&inside, 1})[0];
+    CHECK(hit.distance == doctest::Approx(2));
+    CHECK(!hit.is_front);
+    const LookRay away = {{-5, 0, 0}, {-1, 0, 0}};
+    CHECK(!cast_rays(scene, {&away, 1})[0].is_hit());
+}
+
+TEST_CASE("a solid thing is seen from outside and above, whole, at any shape of picture") {
+    for (const Vec3 size : {Vec3{1, 1, 1}, Vec3{10, 0.1f, 3}, Vec3{1e-3f, 2e-3f, 1e-3f}, Vec3{1, 100, 1}}) {
+        for (const float aspect : {16.0f / 9.0f, 1.0f, 0.5f}) {
+            Scene scene;
+            add_box(scene, {}, size, kAll, false);
+            Messages messages;
+            const Camera camera = make_default_camera(scene, aspect, messages);
+            check_shows_all(scene, camera, aspect);
+            CHECK(forward_of(camera).y < 0);
+            REQUIRE(messages.all().size() == 1);
+            CHECK(messages.all()[0].text.find("outside") != std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("a closed room, and a long court open at the top, is seen from inside along its length") {
+    for (const auto& sides : {kAll, kWithoutTop}) {
+        for (const bool along_x : {true, false}) {
+            Scene scene;
+            add_box(scene, {0, 0, 0}, along_x ? Vec3{20, 6, 8} : Vec3{8, 6, 20}, sides, true);
+            Messages messages;
+            const Camera camera = make_default_camera(scene, 1.5f, messages);
+            CHECK(is_within(bounds_of(scene), eye_of(camera)));
+            CHECK(eye_of(camera).y == doctest::Approx(1.7));
+            CHECK(abs(along_x ? forward_of(camera).x : forward_of(camera).z) > 0.95f);
+            CHECK(messages.all()[0].text.find("inside") != std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("a box that is open in front is seen through its open side") {
+    Scene scene;
+    add_box(scene, {-1, 0, -1}, {1, 2, 1}, kWithoutFront, true);
+    Messages messages;
+    const Camera camera = make_default_camera(scene, 1, messages);
+    CHECK(forward_of(camera).z == doctest::Approx(-1));
+    CHECK(eye_of(camera).z > 1);
+    check_shows_all(scene, camera, 1);
+}
+
+TEST_CASE("a scene without light gets a sky with a notice, one with any light gets nothing") {
+    Scene scene;
+    add_box(scene, {}, {1, 1, 1}, kAll, false);
+    Messages messages;
+    add_default_environment(scene, messages);
+    REQUIRE(scene.environment);
+    const Image& sky = scene.environment->image;
+    CHECK(sky.width == 2 * sky.height);
+    float least = kInfinity, most = 0;
+    for (const float value : sky.pixels) {
+        least = min(least, value);
+        most = max(most, value);
+    }
+    CHECK(least > 0.1f);
+    CHECK(most < 100);
+    CHECK(most > 10);
+    CHECK(luminance({sky.at(9, 9)[0], sky.at(9, 9)[1], sky.at(9, 9)[2]}) > luminance({sky.at(9, 120)[0], 0, 0}));
+    CHECK(messages.all().size() == 1);
+
+    for (int kind = 0; kind < 3; ++kind) {
+        Scene lit;
+        add_box(lit, {}, {1, 1, 1}, kAll, false);
+        if (kind == 0) lit.lights.emplace_back();
+        if (kind == 1) lit.materials[0].emission = grey(1);
+        if (kind == 2) lit.environment.emplace().scale = grey(0);
+        const std::size_t lights = lit.lights.size();
+        Messages silent;
+        add_default_environment(lit, silent);
+        CHECK(silent.all().empty());
+        CHECK(lit.lights.size() == lights);
+    }
+}
+
+TEST_CASE("a closed room without light gets lamps inside it") {
+    Scene scene;
+    add_box(scene, {0, 0, 0}, {20, 6, 8}, kAll, true);
+    Messages messages;
+    add_default_environment(scene, messages);
+    CHECK(!scene.environment);
+    REQUIRE(!scene.lights.empty());
+    for (const Light& light : scene.lights) CHECK(is_within(bounds_of(scene), light.position));
+}
+
+TEST_CASE("Sibenik and Sponza are seen from inside, McGuire's Cornell box from in front, the bunny from outside") {
+    struct Expected {
+        const char* path;
+        SurroundingsKind kind;
+    };
+    for (const Expected& expected : {Expected{"sibenik/sibenik.obj", SurroundingsKind::Room},
+                                     Expected{"crytek-sponza/sponza.obj", SurroundingsKind::Room},
+                                     Expected{"cornell-box-mcguire/CornellBox-Sphere.obj", SurroundingsKind::Stage},
+                                     Expected{"stanford/bunny.ply", SurroundingsKind::Object}}) {
+        const auto path = test::test_scene(expected.path);
+        if (!path) continue;
+        CAPTURE(expected.path);
+        Messages messages;
+        const Scene scene = read_scene(*path, {.allowed_paths = {}, .geometry_only = true}, messages);
+        CHECK(look_around(scene).kind == expected.kind);
+    }
+}

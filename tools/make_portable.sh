@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Gathers programs of a build folder with every library they load (but the C library's own) into one folder that runs
+# on another machine, whose libraries may be fewer or older: tools/make_portable.sh build OUT pertev pertev_tests ...
+# Needs patchelf.
+set -euo pipefail
+build=$1 out=$2
+shift 2
+mkdir -p "$out/bin" "$out/lib"
+for program in "$@"; do
+    cp "$build/bin/$program" "$out/bin/"
+    strip "$out/bin/$program"
+    ldd "$build/bin/$program" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' |
+        grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*)\.so' | while read -r library; do
+        cp -Ln "$library" "$out/lib/"
+    done
+    patchelf --set-rpath '$ORIGIN/../lib' --force-rpath "$out/bin/$program"
+done
+for library in "$out"/lib/*; do patchelf --set-rpath '$ORIGIN' "$library"; done
+du -sh "$out" | cut -f1
