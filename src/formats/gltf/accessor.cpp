@@ -11,9 +11,6 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr ElementType kElementTypes[] = {ElementType::Scalar, ElementType::Vec2, ElementType::Vec3, ElementType::Vec4,
-                                         ElementType::Mat4};
-
 std::string_view name_of(ElementType type) {
     switch (type) {
     case ElementType::Scalar:
