@@ -2,7 +2,7 @@
 # let the linker pick an inline function compiled with other arithmetic, so nothing here may differ between targets.
 
 set(PERTEV_ARITHMETIC_FLAGS -ffp-contract=off -fno-math-errno -march=x86-64-v3)
-set(PERTEV_WARNING_FLAGS -Wall -Wextra -Wpedantic -Wshadow -Wdouble-promotion -Wfloat-conversion)
+set(PERTEV_WARNING_FLAGS -Wall -Wextra -Wno-missing-field-initializers -Wpedantic -Wshadow -Wdouble-promotion -Wfloat-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Optimiser's guesses about inlined library code, wrong on std::string (GCC bug 105651) and, in GCC 13, on fmt.
   list(APPEND PERTEV_WARNING_FLAGS -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
