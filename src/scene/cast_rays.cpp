@@ -63,7 +63,7 @@ std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
     return packs;
 }
 
-void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, bool is_mirrored, std::vector<LookHit>& hits) {
+void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, std::vector<LookHit>& hits) {
     const std::vector<RayPack> start = pack(rays);
     std::mutex merging;
     parallel_for_ranges(mesh.triangle_count(), kGrain, [&](uint64_t begin, uint64_t end) {
@@ -78,7 +78,7 @@ void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, bool is_m
             const RayPack& from = packs[i / RayPack::width];
             const std::size_t k = i % RayPack::width;
             LookHit& hit = hits[rays[i].index];
-            if (from.distance[k] < hit.distance) hit = {from.distance[k], (from.facing[k] > 0) != is_mirrored};
+            if (from.distance[k] < hit.distance) hit = {from.distance[k], from.facing[k] > 0};
         }
     });
 }
@@ -99,7 +99,7 @@ std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays
             if (meets(bounds[instance.mesh], ray)) local.push_back(ray);
         }
         if (local.empty()) continue;
-        cast_at_mesh(scene.meshes[instance.mesh], local, determinant(instance.world_from_local) < 0, hits);
+        cast_at_mesh(scene.meshes[instance.mesh], local, hits);
     }
     return hits;
 }

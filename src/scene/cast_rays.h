@@ -17,7 +17,7 @@ struct LookRay {
 
 struct LookHit {
     float distance = kInfinity; // metres; infinite: nothing there
-    bool is_front = false;      // the surface's front side is met
+    bool is_front = false;      // the mesh's front side is met: a mirroring transform does not turn it round
     bool is_hit() const { return distance < kInfinity; }
 };
 
