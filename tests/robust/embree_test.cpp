@@ -99,9 +99,9 @@ Tally compare(const TriangleMesh& mesh, uint64_t count) {
             tally.hits += found ? 1 : 0;
             if (found == expected && (!found || hit.primitive == want.hit.primID)) continue;
             ++tally.other;
-            const bool same_t = found && expected && abs(hit.t - want.ray.tfar) <= max(1e-5f * hit.t, last_place);
-            const bool on_edge = (found && abs(edge_distance(hit.u, hit.v)) < 1e-4f) ||
-                                 (expected && abs(edge_distance(want.hit.u, want.hit.v)) < 1e-4f);
+            const bool same_t = found && expected && pertev::abs(hit.t - want.ray.tfar) <= max(1e-5f * hit.t, last_place);
+            const bool on_edge = (found && pertev::abs(edge_distance(hit.u, hit.v)) < 1e-4f) ||
+                                 (expected && pertev::abs(edge_distance(want.hit.u, want.hit.v)) < 1e-4f);
             if (!same_t && !on_edge) ++tally.unexplained;
         }
     });

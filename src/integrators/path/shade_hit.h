@@ -19,6 +19,16 @@ HD inline float power_heuristic(float pdf, float other_pdf) {
     return 1.0f / (1.0f + ratio * ratio);
 }
 
+/// Whether light that was scattered `rough` times by other than delta lobes is asked for.
+HD inline bool counts(PathLight light, uint32_t rough) {
+    switch (light) {
+    case PathLight::Path: return true;
+    case PathLight::Direct: return rough <= 1;
+    case PathLight::Indirect: return rough >= 2;
+    }
+    return false;
+}
+
 /// Contribution after the user's clamp on everything that was scattered at least once before its last vertex.
 HD inline Rgb clamp_contribution(const PathSettings& settings, uint32_t depth, Rgb contribution) {
     const float largest = max_component(contribution);
@@ -29,7 +39,7 @@ HD inline Rgb clamp_contribution(const PathSettings& settings, uint32_t depth, R
 /// Adds light that the path's own ray ran into. `light_pdf`: density with which next-event estimation at the previous
 /// vertex would have drawn this direction, 1/sr; 0 for light that it cannot find.
 HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb emission, float light_pdf) {
-    if (settings.light == PathLight::Indirect && path.rough_depth < 2) return;
+    if (!counts(settings.light, path.rough_depth)) return;
     float weight = 1;
     if (path.bsdf_pdf > 0 && light_pdf > 0) {
         if (settings.strategy == LightStrategy::NeeOnly) return;
@@ -42,7 +52,7 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
 HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
                              const Surface& surface, Vec3 wo, ShadowRay& shadow) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
-    if (settings.light == PathLight::Indirect && path.rough_depth + 1 < 2) return false;
+    if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = {path.pixel, path.sample, settings.seed};
     const float choice = sample_1d(settings.sampler, key, vertex_slot(path, kSlotLight));
     const Vec2 place = sample_2d(settings.sampler, key, vertex_slot(path, kSlotOnLight));
@@ -96,6 +106,7 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     path.direction = wi;
     path.start = surface.triangle;
     path.rough_depth += sample.is_delta ? 0 : 1;
+    if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing of it would count
     const uint32_t vertex = path.depth + 1;
     if (vertex >= settings.roulette_depth) {
         const float survival = max_component(path.throughput);
@@ -156,7 +167,6 @@ HD inline bool shade_hit(const SceneView& scene, const PathSettings& settings, c
                      light != kNoLight ? pdf_light_hit(scene.lights, light, path.origin, surface.position) : 0.0f);
     }
     if (surface.is_unlit || path.depth >= settings.max_depth) return false;
-    if (settings.light == PathLight::Direct && path.rough_depth >= 1) return false;
     const Vec3 wo = -path.direction;
     wants_shadow = ask_for_light(scene, settings, path, surface, wo, shadow);
     return scatter(settings, path, surface, wo);
