@@ -9,6 +9,7 @@
 
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "tests/support/meshes.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
@@ -153,12 +154,13 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
         if (c.triangles.size() > 1) CHECK(hits > rays.size() / 20);
         for (const BvhBuildSettings& settings : kSettings) {
             CAPTURE(settings.bins);
-            Bvh bvh = build_bvh(c.triangles, settings);
+            const Bvh bvh = build_bvh(c.triangles, settings);
+            const std::vector<WideBvhNode> wide_nodes = make_wide_nodes(bvh);
             for (const bool wide : {false, true}) {
                 CAPTURE(wide);
-                if (wide) bvh.wide = make_wide_nodes(bvh);
                 SceneBvhView scene;
                 scene.baked = view_of(bvh);
+                if (wide) scene.baked.wide = wide_nodes.data();
                 check_rays(scene, rays, all, AcceptAll{});
                 check_rays(scene, rays, some, AcceptSome{});
             }
@@ -173,8 +175,10 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
     std::vector<Bvh> trees;
     std::vector<BvhView> views;
     for (const auto& mesh : meshes) trees.push_back(build_bvh(mesh));
-    for (std::size_t i = 0; i < trees.size(); i += 2) trees[i].wide = make_wide_nodes(trees[i]);
     for (const Bvh& tree : trees) views.push_back(view_of(tree));
+    const std::vector<WideBvhNode> wide_torus = make_wide_nodes(trees[0]), wide_soup = make_wide_nodes(trees[2]);
+    views[0].wide = wide_torus.data();
+    views[2].wide = wide_soup.data();
 
     Random random(5);
     std::vector<PlacedBvh> placed;
