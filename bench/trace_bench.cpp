@@ -1,7 +1,6 @@
 // trace_bench [FILE.obj] [RAYS]: builds the tree of a mesh (a torus without a file) and measures single rays on one
-// thread, primary and after one and two diffuse bounces, beside Embree's robust single-ray functions in the same run.
-
-#include <embree3/rtcore.h>
+// thread, primary and after one and two diffuse bounces, through the binary and the wide tree, beside Embree's robust
+// single-ray functions in the same run. With a file the camera is that of the Sponza jobs.
 
 #include <algorithm>
 #include <chrono>
@@ -11,7 +10,9 @@
 #include <vector>
 
 #include "accel/bvh/build_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "math/frame.h"
+#include "tests/support/embree_scene.h"
 #include "tests/support/meshes.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
@@ -34,33 +35,6 @@ double fastest(int runs, const F& f) {
     }
     return best;
 }
-
-struct EmbreeScene {
-    RTCDevice device = rtcNewDevice("threads=1");
-    RTCScene scene = rtcNewScene(device);
-
-    explicit EmbreeScene(const TriangleMesh& mesh) {
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* v = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                             sizeof(Vec3), mesh.positions.size()));
-        std::copy(mesh.positions.begin(), mesh.positions.end(), v);
-        auto* k = static_cast<uint32_t*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangle_count()));
-        std::copy(mesh.indices.begin(), mesh.indices.end(), k);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-        rtcCommitScene(scene);
-    }
-    ~EmbreeScene() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-    EmbreeScene(const EmbreeScene&) = delete;
-    EmbreeScene& operator=(const EmbreeScene&) = delete;
-};
 
 std::vector<Ray> primary_rays(uint32_t count, const Bounds3& bounds, bool is_sponza) {
     const Vec3 centre = bounds.centre(), size = bounds.size();
@@ -114,49 +88,32 @@ void measure(const char* name, const SceneBvhView& scene, const EmbreeScene& emb
         any = 0;
         for (const Ray& ray : rays) any += trace_any(scene, ray, AcceptAll{}) ? 1 : 0;
     });
-    std::vector<RTCRayHit> results(rays.size());
-    const auto ray_of = [](const Ray& r) {
-        return RTCRay{r.origin.x, r.origin.y,  r.origin.z, r.t_min, r.direction.x, r.direction.y, r.direction.z, 0,
-                      r.t_max,    0xffffffffu, 0,          0};
-    };
+    std::vector<Hit> results(rays.size());
     const double embree_closest_s = fastest(3, [&] {
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            results[i].ray = ray_of(rays[i]);
-            results[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
-            rtcIntersect1(embree.scene, &context, &results[i]);
-        }
+        for (std::size_t i = 0; i < rays.size(); ++i) results[i] = embree.closest(rays[i]);
     });
     uint64_t embree_any = 0;
     const double embree_any_s = fastest(3, [&] {
         embree_any = 0;
-        for (const Ray& r : rays) {
-            RTCRay ray = ray_of(r);
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
-            rtcOccluded1(embree.scene, &context, &ray);
-            embree_any += ray.tfar < 0 ? 1 : 0;
-        }
+        for (const Ray& ray : rays) embree_any += embree.any(ray) ? 1 : 0;
     });
     uint64_t nodes = 0, triangles = 0, any_nodes = 0, any_triangles = 0, other = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit hit;
         trace_closest(scene, rays[i], AcceptAll{}, hit, WalkCounter{&nodes, &triangles});
         trace_any(scene, rays[i], AcceptAll{}, WalkCounter{&any_nodes, &any_triangles});
-        other += (results[i].hit.geomID == RTC_INVALID_GEOMETRY_ID) != (hit.instance == kNoHit) ||
-                         (hit.instance != kNoHit && results[i].hit.primID != hit.primitive)
-                     ? 1
-                     : 0;
+        other +=
+            results[i].instance != hit.instance || (hit.instance != kNoHit && results[i].primitive != hit.primitive);
     }
     const double n = static_cast<double>(rays.size());
     std::printf(
         "%-9s %7zu rays  closest %6.2f  Embree %6.2f Mrays/s  ratio %.2f | any %6.2f  Embree %6.2f  ratio %.2f | "
-        "nodes and triangles a ray: %.1f %.1f, any %.1f %.1f; hit share %.3f; %llu other primitives\n",
+        "nodes and triangles a ray: %.1f %.1f, any %.1f %.1f; hit share %.3f, Embree's any %.3f; %llu other "
+        "primitives\n",
         name, rays.size(), m / closest_s, m / embree_closest_s, embree_closest_s / closest_s, m / any_s,
         m / embree_any_s, embree_any_s / any_s, static_cast<double>(nodes) / n, static_cast<double>(triangles) / n,
         static_cast<double>(any_nodes) / n, static_cast<double>(any_triangles) / n, static_cast<double>(any) / n,
-        static_cast<unsigned long long>(other));
+        static_cast<double>(embree_any) / n, static_cast<unsigned long long>(other));
 }
 
 } // namespace
@@ -165,10 +122,7 @@ int main(int argc, char** argv) {
     const bool has_file = argc > 1;
     const TriangleMesh mesh = has_file ? read_obj_geometry(argv[1]) : make_torus(600, 300);
     const auto count = static_cast<uint32_t>(argc > 2 ? std::atoi(argv[2]) : 500000);
-    BvhBuildSettings settings;
-    if (argc > 3) settings.bins = std::atoi(argv[3]);
-    if (argc > 4) settings.max_leaf = std::atoi(argv[4]);
-    if (argc > 5) settings.leaf_cost = static_cast<float>(std::atof(argv[5]));
+    const BvhBuildSettings settings;
 
     const std::vector<BvhTriangle> triangles = triangles_of(mesh);
     Bvh bvh;
@@ -177,21 +131,23 @@ int main(int argc, char** argv) {
                 triangles.size(), build_s * 1e3, bvh.nodes.size(), bvh.depth, static_cast<double>(bvh.sah_cost),
                 static_cast<double>(bvh.nodes.size() * sizeof(BvhNode) + triangles.size() * sizeof(BvhTriangle)) /
                     static_cast<double>(triangles.size()));
-    if (std::getenv("NARROW") == nullptr) {
-        const double widen_s = fastest(3, [&] { bvh.wide = make_wide_nodes(bvh); });
-        std::printf("widened in %.1f ms, %zu nodes\n", widen_s * 1e3, bvh.wide.size());
-    }
     const EmbreeScene embree(mesh);
-    SceneBvhView scene;
-    scene.baked = view_of(bvh);
-
     const float eps = 2e-5f * length(bvh.bounds.size());
-    std::vector<Hit> hits;
-    std::vector<Ray> rays = primary_rays(count, bvh.bounds, has_file);
-    measure("primary", scene, embree, rays, hits);
-    rays = bounce(rays, hits, mesh, eps, 22);
-    measure("diffuse1", scene, embree, rays, hits);
-    rays = bounce(rays, hits, mesh, eps, 44);
-    measure("diffuse2", scene, embree, rays, hits);
+    std::vector<WideBvhNode> wide_nodes;
+    const double widen_s = fastest(3, [&] { wide_nodes = make_wide_nodes(bvh); });
+    std::printf("wide tree: made in %.1f ms, %zu nodes\n", widen_s * 1e3, wide_nodes.size());
+    for (const bool wide : {false, true}) {
+        std::printf("%s walk\n", wide ? "wide" : "binary");
+        SceneBvhView scene;
+        scene.baked = view_of(bvh);
+        if (wide) scene.baked.wide = wide_nodes.data();
+        std::vector<Hit> hits;
+        std::vector<Ray> rays = primary_rays(count, bvh.bounds, has_file);
+        measure("primary", scene, embree, rays, hits);
+        rays = bounce(rays, hits, mesh, eps, 22);
+        measure("diffuse1", scene, embree, rays, hits);
+        rays = bounce(rays, hits, mesh, eps, 44);
+        measure("diffuse2", scene, embree, rays, hits);
+    }
     return 0;
 }

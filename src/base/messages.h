@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace pertev {
@@ -23,16 +25,16 @@ public:
 
 private:
     void add(bool is_warning, std::string text) {
-        for (Message& message : all_) {
-            if (message.is_warning == is_warning && message.text == text) {
-                ++message.times;
-                return;
-            }
+        const auto [place, is_new] = places_[is_warning ? 1 : 0].try_emplace(text, all_.size());
+        if (is_new) {
+            all_.push_back({is_warning, std::move(text)});
+        } else {
+            ++all_[place->second].times;
         }
-        all_.push_back({is_warning, std::move(text)});
     }
 
     std::vector<Message> all_;
+    std::unordered_map<std::string, std::size_t> places_[2]; // of notices and warnings in all_
 };
 
 } // namespace pertev

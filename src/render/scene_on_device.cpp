@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "accel/bvh/wide_bvh.h"
 #include "image/srgb_table.h"
 
 namespace pertev {
@@ -27,6 +28,10 @@ BvhView SceneOnDevice::upload(Queue& queue, const Bvh& bvh, const std::string& n
     BvhView view = view_of(bvh);
     view.nodes = keep(queue, std::span(bvh.nodes), name + " nodes");
     view.triangles = keep(queue, std::span(bvh.triangles), name + " triangles");
+    if (!queue.is_cuda()) {
+        const std::vector<WideBvhNode> wide = make_wide_nodes(bvh);
+        view.wide = keep(queue, std::span(wide), name + " wide nodes");
+    }
     return view;
 }
 

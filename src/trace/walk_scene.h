@@ -25,7 +25,7 @@ template <class Visitor, class Counter>
 HD inline bool walk_triangles(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                               WalkStackEntry* stack, const Counter& counter) {
 #if !PERTEV_ON_DEVICE
-    if (bvh.wide != nullptr) return walk_wide(bvh, ray, instance, visitor, counter);
+    if (bvh.wide != nullptr && !(bvh.root & kLeafBit)) return walk_wide(bvh, ray, instance, visitor, counter);
 #endif
     const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, bvh.bounds_max_abs);
     const RayShear shear = make_ray_shear(ray.direction);

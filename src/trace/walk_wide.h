@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "accel/bvh/bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "base/limits.h"
 #include "trace/intersect_4_triangles.h"
 #include "trace/ray_boxes.h"
@@ -48,7 +49,7 @@ inline unsigned enters_children(const WideRay& ray, const WideBvhNode& node, __m
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)));
 }
 
-/// True when the visitor ended it. `bvh.wide` is there.
+/// True when the visitor ended it. `bvh.wide` is there and the root is an inner node.
 template <class Visitor, class Counter>
 inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
     struct Entry {

@@ -9,6 +9,7 @@
 
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "tests/support/meshes.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
@@ -153,12 +154,13 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
         if (c.triangles.size() > 1) CHECK(hits > rays.size() / 20);
         for (const BvhBuildSettings& settings : kSettings) {
             CAPTURE(settings.bins);
-            Bvh bvh = build_bvh(c.triangles, settings);
+            const Bvh bvh = build_bvh(c.triangles, settings);
+            const std::vector<WideBvhNode> wide_nodes = make_wide_nodes(bvh);
             for (const bool wide : {false, true}) {
                 CAPTURE(wide);
-                if (wide) bvh.wide = make_wide_nodes(bvh);
                 SceneBvhView scene;
                 scene.baked = view_of(bvh);
+                if (wide) scene.baked.wide = wide_nodes.data();
                 check_rays(scene, rays, all, AcceptAll{});
                 check_rays(scene, rays, some, AcceptSome{});
             }
@@ -173,8 +175,10 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
     std::vector<Bvh> trees;
     std::vector<BvhView> views;
     for (const auto& mesh : meshes) trees.push_back(build_bvh(mesh));
-    for (std::size_t i = 0; i < trees.size(); i += 2) trees[i].wide = make_wide_nodes(trees[i]);
     for (const Bvh& tree : trees) views.push_back(view_of(tree));
+    const std::vector<WideBvhNode> wide_torus = make_wide_nodes(trees[0]), wide_soup = make_wide_nodes(trees[2]);
+    views[0].wide = wide_torus.data();
+    views[2].wide = wide_soup.data();
 
     Random random(5);
     std::vector<PlacedBvh> placed;
@@ -207,4 +211,36 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
         }
         check_rays(scene, rays, expected, AcceptSome{});
     }
+}
+
+TEST_CASE("rays at the very edge of instances whose boxes leave no slack are not lost at the top level") {
+    const std::vector<BvhTriangle> quad = {{{0, 0, 0}, 0, {1, 0, 0}, 0, {1, 1, 0}, 0},
+                                           {{0, 0, 0}, 1, {1, 1, 0}, 0, {0, 1, 0}, 0}};
+    const Bvh bvh = build_bvh(quad);
+    const BvhView mesh = view_of(bvh);
+    Random random(31);
+    std::vector<PlacedBvh> placed;
+    for (uint32_t i = 0; i < 30; ++i) { // no rotation: the quad's edges are the world box's
+        const Transform place = compose(make_translation(random.point(-1000, 1000)), make_scale(random.point(0.3f, 3)));
+        placed.push_back({place, bvh.bounds, 0, i});
+    }
+    const TopLevelBvh top = build_top_level_bvh(placed);
+    const SceneBvhView scene = {{}, top.nodes.data(), top.instances.data(), &mesh, top.root, top.reach, top.growth};
+    std::vector<Ray> rays(20000);
+    std::vector<Hit> expected(rays.size());
+    uint64_t hits = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const PlacedBvh& at = placed[random.below(30)];
+        const float along = random.unit(), side = static_cast<float>(random.below(2));
+        const Vec3 edge = random.below(2) ? Vec3{along, side, 0} : Vec3{side, along, 0};
+        rays[i].origin = random.point(-1000, 1000);
+        rays[i].direction = transform_point(at.world_from_local, edge) - rays[i].origin;
+        for (const PlacedBvh& p : placed) {
+            const Ray local = transform_ray(inverse(p.world_from_local), rays[i]);
+            trace_by_brute_force(quad, local, p.instance, AcceptAll{}, expected[i]);
+        }
+        hits += expected[i].instance != kNoHit ? 1 : 0;
+    }
+    CHECK(hits > 5000);
+    check_rays(scene, rays, expected, AcceptAll{});
 }

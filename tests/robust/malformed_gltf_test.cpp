@@ -54,7 +54,7 @@ std::string rich_document() {
 
 } // namespace
 
-TEST_CASE("every public malformed glTF file ends in an Error that names it, or in a scene, within 5 s") {
+TEST_CASE("every public malformed glTF file ends in an Error that names it, or in a scene, within 5 s of work") {
     const auto folder = test::test_scene("malformed/gltf");
     if (!folder) return;
     int files = 0;
@@ -62,12 +62,12 @@ TEST_CASE("every public malformed glTF file ends in an Error that names it, or i
         const fs::path path = entry.path();
         if (path.extension() != ".gltf" && path.extension() != ".glb") continue;
         CAPTURE(path.string());
-        const auto start = std::chrono::steady_clock::now();
+        const double start = test::cpu_seconds();
         const std::string outcome = read_outcome(path, read_file(path));
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        const double seconds = test::cpu_seconds() - start;
         MESSAGE(path.filename().string() << ": " << (outcome.empty() ? "a scene" : outcome));
         if (!outcome.empty()) CHECK(outcome.find(path.filename().string()) != std::string::npos);
-        CHECK(seconds.count() < 5);
+        CHECK(seconds < 5);
         ++files;
     }
     CHECK(files >= 20);

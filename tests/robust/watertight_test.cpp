@@ -11,6 +11,7 @@
 
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "base/parallel_for.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
@@ -88,12 +89,17 @@ TEST_CASE("no ray leaves a closed sphere") {
         // At 150 km a float is 1/64 m: smaller faces would fold over each other.
         const TriangleMesh sphere = make_sphere(away_m > 1e4f ? 2 : 5, centre, 1);
         const Bvh bvh = build_bvh(triangles_of(sphere));
+        const std::vector<WideBvhNode> wide_nodes = make_wide_nodes(bvh);
         SceneBvhView scene;
         scene.baked = view_of(bvh);
-        for (const Aim aim : {Aim::Vertex, Aim::Edge, Aim::Anywhere}) {
-            CAPTURE(away_m);
-            CAPTURE(static_cast<int>(aim));
-            check_none_is_lost(scene, sphere, centre, aim, effort(1'000'000, 10'000'000));
+        for (const bool wide : {false, true}) {
+            if (wide) scene.baked.wide = wide_nodes.data();
+            for (const Aim aim : {Aim::Vertex, Aim::Edge, Aim::Anywhere}) {
+                CAPTURE(away_m);
+                CAPTURE(static_cast<int>(aim));
+                CAPTURE(wide);
+                check_none_is_lost(scene, sphere, centre, aim, effort(500'000, 6'000'000));
+            }
         }
     }
 }

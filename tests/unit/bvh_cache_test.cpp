@@ -27,6 +27,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 void write_bytes(const fs::path& path, std::span<const std::byte> bytes) {
+    fs::remove(path); // cutting a file short makes some file systems wait for the disk
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }

@@ -23,7 +23,6 @@ BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const B
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles) {
     Bvh bvh{.nodes = std::move(tree.nodes),
             .triangles = std::vector<BvhTriangle>(triangles.size()),
-            .wide = {},
             .root = tree.root,
             .bounds = tree.bounds,
             .depth = tree.depth,

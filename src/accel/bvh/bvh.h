@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/bvh/wide_bvh.h"
 #include "base/host_device.h"
 #include "math/bounds3.h"
 
@@ -49,11 +48,12 @@ inline Bounds3 child_bounds(const BvhNode& node, int k) {
     return {{node.x[k], node.y[k], node.z[k]}, {node.x[k + 2], node.y[k + 2], node.z[k + 2]}};
 }
 
+struct WideBvhNode; // wide_bvh.h
+
 struct Bvh {
-    std::vector<BvhNode> nodes; // depth first, the near half of memory first; nodes[0] is the root where root == 0
+    std::vector<BvhNode> nodes; // depth first; of two children, the first is where any-hit searches end sooner
     std::vector<BvhTriangle> triangles;
-    std::vector<WideBvhNode> wide; // for the host's walk, where it was asked for: bvh.wide = make_wide_nodes(bvh)
-    uint32_t root = kNoLink;       // kNoLink: no triangle; a leaf link: no inner node
+    uint32_t root = kNoLink; // kNoLink: no triangle; a leaf link: no inner node
     Bounds3 bounds;
     int depth = 0;      // inner nodes on the longest way down; at most kMaxBvhDepth
     float sah_cost = 0; // expected cost of a ray that meets the bounds, in the builder's unit
@@ -63,15 +63,14 @@ struct Bvh {
 struct BvhView {
     const BvhNode* nodes = nullptr;
     const BvhTriangle* triangles = nullptr;
-    const WideBvhNode* wide = nullptr; // host only: walked in place of nodes where it is there
     uint32_t root = kNoLink;
-    float bounds_max_abs = 0; // largest |coordinate| of the bounds
+    float bounds_max_abs = 0;          // largest |coordinate| of the bounds
+    const WideBvhNode* wide = nullptr; // the host walks these in place of nodes where they are given
 };
 
 inline BvhView view_of(const Bvh& bvh) {
     const bool empty = bvh.root == kNoLink;
-    return {bvh.nodes.data(), bvh.triangles.data(), bvh.wide.empty() ? nullptr : bvh.wide.data(), bvh.root,
-            empty ? 0.0f : bvh.bounds.max_abs()};
+    return {bvh.nodes.data(), bvh.triangles.data(), bvh.root, empty ? 0.0f : bvh.bounds.max_abs(), nullptr};
 }
 
 } // namespace pertev

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "accel/bvh/bvh.h"
-
 namespace pertev {
 namespace {
 

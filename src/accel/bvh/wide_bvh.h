@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace pertev {
+#include "accel/bvh/bvh.h"
 
-struct Bvh;
+namespace pertev {
 
 inline constexpr int kWideChildren = 8;
 
@@ -22,7 +22,8 @@ struct alignas(64) WideBvhNode {
 };
 static_assert(sizeof(WideBvhNode) == 256);
 
-/// Nodes in depth-first order, [0] the root; none where the tree has no inner node. No deeper than the tree.
+/// Nodes in depth-first order, [0] the root; none where the tree has no inner node. No deeper than the tree. They are
+/// what BvhView::wide wants, beside the tree's own triangles.
 std::vector<WideBvhNode> make_wide_nodes(const Bvh& bvh);
 
 } // namespace pertev
