@@ -1,17 +1,21 @@
 # pertev_module(NAME deps...): one static library from src/NAME, of all its .cpp and .cu files. A .cu file is compiled
 # as C++ where there is no CUDA; files under a folder named `cuda` are left out there.
 
+function(pertev_compile_cuda_as_cxx)
+  foreach(source IN LISTS ARGN)
+    if(source MATCHES "\\.cu$")
+      set_source_files_properties(${source} PROPERTIES LANGUAGE CXX COMPILE_OPTIONS "-xc++")
+    endif()
+  endforeach()
+endfunction()
+
 function(pertev_module name)
   set(dir ${PROJECT_SOURCE_DIR}/src/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${dir}/*.cpp ${dir}/*.cu)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${dir}/*.h)
   if(NOT PERTEV_HAS_CUDA)
     list(FILTER sources EXCLUDE REGEX "/cuda/")
-    foreach(source IN LISTS sources)
-      if(source MATCHES "\\.cu$")
-        set_source_files_properties(${source} PROPERTIES LANGUAGE CXX COMPILE_OPTIONS "-xc++")
-      endif()
-    endforeach()
+    pertev_compile_cuda_as_cxx(${sources})
   endif()
   if(sources)
     add_library(pertev_${name} STATIC ${sources} ${headers})

@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <chrono>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "base/read_file.h"
 #include "formats/read_gltf.h"
+#include "tests/support/cpu_seconds.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 

@@ -1,0 +1,151 @@
+// Every host-device function gives the same bits on the CPU and in CUDA, so what the other tests find on the CPU holds
+// on the GPU. Without --device cuda the second run is the CPU's too and only shows that the stages are deterministic.
+
+#include <doctest/doctest.h>
+
+#include "device/buffer.h"
+#include "device/launch.h"
+#include "render/prepare_scene.h"
+#include "render/scene_on_device.h"
+#include "tests/statistical/bsdf_cases.h"
+#include "tests/support/device_stages.h"
+#include "tests/support/meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+Queue other_queue() { return test::cuda_requested() ? test::make_cuda_queue() : Queue::make_cpu(); }
+
+/// Runs make_stage(queue, out) on both devices over `count` indices and compares what lies in `out`.
+template <class MakeStage>
+void check_same_bits(uint32_t count, const MakeStage& make_stage) {
+    std::vector<uint32_t> results[2];
+    for (int device = 0; device < 2; ++device) {
+        Queue queue = device == 0 ? Queue::make_cpu() : other_queue();
+        const Buffer<uint32_t> out(queue, count, "results");
+        make_stage(queue, out.data(), count);
+        queue.wait();
+        results[device] = out.download();
+    }
+    uint32_t different = 0;
+    for (uint32_t i = 0; i < count; ++i) different += results[0][i] != results[1][i] ? 1 : 0;
+    CHECK(different == 0);
+}
+
+/// Rays from around the scene and inside it, some along axes.
+std::vector<Ray> rays_into(const Bounds3& bounds, uint32_t count) {
+    test::Random random(9);
+    std::vector<Ray> rays;
+    const Vec3 centre = bounds.centre(), half = 0.6f * bounds.size();
+    for (uint32_t i = 0; i < count; ++i) {
+        Ray ray;
+        const Vec3 p = random.point(-1, 1);
+        ray.origin = centre + Vec3{p.x * half.x, p.y * half.y, p.z * half.z};
+        ray.direction = random.direction();
+        if (i % 64 == 0) ray.direction = {i % 128 == 0 ? 1.0f : 0.0f, 0.0f, i % 128 == 0 ? 0.0f : -1.0f};
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+void check_same_hits(const Scene& scene, uint32_t count) {
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const std::vector<Ray> rays = rays_into(bounds_of(scene), count);
+    std::vector<Hit> hits[2];
+    std::vector<uint32_t> occluded[2];
+    for (int device = 0; device < 2; ++device) {
+        Queue queue = device == 0 ? Queue::make_cpu() : other_queue();
+        const SceneOnDevice on_device(queue, prepared);
+        const Buffer<Ray> in(queue, std::span<const Ray>(rays), "rays");
+        const Buffer<Hit> out(queue, count, "hits");
+        const Buffer<uint32_t> any(queue, count, "any hits");
+        launch(queue, "trace_rays", count, test::TraceRays{on_device.view().bvh, in.data(), out.data(), any.data()});
+        queue.wait();
+        hits[device] = out.download();
+        occluded[device] = any.download();
+    }
+    uint32_t different = 0, found = 0, disagree = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        different += hits[0][i] == hits[1][i] && occluded[0][i] == occluded[1][i] ? 0 : 1;
+        found += hits[0][i].instance != kNoHit ? 1 : 0;
+        disagree += (hits[0][i].instance != kNoHit) == (occluded[0][i] != 0) ? 0 : 1;
+    }
+    CHECK(different == 0);
+    CHECK(disagree == 0); // a closest hit exists exactly where any does
+    CHECK(found > count / 20);
+}
+
+} // namespace
+
+TEST_CASE("random numbers have the same bits on both devices") {
+    for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Independent}) {
+        check_same_bits(static_cast<uint32_t>(test::effort(1 << 18, 1 << 26)),
+                        [&](Queue& queue, uint32_t* out, uint32_t count) {
+                            launch(queue, "draw_samples", count, test::DrawSamples{kind, out});
+                        });
+    }
+}
+
+TEST_CASE("BSDFs have the same bits on both devices") {
+    std::vector<Bsdf> bsdfs;
+    for (const test::BsdfCase& c : test::rough_bsdf_cases()) bsdfs.push_back(c.bsdf);
+    bsdfs.push_back(make_conductor(test::kGoldEta, test::kGoldK, 0));
+    bsdfs.push_back(make_dielectric(1.5f, 0, grey(1)));
+    check_same_bits(static_cast<uint32_t>(test::effort(1 << 18, 1 << 26)),
+                    [&](Queue& queue, uint32_t* out, uint32_t count) {
+                        const Buffer<Bsdf> buffer(queue, std::span<const Bsdf>(bsdfs), "bsdfs");
+                        launch(queue, "scatter_randomly", count,
+                               test::ScatterRandomly{buffer.data(), static_cast<uint32_t>(bsdfs.size()), out});
+                        queue.wait(); // before the buffer goes
+                    });
+}
+
+TEST_CASE("light samples have the same bits on both devices") {
+    const Scene scene = test::make_mixed_scene();
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    check_same_bits(static_cast<uint32_t>(test::effort(1 << 18, 1 << 26)),
+                    [&](Queue& queue, uint32_t* out, uint32_t count) {
+                        const SceneOnDevice on_device(queue, prepared);
+                        launch(queue, "draw_lights", count, test::DrawLights{on_device.view().lights, 5.0f, out});
+                        queue.wait();
+                    });
+}
+
+TEST_CASE("hits have the same bits on both devices: instances, and a mesh of uneven triangles") {
+    check_same_hits(test::make_mixed_scene(), static_cast<uint32_t>(test::effort(100'000, 10'000'000)));
+    const test::TriangleMesh torus = test::make_torus(400, 200);
+    Scene scene;
+    scene.meshes.push_back({});
+    scene.meshes[0].positions = torus.positions;
+    scene.meshes[0].indices = torus.indices;
+    scene.materials.push_back({});
+    scene.instances.push_back({"torus", 0, 0, {}});
+    check_same_hits(scene, static_cast<uint32_t>(test::effort(100'000, 10'000'000)));
+}
+
+TEST_CASE("elementary functions have the same bits on both devices, over all 2^32 inputs in the long setting") {
+    constexpr uint32_t per_index = 256;
+    const uint64_t inputs = test::effort(uint64_t(1) << 20, uint64_t(1) << 32);
+    const uint32_t stride = static_cast<uint32_t>((uint64_t(1) << 32) / inputs); // CI: blocks spread over all exponents
+    for (int function = 0; function < test::kPortableFunctionCount; ++function) {
+        CAPTURE(test::portable_function_name(function));
+        const auto blocks = static_cast<uint32_t>(inputs / per_index);
+        if (stride == 1) {
+            check_same_bits(blocks, [&](Queue& queue, uint32_t* out, uint32_t count) {
+                launch(queue, "evaluate_math", count, test::EvaluateMath{function, 0, per_index, out});
+            });
+            continue;
+        }
+        for (uint32_t part = 0; part < 16; ++part) {
+            check_same_bits(blocks / 16, [&](Queue& queue, uint32_t* out, uint32_t count) {
+                launch(queue, "evaluate_math", count,
+                       test::EvaluateMath{function, part << 28 | part * 0x0badcafu, per_index, out});
+            });
+        }
+    }
+}

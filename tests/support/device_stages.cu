@@ -1,0 +1,10 @@
+#include "device/launch_body.h"
+#include "tests/support/device_stages.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, uint32_t, const test::DrawSamples&);
+template void launch(Queue&, const char*, uint32_t, const test::ScatterRandomly&);
+template void launch(Queue&, const char*, uint32_t, const test::DrawLights&);
+template void launch(Queue&, const char*, uint32_t, const test::TraceRays&);
+template void launch(Queue&, const char*, uint32_t, const test::EvaluateMath&);
+} // namespace pertev

@@ -1,0 +1,108 @@
+#pragma once
+
+// Stages that run the renderer's host-device functions one by one and leave the bits of what they give. A test runs each
+// on the CPU and in CUDA and compares: what the statistical tests find of a function on the CPU then holds on the GPU.
+
+#include "math/sampler.h"
+#include "shading/bsdf.h"
+#include "shading/light_set.h"
+#include "tests/support/portable_math_digest.h"
+#include "trace/trace_any.h"
+#include "trace/trace_closest.h"
+
+namespace pertev::test {
+
+/// Folds the bits of one more number into a running hash.
+HD inline uint32_t fold(uint32_t hash, uint32_t bits) { return hash_word(hash ^ bits) + 0x9e3779b9u; }
+HD inline uint32_t fold(uint32_t hash, float x) { return fold(hash, bits_of(x)); }
+HD inline uint32_t fold(uint32_t hash, Vec3 v) { return fold(fold(fold(hash, v.x), v.y), v.z); }
+HD inline uint32_t fold(uint32_t hash, Rgb c) { return fold(fold(fold(hash, c.r), c.g), c.b); }
+
+HD inline Vec3 random_direction(uint32_t i, uint32_t seed) {
+    const Hash3 h = hash_words(i, seed, 17);
+    return sample_uniform_sphere({unit_interval(h.x), unit_interval(h.y)});
+}
+
+struct DrawSamples {
+    SamplerKind kind;
+    uint32_t* out;
+
+    HD void operator()(uint32_t i) const {
+        const SampleKey key = {i % 4099, i / 4099, i % 7};
+        const Vec2 u = sample_2d(kind, key, i % 61);
+        out[i] = fold(fold(fold(1, u.x), u.y), sample_1d(kind, key, i % 61 + 1));
+    }
+};
+
+/// Samples and evaluates BSDF i % count for random directions.
+struct ScatterRandomly {
+    const Bsdf* bsdfs;
+    uint32_t count;
+    uint32_t* out;
+
+    HD void operator()(uint32_t i) const {
+        const Bsdf bsdf = bsdfs[i % count];
+        const Vec3 wo = random_direction(i, 1), other = random_direction(i, 2);
+        const Hash3 h = hash_words(i, 3, 5);
+        const BsdfSample sample = bsdf.sample(wo, unit_interval(h.x), {unit_interval(h.y), unit_interval(h.z)});
+        const BsdfValue value = bsdf.evaluate(wo, other);
+        uint32_t hash = fold(fold(1, sample.wi), sample.weight);
+        hash = fold(fold(hash, sample.pdf), (sample.is_delta ? 1u : 0u) + (sample.is_transmission ? 2u : 0u));
+        out[i] = fold(fold(hash, value.f), value.pdf);
+    }
+};
+
+/// Draws a light from a random point within `extent` metres of the origin.
+struct DrawLights {
+    LightSetView lights;
+    float extent;
+    uint32_t* out;
+
+    HD void operator()(uint32_t i) const {
+        const Hash4 h = hash_words(i, 11, 13, 17);
+        const Vec3 from = extent * random_direction(i, 4);
+        LightSample sample;
+        if (!sample_light(lights, from, unit_interval(h.x), {unit_interval(h.y), unit_interval(h.z)}, sample)) {
+            out[i] = 0;
+            return;
+        }
+        const uint32_t hash = fold(fold(fold(1, sample.wi), sample.radiance), sample.pdf);
+        const Vec3 towards = random_direction(i, 6);
+        out[i] = fold(fold(fold(hash, sample.light_point), sample.distance), pdf_environment(lights, towards));
+    }
+};
+
+struct AcceptAll {
+    HD bool operator()(uint32_t, uint32_t, float, float) const { return true; }
+};
+
+struct TraceRays {
+    SceneBvhView bvh;
+    const Ray* rays;
+    Hit* hits;
+    uint32_t* occluded; // by any hit
+
+    HD void operator()(uint32_t i) const {
+        Hit hit;
+        trace_closest(bvh, rays[i], AcceptAll{}, hit);
+        hits[i] = hit;
+        occluded[i] = trace_any(bvh, rays[i], AcceptAll{}) ? 1 : 0;
+    }
+};
+
+/// Folds `per_index` inputs of one portable function from first + i * per_index on.
+struct EvaluateMath {
+    int function;
+    uint32_t first, per_index;
+    uint32_t* out;
+
+    HD void operator()(uint32_t i) const {
+        uint32_t hash = 1;
+        for (uint32_t k = 0; k < per_index; ++k) {
+            hash = fold(hash, portable_math_value(function, first + i * per_index + k));
+        }
+        out[i] = hash;
+    }
+};
+
+} // namespace pertev::test
