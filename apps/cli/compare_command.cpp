@@ -7,6 +7,7 @@
 
 #include "apps/cli/commands.h"
 #include "apps/cli/reporter.h"
+#include "image/block_means.h"
 #include "image/flip.h"
 #include "image/metrics.h"
 #include "image/picture_hash.h"
@@ -17,26 +18,41 @@ namespace {
 
 struct CompareFlags {
     std::string picture, reference;
+    uint32_t blocks = 1;
     bool quiet = false, json = false;
 };
+
+std::string json_triple(const double (&values)[3]) {
+    return fmt::format("[{},{},{}]", json_number(values[0]), json_number(values[1]), json_number(values[2]));
+}
 
 int compare(const CompareFlags& flags) {
     Reporter reporter(flags.quiet, flags.json);
     Messages messages;
-    const Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
+    Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
     reporter.say(messages);
+    check_comparable(a, b);
     const Hash128 hash_a = picture_hash(a), hash_b = picture_hash(b);
-    const double rel_mse = relative_error(a, b, 1.0).rel_mse, trimmed = relative_error(a, b).rel_mse;
+    const bool equal = hash_a == hash_b;
+    if (flags.blocks > 1) {
+        a = block_means(a, flags.blocks);
+        b = block_means(b, flags.blocks);
+    }
+    const double rel_mse = relative_error(a, b, 1.0).rel_mse;
+    const TrimmedError trimmed = relative_error(a, b);
     const double mse = mean_squared_error(a, b), flip_mean = flip(a, b).mean, hdr_flip_mean = hdr_flip(a, b).mean;
     if (flags.json) {
         reporter.event(fmt::format(
-            R"({{"event":"compare","rel_mse":{:.9g},"rel_mse_98":{:.9g},"mse":{:.9g},"flip":{:.6g},"hdr_flip":{:.6g},"equal":{},"hash_a":"{}","hash_b":"{}"}})",
-            rel_mse, trimmed, mse, flip_mean, hdr_flip_mean, hash_a == hash_b, hash_a.hex(), hash_b.hex()));
+            R"({{"event":"compare","rel_mse":{},"rel_mse_98":{},"mean_98":{},"reference_mean_98":{},"mse":{},"flip":{},"hdr_flip":{},"equal":{},"hash_a":"{}","hash_b":"{}"}})",
+            json_number(rel_mse), json_number(trimmed.rel_mse), json_triple(trimmed.mean),
+            json_triple(trimmed.reference_mean), json_number(mse), json_number(flip_mean), json_number(hdr_flip_mean),
+            equal, hash_a.hex(), hash_b.hex()));
     } else if (!flags.quiet) {
-        fmt::print("relMSE           {:.6g}\nrelMSE best 98 %  {:.6g}\nMSE              {:.6g}\nFLIP             {:.6g}\nHDR-FLIP         {:.6g}\n"
+        fmt::print("relMSE           {:.6g}\nrelMSE best 98 %  {:.6g}\nMSE              {:.6g}\nFLIP             "
+                   "{:.6g}\nHDR-FLIP         {:.6g}\n"
                    "hash A           {}\nhash B           {}\n{}\n",
-                   rel_mse, trimmed, mse, flip_mean, hdr_flip_mean, hash_a.hex(), hash_b.hex(),
-                   hash_a == hash_b ? "the same to the last bit" : "different");
+                   rel_mse, trimmed.rel_mse, mse, flip_mean, hdr_flip_mean, hash_a.hex(), hash_b.hex(),
+                   equal ? "the same to the last bit" : "different");
     }
     return 0;
 }
@@ -48,6 +64,9 @@ void add_compare_command(CLI::App& app, int& status) {
     const auto flags = std::make_shared<CompareFlags>();
     verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")->required();
     verb.add_option("B", flags->reference, "the reference")->required();
+    verb.add_option("--blocks", flags->blocks, "compare means over blocks of N x N pixels: less noise, same structure")
+        ->check(CLI::Range(1u, 4096u))
+        ->capture_default_str();
     verb.add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
     verb.add_flag("--json", flags->json, "the result as a JSON line");
     verb.callback([flags, &status] { status = compare(*flags); });

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -24,6 +25,8 @@ std::string json_string(std::string_view text) {
     }
     return out + '"';
 }
+
+std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null"; }
 
 Reporter::Reporter(bool quiet, bool json) : quiet_(quiet), json_(json), terminal_(::isatty(STDERR_FILENO) == 1) {}
 

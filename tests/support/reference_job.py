@@ -1,0 +1,57 @@
+"""What the tests against published pictures and figures share: their command line, the scenes they need, and the
+renderer's JSON lines. A script is run as `SCRIPT PERTEV [--device cuda] [--long]`."""
+
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+SKIPPED = 77  # CTest's SKIP_RETURN_CODE
+
+
+class ReferenceJob:
+    """`effort` is "ci", "long" (--long or PERTEV_LONG_TESTS=1) or "cuda" (--device cuda)."""
+
+    def __init__(self, description):
+        parser = argparse.ArgumentParser(description=description)
+        parser.add_argument("pertev", help="the program")
+        parser.add_argument("--device", default="cpu", help="cpu or cuda")
+        parser.add_argument("--long", action="store_true", help="the long setting, on the CPU")
+        arguments = parser.parse_args()
+        self.program, self.device = arguments.pertev, arguments.device
+        is_long = arguments.long or os.environ.get("PERTEV_LONG_TESTS") == "1"
+        self.effort = "cuda" if self.device.startswith("cuda") else "long" if is_long else "ci"
+        self.failures = 0
+
+    @staticmethod
+    def scene(relative):
+        """A file under the folder that PERTEV_SCENES names; ends the test as skipped where it is not there."""
+        root = os.environ.get("PERTEV_SCENES")
+        path = pathlib.Path(root or "", relative)
+        if not root or not path.is_file():
+            print(f"skipped: {path} is not there (set PERTEV_SCENES, see docs/scenes.md)")
+            sys.exit(SKIPPED)
+        return path
+
+    def run(self, event, *arguments):
+        """Runs the program with --json and returns the line of that event."""
+        command = [self.program, *map(str, arguments), "--json"]
+        print("+", *command, flush=True)
+        done = subprocess.run(command, stdout=subprocess.PIPE, check=False)
+        if done.returncode != 0:
+            sys.exit(f"the program ended with status {done.returncode}")
+        for line in done.stdout.splitlines():
+            values = json.loads(line)
+            if values["event"] == event:
+                return values
+        sys.exit(f"the program printed no line of event {event!r}")
+
+    def check(self, what, value, low, high):
+        good = value is not None and low <= value <= high
+        print(f"{'ok    ' if good else 'FAILED'} {what}: {value} in [{low:.6g}, {high:.6g}]")
+        self.failures += not good
+
+    def end(self):
+        sys.exit(1 if self.failures else 0)
