@@ -17,27 +17,26 @@ namespace {
 
 struct CompareFlags {
     std::string picture, reference;
-    bool quiet = false, json = false;
+    ReportFlags report;
 };
 
 int compare(const CompareFlags& flags) {
-    Reporter reporter(flags.quiet, flags.json);
+    Reporter reporter(flags.report);
     Messages messages;
     const Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
     reporter.say(messages);
     const Hash128 hash_a = picture_hash(a), hash_b = picture_hash(b);
     const double rel_mse = relative_error(a, b, 1.0).rel_mse, trimmed = relative_error(a, b).rel_mse;
     const double mse = mean_squared_error(a, b), flip_mean = flip(a, b).mean, hdr_flip_mean = hdr_flip(a, b).mean;
-    if (flags.json) {
-        reporter.event(fmt::format(
-            R"({{"event":"compare","rel_mse":{:.9g},"rel_mse_98":{:.9g},"mse":{:.9g},"flip":{:.6g},"hdr_flip":{:.6g},"equal":{},"hash_a":"{}","hash_b":"{}"}})",
-            rel_mse, trimmed, mse, flip_mean, hdr_flip_mean, hash_a == hash_b, hash_a.hex(), hash_b.hex()));
-    } else if (!flags.quiet) {
-        fmt::print("relMSE           {:.6g}\nrelMSE best 98 %  {:.6g}\nMSE              {:.6g}\nFLIP             {:.6g}\nHDR-FLIP         {:.6g}\n"
-                   "hash A           {}\nhash B           {}\n{}\n",
-                   rel_mse, trimmed, mse, flip_mean, hdr_flip_mean, hash_a.hex(), hash_b.hex(),
-                   hash_a == hash_b ? "the same to the last bit" : "different");
-    }
+    reporter.event(fmt::format(
+        R"({{"event":"compare","rel_mse":{},"rel_mse_98":{},"mse":{},"flip":{},"hdr_flip":{},"equal":{},"hash_a":"{}","hash_b":"{}"}})",
+        json_number(rel_mse), json_number(trimmed), json_number(mse), json_number(flip_mean),
+        json_number(hdr_flip_mean), hash_a == hash_b, hash_a.hex(), hash_b.hex()));
+    reporter.answer(fmt::format("relMSE            {:.6g}\nrelMSE best 98 %  {:.6g}\nMSE               {:.6g}\n"
+                                "FLIP              {:.6g}\nHDR-FLIP          {:.6g}\n"
+                                "hash A            {}\nhash B            {}\n{}\n",
+                                rel_mse, trimmed, mse, flip_mean, hdr_flip_mean, hash_a.hex(), hash_b.hex(),
+                                hash_a == hash_b ? "the same to the last bit" : "different"));
     return 0;
 }
 
@@ -46,10 +45,9 @@ int compare(const CompareFlags& flags) {
 void add_compare_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("compare", "Say how far a picture is from a reference: relMSE, FLIP, hash");
     const auto flags = std::make_shared<CompareFlags>();
-    verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")->required();
-    verb.add_option("B", flags->reference, "the reference")->required();
-    verb.add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
-    verb.add_flag("--json", flags->json, "the result as a JSON line");
+    verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")->type_name("")->required();
+    verb.add_option("B", flags->reference, "the reference")->type_name("")->required();
+    add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = compare(*flags); });
 }
 
