@@ -15,10 +15,11 @@
 #include "accel/bvh/bvh_cache.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "base/error.h"
-#include "base/parallel_for.h"
+#include "base/limits.h"
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
@@ -30,10 +31,10 @@ namespace {
 
 struct BenchFlags {
     std::vector<std::string> scenes;
-    std::string device = "auto", size = "1920x1080", output, job = "S8";
+    std::string size = "1920x1080", output, job = "S8";
     uint32_t samples = 0;
-    int threads = 0;
-    bool quiet = false, json = false;
+    MachineFlags machine;
+    ReportFlags report;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -88,10 +89,9 @@ double mean_of(const Image& image) {
 }
 
 int bench_job(const BenchFlags& flags) {
-    if (flags.threads > 0) set_thread_count(flags.threads);
-    Reporter reporter(flags.quiet, flags.json);
+    Reporter reporter(flags.report);
     Messages messages;
-    const std::unique_ptr<Queue> queue = choose_device(flags.device, messages);
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     auto start = std::chrono::steady_clock::now();
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
     const double load_s = seconds_since(start);
@@ -106,20 +106,21 @@ int bench_job(const BenchFlags& flags) {
     const RenderResult result = render_picture(*queue, prepared, job_camera(), settings);
     const std::string hash = picture_hash(result.picture).hex();
     if (!flags.output.empty()) write_image(flags.output, result.picture);
-    if (flags.json) {
+    if (flags.report.json) {
         reporter.event(fmt::format(
             R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"mean":{:.6f},"invalid_samples":{},"hash":"{}"}})",
             flags.job, json_string(queue->device_name()), settings.width, settings.height, settings.samples,
             prepared.triangles, load_s, prepared.build_seconds, result.render_seconds, samples / result.render_seconds,
             static_cast<double>(result.rays.total()) / result.render_seconds,
             static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), result.invalid_samples, hash));
-    } else if (!flags.quiet) {
-        fmt::print("job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
-                   "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\nmean {:.5f}, picture {}\n",
-                   flags.job, queue->device_name(), settings.width, settings.height, settings.samples,
-                   prepared.triangles, load_s, prepared.build_seconds, result.render_seconds,
-                   samples / result.render_seconds * 1e-6, rate(result.rays.total(), result.render_seconds),
-                   static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), hash);
+    } else {
+        reporter.answer(
+            fmt::format("job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
+                        "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\nmean {:.5f}, picture {}\n",
+                        flags.job, queue->device_name(), settings.width, settings.height, settings.samples,
+                        prepared.triangles, load_s, prepared.build_seconds, result.render_seconds,
+                        samples / result.render_seconds * 1e-6, rate(result.rays.total(), result.render_seconds),
+                        static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), hash));
     }
     return 0;
 }
@@ -181,11 +182,11 @@ SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& fl
     RenderSettings settings;
     std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
     settings.samples = flags.samples > 0 ? flags.samples : (queue.is_cuda() ? 64 : 4);
-    const Camera camera = scene.cameras.empty()
-                              ? make_default_camera(scene, static_cast<float>(settings.width) /
-                                                               static_cast<float>(settings.height),
-                                                    messages)
-                              : scene.cameras.front();
+    const Camera camera =
+        scene.cameras.empty()
+            ? make_default_camera(scene, static_cast<float>(settings.width) / static_cast<float>(settings.height),
+                                  messages)
+            : scene.cameras.front();
     RenderSettings warm_up = settings;
     warm_up.samples = 1;
     render_picture(queue, prepared, camera, warm_up);
@@ -211,10 +212,11 @@ void print(const SceneFigures& f, Reporter& reporter) {
             json_string(f.scene), json_string(f.device), f.triangles, f.load_s, f.build_s, f.cached_s, f.first_pixel_s,
             f.render_s, f.msamples * 1e6, f.camera_mrays * 1e6, f.bounce_mrays * 1e6, f.shadow_mrays * 1e6,
             f.tree_bytes_per_triangle));
-    } else if (!reporter.quiet()) {
-        fmt::print("{:10} {:12.12} {:9} {:7.3f} {:7.3f} {:7.3f} {:7.3f} {:8.3f} {:9.2f} {:8.1f} {:8.1f} {:8.1f} {:6.1f}\n",
-                   f.scene, f.device, f.triangles, f.load_s, f.build_s, f.cached_s, f.first_pixel_s, f.render_s,
-                   f.msamples, f.camera_mrays, f.bounce_mrays, f.shadow_mrays, f.tree_bytes_per_triangle);
+    } else {
+        reporter.answer(fmt::format(
+            "{:10} {:12.12} {:9} {:7.3f} {:7.3f} {:7.3f} {:7.3f} {:8.3f} {:9.2f} {:8.1f} {:8.1f} {:8.1f} {:6.1f}\n",
+            f.scene, f.device, f.triangles, f.load_s, f.build_s, f.cached_s, f.first_pixel_s, f.render_s, f.msamples,
+            f.camera_mrays, f.bounce_mrays, f.shadow_mrays, f.tree_bytes_per_triangle));
     }
 }
 
@@ -235,20 +237,18 @@ std::vector<std::string> default_scenes() {
 }
 
 int bench_scenes(const BenchFlags& flags) {
-    if (flags.threads > 0) set_thread_count(flags.threads);
-    Reporter reporter(flags.quiet, flags.json);
+    Reporter reporter(flags.report);
     Messages messages;
     std::vector<std::unique_ptr<Queue>> queues;
-    queues.push_back(choose_device(flags.device, messages));
-    if (flags.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
+    queues.push_back(take_machine(flags.machine, messages));
+    if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
     reporter.say(messages);
-    if (!flags.json && !flags.quiet) {
-        fmt::print("seconds: load the file, build the trees, read them from the cache, first sample of every pixel, "
-                   "render; Mrays/s by kind\n{:10} {:12} {:>9} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>8} "
-                   "{:>6}\n",
-                   "scene", "device", "triangles", "load", "build", "cached", "first", "render", "Msample/s", "camera",
-                   "bounce", "shadow", "B/tri");
-    }
+    reporter.answer(
+        fmt::format("seconds: load the file, build the trees, read them from the cache, first sample of every pixel, "
+                    "render; Mrays/s by kind\n{:10} {:12} {:>9} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>8} "
+                    "{:>6}\n",
+                    "scene", "device", "triangles", "load", "build", "cached", "first", "render", "Msample/s", "camera",
+                    "bounce", "shadow", "B/tri"));
     const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
     for (const std::string& scene : scenes) {
         for (const auto& queue : queues) print(measure(scene, *queue, flags), reporter);
@@ -257,12 +257,12 @@ int bench_scenes(const BenchFlags& flags) {
 }
 
 void add_shared_flags(CLI::App& verb, BenchFlags& flags) {
-    verb.add_option("--size", flags.size, "WIDTHxHEIGHT")->capture_default_str();
-    verb.add_option("--spp", flags.samples, "samples a pixel");
-    verb.add_option("--device", flags.device, "auto, cpu, cuda or cuda:N")->capture_default_str();
-    verb.add_option("--threads", flags.threads, "of the CPU (all)")->check(CLI::Range(1, 4096));
-    verb.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
-    verb.add_flag("--json", flags.json, "figures as JSON lines");
+    verb.add_option("--size", flags.size, "of the picture")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--spp", flags.samples, "samples a pixel")
+        ->type_name("N")
+        ->check(whole_between(1, kMaxSamplesPerPixel));
+    add_machine_flags(verb, flags.machine);
+    add_report_flags(verb, flags.report);
 }
 
 } // namespace
@@ -270,17 +270,26 @@ void add_shared_flags(CLI::App& verb, BenchFlags& flags) {
 void add_bench_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("bench", "Measure loading, building and rendering on this machine");
     const auto flags = std::make_shared<BenchFlags>();
-    verb.add_option("--scene", flags->scenes, "scene files (Sponza and Sibenik under PERTEV_SCENES)");
+    verb.add_option("--scene", flags->scenes,
+                    "a scene file; may be given again (Sponza and Sibenik\nunder PERTEV_SCENES)")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
     add_shared_flags(verb, *flags);
 
     CLI::App& job = *verb.add_subcommand("render", "One job that other renderers can be timed on");
     const auto job_flags = std::make_shared<BenchFlags>();
-    job.add_option("--job", job_flags->job,
-                   "S5 or S8: grey geometry under a constant sky, at most 5 or 8 scatterings, Russian roulette from the "
-                   "second")
-        ->check(CLI::IsMember({"S5", "S8"}))->capture_default_str();
-    job.add_option("--scene", job_flags->scenes, "the mesh, Crytek's Sponza")->required()->expected(1);
-    job.add_option("-o,--output", job_flags->output, "keep the picture");
+    job.add_option(
+           "--job", job_flags->job,
+           "S5 or S8: grey geometry under a constant sky, at most 5 or 8 scatterings, Russian roulette from the "
+           "second")
+        ->type_name("NAME")
+        ->check(one_of({"S5", "S8"}))
+        ->capture_default_str();
+    job.add_option("--scene", job_flags->scenes, "the mesh, Crytek's Sponza")
+        ->type_name("FILE")
+        ->required()
+        ->expected(1);
+    job.add_option("-o,--output", job_flags->output, "keep the picture")->type_name("FILE");
     add_shared_flags(job, *job_flags);
     job.callback([job_flags, &status] { status = bench_job(*job_flags); });
     verb.callback([&verb, flags, &status] {

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/flag_checks.h"
 #include "base/error.h"
+#include "base/parallel_for.h"
 
 namespace pertev {
 
@@ -28,6 +30,22 @@ std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages
         throw Error(ErrorCode::BadInput, fmt::format("--device {}: {}", name, reason));
     }
     return std::make_unique<Queue>(Queue::make_cuda(index));
+}
+
+void add_machine_flags(CLI::App& verb, MachineFlags& flags, const char* group) {
+    verb.add_option("--device", flags.device, "auto, cpu, cuda or cuda:N")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--threads", flags.threads, "of the CPU (all)")
+        ->type_name("N")
+        ->check(whole_between(1, 4096))
+        ->group(group);
+}
+
+std::unique_ptr<Queue> take_machine(const MachineFlags& flags, Messages& messages) {
+    if (flags.threads > 0) set_thread_count(flags.threads);
+    return choose_device(flags.device, messages);
 }
 
 } // namespace pertev

@@ -19,7 +19,7 @@ namespace {
 struct CompareFlags {
     std::string picture, reference;
     uint32_t blocks = 1;
-    bool quiet = false, json = false;
+    ReportFlags report;
 };
 
 std::string json_triple(const double (&values)[3]) {
@@ -27,7 +27,7 @@ std::string json_triple(const double (&values)[3]) {
 }
 
 int compare(const CompareFlags& flags) {
-    Reporter reporter(flags.quiet, flags.json);
+    Reporter reporter(flags.report);
     Messages messages;
     Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
     reporter.say(messages);
@@ -41,19 +41,16 @@ int compare(const CompareFlags& flags) {
     const double rel_mse = relative_error(a, b, 1.0).rel_mse;
     const TrimmedError trimmed = relative_error(a, b);
     const double mse = mean_squared_error(a, b), flip_mean = flip(a, b).mean, hdr_flip_mean = hdr_flip(a, b).mean;
-    if (flags.json) {
-        reporter.event(fmt::format(
-            R"({{"event":"compare","rel_mse":{},"rel_mse_98":{},"mean_98":{},"reference_mean_98":{},"mse":{},"flip":{},"hdr_flip":{},"equal":{},"hash_a":"{}","hash_b":"{}"}})",
-            json_number(rel_mse), json_number(trimmed.rel_mse), json_triple(trimmed.mean),
-            json_triple(trimmed.reference_mean), json_number(mse), json_number(flip_mean), json_number(hdr_flip_mean),
-            equal, hash_a.hex(), hash_b.hex()));
-    } else if (!flags.quiet) {
-        fmt::print("relMSE           {:.6g}\nrelMSE best 98 %  {:.6g}\nMSE              {:.6g}\nFLIP             "
-                   "{:.6g}\nHDR-FLIP         {:.6g}\n"
-                   "hash A           {}\nhash B           {}\n{}\n",
-                   rel_mse, trimmed.rel_mse, mse, flip_mean, hdr_flip_mean, hash_a.hex(), hash_b.hex(),
-                   equal ? "the same to the last bit" : "different");
-    }
+    reporter.event(fmt::format(
+        R"({{"event":"compare","rel_mse":{},"rel_mse_98":{},"mean_98":{},"reference_mean_98":{},"mse":{},"flip":{},"hdr_flip":{},"equal":{},"hash_a":"{}","hash_b":"{}"}})",
+        json_number(rel_mse), json_number(trimmed.rel_mse), json_triple(trimmed.mean),
+        json_triple(trimmed.reference_mean), json_number(mse), json_number(flip_mean), json_number(hdr_flip_mean), equal,
+        hash_a.hex(), hash_b.hex()));
+    reporter.answer(fmt::format("relMSE            {:.6g}\nrelMSE best 98 %  {:.6g}\nMSE               {:.6g}\n"
+                                "FLIP              {:.6g}\nHDR-FLIP          {:.6g}\n"
+                                "hash A            {}\nhash B            {}\n{}\n",
+                                rel_mse, trimmed.rel_mse, mse, flip_mean, hdr_flip_mean, hash_a.hex(), hash_b.hex(),
+                                equal ? "the same to the last bit" : "different"));
     return 0;
 }
 
@@ -62,13 +59,12 @@ int compare(const CompareFlags& flags) {
 void add_compare_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("compare", "Say how far a picture is from a reference: relMSE, FLIP, hash");
     const auto flags = std::make_shared<CompareFlags>();
-    verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")->required();
-    verb.add_option("B", flags->reference, "the reference")->required();
+    verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")->type_name("")->required();
+    verb.add_option("B", flags->reference, "the reference")->type_name("")->required();
     verb.add_option("--blocks", flags->blocks, "compare means over blocks of N x N pixels: less noise, same structure")
         ->check(CLI::Range(1u, 4096u))
         ->capture_default_str();
-    verb.add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
-    verb.add_flag("--json", flags->json, "the result as a JSON line");
+    add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = compare(*flags); });
 }
 

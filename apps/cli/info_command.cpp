@@ -1,5 +1,6 @@
 // pertev info SCENE|IMAGE: what a file holds.
 
+#include <concepts>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -7,9 +8,7 @@
 
 #include "apps/cli/commands.h"
 #include "apps/cli/reporter.h"
-#include "base/error.h"
-#include "formats/builtin_scenes.h"
-#include "formats/read_scene.h"
+#include "apps/cli/scene_options.h"
 #include "image/picture_hash.h"
 #include "image/read_exr.h"
 #include "image/read_image.h"
@@ -20,37 +19,58 @@ namespace {
 struct InfoFlags {
     std::string file;
     std::vector<std::filesystem::path> allowed_paths;
-    bool quiet = false, json = false;
+    ReportFlags report;
 };
 
-/// Names and values; values stand as JSON.
+/// Names and values, in order.
 class Facts {
 public:
-    void add(const std::string& name, const std::string& text) { facts_.emplace_back(name, json_string(text)); }
-    void add(const std::string& name, uint64_t number) { facts_.emplace_back(name, fmt::format("{}", number)); }
-    void add(const std::string& name, Vec3 v) {
-        facts_.emplace_back(name, fmt::format("[{:.6g},{:.6g},{:.6g}]", v.x, v.y, v.z));
+    void add(const std::string& name, const std::string& text) { facts_.push_back({name, text, json_string(text)}); }
+    void add(const std::string& name, double number) {
+        facts_.push_back({name, fmt::format("{}", number), json_number(number)});
     }
-    void print(const Reporter& reporter) const {
-        if (reporter.quiet()) return;
-        std::string line;
-        for (const auto& [name, value] : facts_) {
-            if (reporter.json()) {
-                line += fmt::format("{}{}:{}", line.empty() ? "" : ",", json_string(name), value);
-            } else {
-                fmt::print("{:24} {}\n", name, value);
-            }
+    void add(const std::string& name, float number) {
+        facts_.push_back({name, fmt::format("{}", number), json_number(static_cast<double>(number))});
+    }
+    template <std::integral Whole>
+    void add(const std::string& name, Whole number) {
+        facts_.push_back({name, fmt::format("{}", number), fmt::format("{}", number)});
+    }
+    void add(const std::string& name, Vec3 v) {
+        const auto json = [](float x) { return json_number(static_cast<double>(x)); };
+        facts_.push_back({name, fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z),
+                          fmt::format("[{},{},{}]", json(v.x), json(v.y), json(v.z))});
+    }
+    void add(const std::string& name, const std::vector<std::string>& texts) {
+        std::string json;
+        for (const std::string& text : texts) json += (json.empty() ? "" : ",") + json_string(text);
+        facts_.push_back({name, fmt::format("{}", fmt::join(texts, " ")), fmt::format("[{}]", json)});
+    }
+    void report(Reporter& reporter) const {
+        std::string json = R"({"event":"info")", lines;
+        for (const Fact& fact : facts_) {
+            json += fmt::format(",{}:{}", json_string(fact.name), fact.json);
+            lines += fmt::format("{:24} {}\n", fact.name, fact.text);
         }
-        if (reporter.json()) fmt::print("{{{}}}\n", line);
+        reporter.event(json + '}');
+        reporter.answer(lines);
     }
 
 private:
-    std::vector<std::pair<std::string, std::string>> facts_;
+    struct Fact {
+        std::string name, text, json;
+    };
+    std::vector<Fact> facts_;
 };
 
-bool is_image(const std::string& file) {
+std::string lower_case_extension(const std::string& file) {
     std::string extension = std::filesystem::path(file).extension().string();
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension;
+}
+
+bool is_image(const std::string& file) {
+    const std::string extension = lower_case_extension(file);
     for (const char* known : {".exr", ".png", ".jpg", ".jpeg", ".hdr"}) {
         if (extension == known) return true;
     }
@@ -69,42 +89,39 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     const double pixels = static_cast<double>(image.width) * image.height;
     facts.add("mean", Vec3{static_cast<float>(mean[0] / pixels), static_cast<float>(mean[1] / pixels),
                            static_cast<float>(mean[2] / pixels)});
-    if (!flags.file.ends_with(".exr")) return;
+    if (lower_case_extension(flags.file) != ".exr") return;
     const ExrFile exr = read_exr(flags.file);
-    std::string channels;
-    for (const ExrChannel& channel : exr.channels) channels += (channels.empty() ? "" : " ") + channel.name;
+    std::vector<std::string> channels;
+    for (const ExrChannel& channel : exr.channels) channels.push_back(channel.name);
     facts.add("channels", channels);
     for (const auto& [name, value] : exr.metadata) {
-        std::visit([&](const auto& v) { facts.add(name, fmt::format("{}", v)); }, value);
+        std::visit([&](const auto& v) { facts.add(name, v); }, value);
     }
 }
 
 void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    ReadOptions options;
-    options.allowed_paths = flags.allowed_paths;
-    const Scene scene = builtin_scene(flags.file) ? read_builtin_scene(flags.file, messages)
-                                                  : read_scene(flags.file, options, messages);
+    const Scene scene = read_any_scene(flags.file, flags.allowed_paths, messages);
     uint64_t unique = 0, placed = 0;
     for (const Mesh& mesh : scene.meshes) unique += mesh.triangle_count();
     for (const Instance& instance : scene.instances) placed += scene.meshes[instance.mesh].triangle_count();
     facts.add("meshes", scene.meshes.size());
     facts.add("instances", scene.instances.size());
     facts.add("triangles", unique);
-    facts.add("triangles placed", placed);
+    facts.add("triangles_placed", placed);
     facts.add("materials", scene.materials.size());
     facts.add("images", scene.images.size());
     facts.add("lights", scene.lights.size());
     facts.add("environment", scene.environment ? "yes" : "no");
     const Bounds3 bounds = bounds_of(scene);
-    facts.add("bounds low", bounds.lo);
-    facts.add("bounds high", bounds.hi);
-    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        facts.add(fmt::format("camera {}", i), scene.cameras[i].name);
-    }
+    facts.add("bounds_low", bounds.lo);
+    facts.add("bounds_high", bounds.hi);
+    std::vector<std::string> cameras;
+    for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
+    facts.add("cameras", cameras);
 }
 
 int info(const InfoFlags& flags) {
-    Reporter reporter(flags.quiet, flags.json);
+    Reporter reporter(flags.report);
     Messages messages;
     Facts facts;
     facts.add("file", flags.file);
@@ -114,7 +131,7 @@ int info(const InfoFlags& flags) {
         describe_scene(flags, facts, messages);
     }
     reporter.say(messages);
-    facts.print(reporter);
+    facts.report(reporter);
     return 0;
 }
 
@@ -123,11 +140,11 @@ int info(const InfoFlags& flags) {
 void add_info_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("info", "Say what a scene or a picture holds");
     const auto flags = std::make_shared<InfoFlags>();
-    verb.add_option("FILE", flags->file, "a scene (.gltf .glb .obj .ply or a built-in one) or a picture")->required();
-    verb.add_option("--allow-path", flags->allowed_paths, "a folder outside the scene's own that it may read from")
-        ->check(CLI::ExistingDirectory);
-    verb.add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
-    verb.add_flag("--json", flags->json, "one JSON object");
+    verb.add_option("FILE", flags->file, "a scene (.gltf .glb .obj .ply or a built-in one) or a picture")
+        ->type_name("")
+        ->required();
+    add_allow_path(verb, flags->allowed_paths);
+    add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = info(*flags); });
 }
 

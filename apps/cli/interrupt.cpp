@@ -7,9 +7,10 @@ namespace {
 
 volatile std::sig_atomic_t g_interrupted = 0;
 
-extern "C" void handle_interrupt(int signal) {
+extern "C" void handle_interrupt(int) {
     g_interrupted = 1;
-    std::signal(signal, SIG_DFL); // a second one ends the process
+    std::signal(SIGINT, SIG_DFL); // a second one of either kind ends the process
+    std::signal(SIGTERM, SIG_DFL);
 }
 
 } // namespace

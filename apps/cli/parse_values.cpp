@@ -1,8 +1,7 @@
 #include "apps/cli/parse_values.h"
 
+#include <algorithm>
 #include <charconv>
-#include <optional>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -13,7 +12,7 @@ namespace pertev {
 namespace {
 
 template <class T>
-std::optional<T> parse_whole(std::string_view text) {
+std::optional<T> parse_all_of(std::string_view text) {
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -25,8 +24,8 @@ std::optional<Vec3> three_numbers(std::string_view text) {
     for (int i = 0; i < 3; ++i) {
         const std::size_t comma = text.find(',');
         if ((comma == std::string_view::npos) != (i == 2)) return std::nullopt;
-        const auto value = parse_whole<float>(text.substr(0, comma));
-        if (!value || !is_finite(*value)) return std::nullopt;
+        const auto value = number_in(text.substr(0, comma));
+        if (!value) return std::nullopt;
         values[i] = *value;
         if (i < 2) text.remove_prefix(comma + 1);
     }
@@ -35,30 +34,43 @@ std::optional<Vec3> three_numbers(std::string_view text) {
 
 } // namespace
 
+std::optional<float> number_in(std::string_view text) {
+    const auto value = parse_all_of<float>(text);
+    return value && is_finite(*value) ? value : std::nullopt;
+}
+
+std::optional<uint64_t> whole_number_in(std::string_view text) { return parse_all_of<uint64_t>(text); }
+
 std::pair<uint32_t, uint32_t> parse_size(const std::string& flag, const std::string& text) {
-    const std::size_t cross = text.find('x');
-    if (cross != std::string::npos) {
-        const auto width = parse_whole<uint32_t>(std::string_view(text).substr(0, cross));
-        const auto height = parse_whole<uint32_t>(std::string_view(text).substr(cross + 1));
-        if (width && height && *width > 0 && *height > 0 && *width <= kMaxImageSide && *height <= kMaxImageSide) {
-            if (uint64_t(*width) * *height <= kMaxImagePixels) return {*width, *height};
-            throw Error(ErrorCode::OverLimit,
-                        fmt::format("{} {}: more than the limit of {} pixels", flag, text, kMaxImagePixels));
-        }
+    const std::size_t cross = std::min(text.find('x'), text.size());
+    const auto width = whole_number_in(std::string_view(text).substr(0, cross));
+    const auto height = whole_number_in(std::string_view(text).substr(std::min(cross + 1, text.size())));
+    if (!width || !height || *width == 0 || *height == 0) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{} {}: expected WIDTHxHEIGHT in pixels, such as 1280x720", flag, text));
     }
-    throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected WIDTHxHEIGHT, such as 1280x720, each from 1 to {}",
-                                                 flag, text, kMaxImageSide));
+    if (*width > kMaxImageSide || *height > kMaxImageSide || *width * *height > kMaxImagePixels) {
+        throw Error(ErrorCode::OverLimit, fmt::format("{} {}: over the limit of {} pixels a side and {} in all", flag,
+                                                      text, kMaxImageSide, kMaxImagePixels));
+    }
+    return {static_cast<uint32_t>(*width), static_cast<uint32_t>(*height)};
 }
 
 float parse_number(const std::string& flag, const std::string& text) {
-    const auto value = parse_whole<float>(text);
-    if (value && is_finite(*value)) return *value;
-    throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected a number", flag, text));
+    if (const auto value = number_in(text)) return *value;
+    throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected a finite number", flag, text));
 }
 
 Vec3 parse_vec3(const std::string& flag, const std::string& text) {
     if (const auto value = three_numbers(text)) return *value;
     throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected three numbers X,Y,Z, such as 1,0.5,-2", flag, text));
+}
+
+Vec3 parse_position(const std::string& flag, const std::string& text) {
+    const Vec3 position = parse_vec3(flag, text);
+    if (max_component(abs(position)) <= kMaxCoordinate) return position;
+    throw Error(ErrorCode::OverLimit,
+                fmt::format("{} {}: farther than the limit of {:.4g} m from the origin", flag, text, kMaxCoordinate));
 }
 
 bool parse_rgb(const std::string& text, Rgb& color) {

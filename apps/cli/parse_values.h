@@ -1,9 +1,12 @@
 #pragma once
 
-// Values as they stand on the command line: 1280x720, 1,2,3, names. Each throws Error(BadInput) that shows the form.
+// Values as they stand on the command line: 1280x720, 1,2,3, names. What throws, throws Error(BadInput) that shows the
+// form, or Error(OverLimit).
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "math/rgb.h"
@@ -11,12 +14,18 @@
 
 namespace pertev {
 
-/// "1280x720": both in [1, kMaxImageSide].
+/// The finite number, or the whole one in decimal digits, that `text` is from its first character to its last.
+std::optional<float> number_in(std::string_view text);
+std::optional<uint64_t> whole_number_in(std::string_view text);
+
+/// "1280x720": both in [1, kMaxImageSide], their product at most kMaxImagePixels.
 std::pair<uint32_t, uint32_t> parse_size(const std::string& flag, const std::string& text);
 /// "-1.5": finite.
 float parse_number(const std::string& flag, const std::string& text);
 /// "1,-2.5,3e1": finite.
 Vec3 parse_vec3(const std::string& flag, const std::string& text);
+/// A place in the scene: as parse_vec3, each at most kMaxCoordinate away from 0.
+Vec3 parse_position(const std::string& flag, const std::string& text);
 /// The three numbers of "r,g,b", or false when `text` does not look like numbers.
 bool parse_rgb(const std::string& text, Rgb& color);
 

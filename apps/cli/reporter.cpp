@@ -6,36 +6,71 @@
 #include <cmath>
 #include <cstdio>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace pertev {
 
+namespace {
+
+void write(std::FILE* file, const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), file); // main asks in the end whether stdout took everything
+    std::fflush(file);
+}
+
+/// Bytes of the UTF-8 character that `text` begins with; 0 when it is none. (RFC 3629, section 4.)
+std::size_t utf8_length(std::string_view text) {
+    const auto at = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    const unsigned first = at(0);
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xc2 ? 0
+                               : first < 0xe0 ? 2
+                               : first < 0xf0 ? 3
+                               : first < 0xf5 ? 4
+                                              : 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((at(i) & 0xc0) != 0x80) return 0;
+    }
+    const bool bad_second = (first == 0xe0 && at(1) < 0xa0) || (first == 0xed && at(1) > 0x9f) ||
+                            (first == 0xf0 && at(1) < 0x90) || (first == 0xf4 && at(1) > 0x8f);
+    return bad_second ? 0 : length;
+}
+
+} // namespace
+
 std::string json_string(std::string_view text) {
     std::string out = "\"";
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            out += '\\';
-            out += c;
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        const auto byte = static_cast<unsigned char>(text.front());
+        if (length == 0) {
+            out += "\\ufffd"; // file names may be any bytes
         } else if (byte < 0x20) {
             out += fmt::format("\\u{:04x}", byte);
         } else {
-            out += c;
+            if (byte == '"' || byte == '\\') out += '\\';
+            out += text.substr(0, length);
         }
+        text.remove_prefix(std::max<std::size_t>(length, 1));
     }
     return out + '"';
 }
 
-std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null"; }
+std::string json_number(double number) { return std::isfinite(number) ? fmt::format("{:.9g}", number) : "null"; }
 
-Reporter::Reporter(bool quiet, bool json) : quiet_(quiet), json_(json), terminal_(::isatty(STDERR_FILENO) == 1) {}
+void add_report_flags(CLI::App& verb, ReportFlags& flags) {
+    verb.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
+    verb.add_flag("--json", flags.json, "one JSON object a line on stdout, and nothing else there");
+}
+
+Reporter::Reporter(const ReportFlags& flags) : flags_(flags), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 Reporter::~Reporter() { end_progress(); }
 
 void Reporter::say(const Messages& messages) {
     for (; said_ < messages.all().size(); ++said_) {
         const Message& message = messages.all()[said_];
-        if (json_ && !quiet_) {
+        if (flags_.json && !flags_.quiet) {
             event(fmt::format(R"({{"event":"{}","text":{},"times":{}}})", message.is_warning ? "warning" : "notice",
                               json_string(message.text), message.times));
         } else {
@@ -46,29 +81,31 @@ void Reporter::say(const Messages& messages) {
 }
 
 void Reporter::say(const std::string& line) {
-    if (quiet_ || json_) return;
+    if (is_silent()) return;
     end_progress();
-    fmt::print(stderr, "{}\n", line);
+    write(stderr, line + '\n');
 }
 
 void Reporter::progress(double share, const std::string& detail) {
-    if (quiet_ || json_ || !terminal_) return;
+    if (is_silent() || !terminal_) return;
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
-    fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail);
-    std::fflush(stderr);
+    write(stderr,
+          fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
     drawn_ = true;
 }
 
 void Reporter::event(const std::string& object) {
-    if (!json_) return;
-    fmt::print("{}\n", object);
-    std::fflush(stdout);
+    if (flags_.json) write(stdout, object + '\n');
+}
+
+void Reporter::answer(const std::string& lines) {
+    if (!is_silent()) write(stdout, lines);
 }
 
 void Reporter::end_progress() {
     if (!drawn_) return;
-    fmt::print(stderr, "\n");
+    write(stderr, "\n");
     drawn_ = false;
 }
 

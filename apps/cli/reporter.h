@@ -8,6 +8,10 @@
 
 #include "base/messages.h"
 
+namespace CLI {
+class App;
+}
+
 namespace pertev {
 
 /// Text as a JSON string, quotes included.
@@ -15,10 +19,19 @@ std::string json_string(std::string_view text);
 /// A number in JSON, to 9 digits; null where it is not finite, which JSON has no word for.
 std::string json_number(double value);
 
+/// The number in JSON, which has no infinity and no NaN: null then.
+std::string json_number(double number);
+
+/// -q silences all but errors; --json turns everything into JSON lines on stdout. Every verb has both.
+struct ReportFlags {
+    bool quiet = false, json = false;
+};
+
+void add_report_flags(CLI::App& verb, ReportFlags& flags);
+
 class Reporter {
 public:
-    /// `quiet` silences all but errors; `json` turns everything into JSON lines on stdout.
-    Reporter(bool quiet, bool json);
+    explicit Reporter(const ReportFlags& flags);
     ~Reporter();
     Reporter(const Reporter&) = delete;
     Reporter& operator=(const Reporter&) = delete;
@@ -31,13 +44,17 @@ public:
     void progress(double share, const std::string& detail);
     /// A JSON object ("{...}") of the given event; only with --json.
     void event(const std::string& object);
+    /// What the verb was asked for, for people, on stdout.
+    void answer(const std::string& lines);
     void end_progress();
 
-    bool json() const { return json_; }
-    bool quiet() const { return quiet_; }
+    bool json() const { return flags_.json; }
 
 private:
-    bool quiet_, json_, terminal_;
+    bool is_silent() const { return flags_.quiet || flags_.json; }
+
+    ReportFlags flags_;
+    bool terminal_;
     bool drawn_ = false;
     std::size_t said_ = 0;
 };

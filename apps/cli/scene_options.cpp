@@ -1,16 +1,15 @@
 #include "apps/cli/scene_options.h"
 
-#include <charconv>
-#include <optional>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
 #include "formats/builtin_scenes.h"
-#include "formats/read_scene.h"
 #include "formats/read_environment.h"
+#include "formats/read_scene.h"
+#include "math/portable_math.h"
 #include "scene/defaults.h"
 
 namespace pertev {
@@ -30,6 +29,11 @@ Environment environment_of(const SceneOptions& options, Messages& messages) {
         environment.scale = options.environment_scale * color;
         return environment;
     }
+    if (!std::filesystem::exists(options.environment)) {
+        throw Error(ErrorCode::BadInput, fmt::format("--environment {}: neither a file nor a radiance R,G,B such as "
+                                                     "0.5,0.5,0.5",
+                                                     options.environment));
+    }
     environment.image = read_environment_image(options.environment, messages);
     return environment;
 }
@@ -39,10 +43,8 @@ const Camera& named_camera(const std::string& name, const Scene& scene) {
     for (const Camera& camera : scene.cameras) {
         if (camera.name == name) return camera;
     }
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (error == std::errc() && end == name.data() + name.size() && number < scene.cameras.size()) {
-        return scene.cameras[number];
+    if (const auto number = whole_number_in(name); number && *number < scene.cameras.size()) {
+        return scene.cameras[*number];
     }
     std::string known;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
@@ -55,56 +57,98 @@ const Camera& named_camera(const std::string& name, const Scene& scene) {
 void place_camera(const SceneOptions& options, Camera& camera) {
     if (options.eye.empty() && options.target.empty() && options.up.empty()) return;
     const Transform& from = camera.world_from_camera;
-    const Vec3 eye = options.eye.empty() ? from.translation : parse_vec3("--eye", options.eye);
-    const Vec3 target = options.target.empty() ? eye - column(from, 2) : parse_vec3("--target", options.target);
+    const Vec3 eye = options.eye.empty() ? from.translation : parse_position("--eye", options.eye);
+    const Vec3 target = options.target.empty() ? eye - column(from, 2) : parse_position("--target", options.target);
     const Vec3 up = options.up.empty() ? Vec3{0, 1, 0} : parse_vec3("--up", options.up);
     Transform placed = look_at(eye, target, up);
     if (!is_finite(placed.row0) && options.up.empty()) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
     if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--eye {},{},{} --target {},{},{} --up {},{},{}: the target must differ from the eye and "
-                                "not lie along up",
-                                eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z));
+        throw Error(
+            ErrorCode::BadInput,
+            fmt::format("--eye {},{},{} --target {},{},{} --up {},{},{}: the target must differ from the eye and "
+                        "not lie along up",
+                        eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z));
     }
     camera.world_from_camera = placed;
     if (options.focus_m <= 0) camera.focus_distance = length(target - eye);
+}
+
+/// Turns a perspective camera into an orthographic one that shows as much of what it looks at.
+void flatten(const SceneOptions& options, const Scene& scene, Camera& camera) {
+    const Vec3 eye = camera.world_from_camera.translation, forward = -column(camera.world_from_camera, 2);
+    const Bounds3 bounds = bounds_of(scene);
+    const float distance = options.target.empty() ? dot(0.5f * (bounds.lo + bounds.hi) - eye, forward)
+                                                  : length(parse_position("--target", options.target) - eye);
+    camera.projection = Projection::Orthographic;
+    if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
 }
 
 } // namespace
 
 void add_scene_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
+        ->type_name("")
         ->required();
     const char* group = "Camera";
-    verb.add_option("--camera", options.camera, "the scene's camera of this name or number")->group(group);
-    verb.add_option("--eye", options.eye, "X,Y,Z: where the camera is, metres")->group(group);
-    verb.add_option("--target", options.target, "X,Y,Z: what it looks at")->group(group);
-    verb.add_option("--up", options.up, "X,Y,Z: upwards (0,1,0)")->group(group);
+    verb.add_option("--camera", options.camera, "the scene's camera of this name or number, from 0")
+        ->type_name("NAME|N")
+        ->group(group);
+    verb.add_option("--eye", options.eye, "where the camera is, metres")->type_name("X,Y,Z")->group(group);
+    verb.add_option("--target", options.target, "what it looks at")->type_name("X,Y,Z")->group(group);
+    verb.add_option("--up", options.up, "upwards (0,1,0)")->type_name("X,Y,Z")->group(group);
     verb.add_option("--fov", options.fov_deg, "full vertical angle of view, degrees")
-        ->check(CLI::Range(0.01, 179.0))->group(group);
+        ->type_name("DEG")
+        ->check(number_between(0.01f, 179.0f))
+        ->group(group);
     verb.add_option("--projection", options.projection, "perspective or orthographic")
-        ->check(CLI::IsMember({"perspective", "orthographic"}))->group(group);
-    verb.add_option("--view-height", options.view_height_m, "orthographic: full height of the view, metres")
-        ->check(CLI::PositiveNumber)->group(group);
+        ->type_name("NAME")
+        ->check(one_of({"perspective", "orthographic"}))
+        ->group(group);
+    verb.add_option("--view-height", options.view_height_m,
+                    "orthographic: full height of the view, metres (as much as the\nperspective view shows)")
+        ->type_name("M")
+        ->check(length_m())
+        ->group(group);
     verb.add_option("--aperture", options.aperture_m, "radius of the lens, metres; 0: everything is sharp")
-        ->check(CLI::NonNegativeNumber)->group(group);
+        ->type_name("M")
+        ->check(number_between(0, kMaxCoordinate))
+        ->group(group);
     verb.add_option("--focus", options.focus_m, "distance in focus, metres (that of the target)")
-        ->check(CLI::PositiveNumber)->group(group);
+        ->type_name("M")
+        ->check(length_m())
+        ->group(group);
     group = "Environment";
     verb.add_option("--environment", options.environment, "an .hdr or .exr panorama, or R,G,B: light from far away")
+        ->type_name("FILE|R,G,B")
         ->group(group);
-    verb.add_option("--environment-rotation", options.environment_rotation_deg, "degrees about +y")->group(group);
+    verb.add_option("--environment-rotation", options.environment_rotation_deg, "about +y")
+        ->type_name("DEG")
+        ->check(number_between(-1e6f, 1e6f))
+        ->group(group);
     verb.add_option("--environment-scale", options.environment_scale, "times its radiance")
-        ->check(CLI::NonNegativeNumber)->group(group);
-    verb.add_option("--allow-path", options.allowed_paths, "a folder outside the scene's own that it may read from")
-        ->check(CLI::ExistingDirectory);
+        ->type_name("X")
+        ->check(number_between(0, 1e12f))
+        ->group(group);
+    add_allow_path(verb, options.allowed_paths);
+}
+
+void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders) {
+    verb.add_option("--allow-path", folders,
+                    "a folder outside the scene's own that it may read from; may be given again")
+        ->type_name("DIR")
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+}
+
+Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
+                     Messages& messages) {
+    ReadOptions read;
+    read.allowed_paths = allowed_paths;
+    return builtin_scene(name) ? read_builtin_scene(name, messages) : read_scene(name, read, messages);
 }
 
 LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
-    ReadOptions read;
-    read.allowed_paths = options.allowed_paths;
-    Scene scene = builtin_scene(options.scene) ? read_builtin_scene(options.scene, messages)
-                                               : read_scene(options.scene, read, messages);
+    Scene scene = read_any_scene(options.scene, options.allowed_paths, messages);
     if (!options.environment.empty()) {
         scene.environment = environment_of(options, messages);
     } else if (scene.environment) {
@@ -118,23 +162,27 @@ LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
     return {std::move(scene), default_light};
 }
 
-Camera choose_camera(const SceneOptions& options, const Scene& scene, uint32_t width, uint32_t height,
-                     Messages& messages) {
+const Camera* scene_camera(const SceneOptions& options, const Scene& scene) {
+    if (!options.camera.empty()) return &named_camera(options.camera, scene);
+    return scene.cameras.empty() ? nullptr : &scene.cameras.front();
+}
+
+Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages) {
     Camera camera;
     const bool placed = !options.eye.empty() && !options.target.empty();
-    if (!options.camera.empty()) {
-        camera = named_camera(options.camera, scene);
-    } else if (!scene.cameras.empty()) {
-        camera = scene.cameras.front();
+    if (const Camera* given = scene_camera(options, scene)) {
+        camera = *given;
     } else if (!placed) {
-        camera = make_default_camera(scene, static_cast<float>(width) / static_cast<float>(height), messages);
+        camera = make_default_camera(scene, aspect, messages);
     }
     place_camera(options, camera);
     if (options.fov_deg > 0) camera.fov_y = options.fov_deg * kRadiansPerDegree;
     if (options.aperture_m >= 0) camera.aperture_radius = options.aperture_m;
     if (options.focus_m > 0) camera.focus_distance = options.focus_m;
     if (options.projection == "perspective") camera.projection = Projection::Perspective;
-    if (options.projection == "orthographic") camera.projection = Projection::Orthographic;
+    if (options.projection == "orthographic" && camera.projection == Projection::Perspective) {
+        flatten(options, scene, camera);
+    }
     if (options.view_height_m > 0) camera.ortho_height = options.view_height_m;
     return camera;
 }

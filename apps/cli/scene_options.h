@@ -30,6 +30,12 @@ struct SceneOptions {
 };
 
 void add_scene_options(CLI::App& verb, SceneOptions& options);
+/// --allow-path alone.
+void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);
+
+/// A file, or a built-in scene by its name. Throws Error.
+Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
+                     Messages& messages);
 
 struct LoadedScene {
     Scene scene;
@@ -39,8 +45,12 @@ struct LoadedScene {
 /// The scene read, with the environment that the flags or the defaults give it. Throws Error.
 LoadedScene load_scene(const SceneOptions& options, Messages& messages);
 
-/// The camera that the flags or the scene or the defaults give, for a picture of this shape. Throws Error(BadInput).
-Camera choose_camera(const SceneOptions& options, const Scene& scene, uint32_t width, uint32_t height,
-                     Messages& messages);
+/// The scene's own camera: the one that --camera names, else the first, else null. Throws Error(BadInput) that lists
+/// those there are when none is named so.
+const Camera* scene_camera(const SceneOptions& options, const Scene& scene);
+
+/// The camera that the flags or the scene or the defaults give, for a picture of this width / height. Throws
+/// Error(BadInput).
+Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages);
 
 } // namespace pertev

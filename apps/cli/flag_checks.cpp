@@ -1,0 +1,61 @@
+#include "apps/cli/flag_checks.h"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "apps/cli/parse_values.h"
+
+namespace pertev {
+namespace {
+
+/// `accepts` says whether the text is a value, `wanted` what would be right.
+template <class Accepts>
+CLI::Validator checked(Accepts accepts, std::string wanted) {
+    const auto check = [accepts, wanted = std::move(wanted)](std::string& text) {
+        return accepts(text) ? std::string() : fmt::format("{} is not {}", text, wanted);
+    };
+    return CLI::Validator(check, ""); // nothing in --help: the flag's own text tells
+}
+
+bool is_open_ended(float high) { return high == std::numeric_limits<float>::max(); }
+
+} // namespace
+
+CLI::Validator number_between(float low, float high) {
+    const auto accepts = [low, high](const std::string& text) {
+        const auto value = number_in(text);
+        return value && *value >= low && *value <= high;
+    };
+    return checked(accepts, low == -high          ? "a finite number"
+                            : is_open_ended(high) ? fmt::format("a finite number from {} up", low)
+                                                  : fmt::format("a number from {} to {}", low, high));
+}
+
+CLI::Validator number_above_zero(float high) {
+    const auto accepts = [high](const std::string& text) {
+        const auto value = number_in(text);
+        return value && *value > 0 && *value <= high;
+    };
+    return checked(accepts, is_open_ended(high) ? "a finite number above 0"
+                                                : fmt::format("a number above 0 and at most {}", high));
+}
+
+CLI::Validator whole_between(uint32_t low, uint32_t high) {
+    const auto accepts = [low, high](const std::string& text) {
+        const auto value = whole_number_in(text);
+        return value && *value >= low && *value <= high;
+    };
+    return checked(accepts, fmt::format("a whole number from {} to {}", low, high));
+}
+
+CLI::Validator one_of(std::vector<std::string> names) {
+    const std::string wanted = fmt::format("one of {}", fmt::join(names, ", "));
+    const auto accepts = [names = std::move(names)](const std::string& text) {
+        return std::ranges::find(names, text) != names.end();
+    };
+    return checked(accepts, wanted);
+}
+
+} // namespace pertev

@@ -1,0 +1,28 @@
+#pragma once
+
+// What a flag takes. CLI11's own Range lets NaN through, and its messages show bounds such as 1.8e308.
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "base/limits.h"
+
+namespace pertev {
+
+/// A finite number in [low, high].
+CLI::Validator number_between(float low, float high);
+/// A finite number above 0 and at most `high`.
+CLI::Validator number_above_zero(float high = std::numeric_limits<float>::max());
+/// A length of a scene, metres: above 0 and at most kMaxCoordinate.
+inline CLI::Validator length_m() { return number_above_zero(kMaxCoordinate); }
+/// A whole number in [low, high], in decimal digits.
+CLI::Validator whole_between(uint32_t low, uint32_t high);
+
+/// One of these names.
+CLI::Validator one_of(std::vector<std::string> names);
+
+} // namespace pertev

@@ -1,0 +1,153 @@
+#include "apps/cli/render_flags.h"
+
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/parse_values.h"
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/write_file_atomically.h"
+#include "image/write_image.h"
+
+namespace pertev {
+namespace {
+
+template <class T>
+T choice(const std::vector<std::pair<std::string, T>>& names, const std::string& name) {
+    return std::ranges::find(names, name, &std::pair<std::string, T>::first)->second; // CLI11 has checked it
+}
+
+const std::vector<std::pair<std::string, PathLight>> kIntegrators = {
+    {"path", PathLight::Path}, {"direct", PathLight::Direct}, {"indirect", PathLight::Indirect}};
+const std::vector<std::pair<std::string, SamplerKind>> kSamplers = {{"sobol", SamplerKind::Sobol},
+                                                                    {"independent", SamplerKind::Independent}};
+const std::vector<std::pair<std::string, PixelFilter>> kFilters = {{"box", PixelFilter::Box},
+                                                                   {"tent", PixelFilter::Tent},
+                                                                   {"gaussian", PixelFilter::Gaussian},
+                                                                   {"blackman-harris", PixelFilter::BlackmanHarris}};
+const std::vector<std::pair<std::string, uint32_t>> kAovs = {
+    {"albedo", kAovAlbedo}, {"normal", kAovNormal}, {"depth", kAovDepth}, {"position", kAovPosition}, {"ids", kAovIds}};
+
+template <class T>
+std::vector<std::string> names_of(const std::vector<std::pair<std::string, T>>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : choices) names.push_back(name);
+    return names;
+}
+
+} // namespace
+
+void add_render_flags(CLI::App& verb, RenderFlags& flags) {
+    add_scene_options(verb, flags.scene);
+    verb.add_option("-o,--output", flags.outputs, "picture to write: .exr .png .jpg .hdr; may be given again")
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->required();
+    const char* group = "Picture";
+    verb.add_option("--size", flags.size, "in pixels (1280x720, or the shape that the scene's camera\nasks for)")
+        ->type_name("WIDTHxHEIGHT")
+        ->group(group);
+    verb.add_option("--tone-map", flags.tone_map, "of PNG and JPEG: srgb, agx, aces or neutral")
+        ->type_name("NAME")
+        ->check(one_of({"srgb", "agx", "aces", "neutral"}))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--exposure", flags.exposure,
+                    "of PNG and JPEG: stops, or auto (0; auto where the\nlight was made up for lack of any)")
+        ->type_name("STOPS|auto")
+        ->group(group);
+    verb.add_flag("--transparent", flags.transparent, "keep how much of a pixel is covered as alpha")->group(group);
+    verb.add_option("--aov", flags.aovs, "layers of an EXR, of albedo,normal,depth,position,ids")
+        ->type_name("NAME,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(one_of(names_of(kAovs)))
+        ->group(group);
+    group = "Quality";
+    verb.add_option("--spp", flags.samples, "samples a pixel")
+        ->type_name("N")
+        ->check(whole_between(1, kMaxSamplesPerPixel))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--time", flags.time_s, "stop after this time, at a whole sample")
+        ->type_name("SECONDS")
+        ->check(number_above_zero())
+        ->group(group);
+    verb.add_option("--integrator", flags.integrator, "path, or its parts direct and indirect")
+        ->type_name("NAME")
+        ->check(one_of(names_of(kIntegrators)))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--max-depth", flags.max_depth, "most scatterings of a path: 0 emission, 1 direct light")
+        ->type_name("N")
+        ->check(whole_between(0, kMaxPathDepth - 1))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--seed", flags.seed, "of the random numbers")
+        ->type_name("N")
+        ->check(whole_between(0, UINT32_MAX))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--sampler", flags.sampler, "sobol or independent")
+        ->type_name("NAME")
+        ->check(one_of(names_of(kSamplers)))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--filter", flags.filter, "of pixels: box, tent, gaussian or blackman-harris")
+        ->type_name("NAME")
+        ->check(one_of(names_of(kFilters)))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--filter-radius", flags.filter_radius, "at most 64 (the filter's own)")
+        ->type_name("PIXELS")
+        ->check(number_above_zero(64))
+        ->group(group);
+    verb.add_option("--clamp", flags.clamp, "largest contribution after the first scattering; biased,\noff by default")
+        ->type_name("X")
+        ->check(number_above_zero())
+        ->group(group);
+    group = "Machine";
+    add_machine_flags(verb, flags.machine, group);
+    verb.add_flag("--no-bvh-cache", flags.no_cache, "build the tree even if it was built before")->group(group);
+    verb.add_flag("--strict", flags.strict, "fail, after writing, when a sample is not finite");
+    add_report_flags(verb, flags.report);
+}
+
+void check_render_flags(const RenderFlags& flags) {
+    if (!flags.exposure.empty() && flags.exposure != "auto") parse_number("--exposure", flags.exposure);
+    bool any_exr = false;
+    for (const std::string& output : flags.outputs) {
+        any_exr = image_format_for(output) == ImageFormat::Exr || any_exr;
+        check_writable(output);
+    }
+    if (!flags.aovs.empty() && !any_exr) {
+        throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
+    }
+}
+
+RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
+    RenderSettings settings;
+    if (!flags.size.empty()) {
+        std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
+    } else if (const Camera* camera = scene_camera(flags.scene, scene); camera != nullptr && camera->aspect > 0) {
+        settings.height = 720;
+        settings.width = static_cast<uint32_t>(to_int(720 * camera->aspect + 0.5f, 1, 8192));
+    }
+    settings.samples = flags.samples;
+    settings.filter = choice(kFilters, flags.filter);
+    settings.filter_radius = flags.filter_radius;
+    settings.transparent = flags.transparent;
+    settings.time_limit_s = flags.time_s;
+    for (const std::string& name : flags.aovs) settings.aovs |= choice(kAovs, name);
+    settings.path = {.max_depth = flags.max_depth,
+                     .light = choice(kIntegrators, flags.integrator),
+                     .clamp = flags.clamp,
+                     .sampler = choice(kSamplers, flags.sampler),
+                     .seed = flags.seed,
+                     .camera_axis = {}};
+    return settings;
+}
+
+} // namespace pertev

@@ -1,0 +1,40 @@
+#pragma once
+
+// The flags of pertev render, and what they ask for.
+
+#include <string>
+#include <vector>
+
+#include "apps/cli/choose_device.h"
+#include "apps/cli/reporter.h"
+#include "apps/cli/scene_options.h"
+#include "integrators/render_picture.h"
+
+namespace pertev {
+
+struct RenderFlags {
+    SceneOptions scene;
+    std::vector<std::string> outputs;
+    std::string size;
+    std::string tone_map = "srgb", exposure;
+    bool transparent = false;
+    std::vector<std::string> aovs;
+    uint32_t samples = 64;
+    double time_s = 0;
+    std::string integrator = "path", sampler = "sobol", filter = "blackman-harris";
+    float filter_radius = 0, clamp = 0;
+    uint32_t max_depth = 16, seed = 0;
+    MachineFlags machine;
+    bool no_cache = false, strict = false;
+    ReportFlags report;
+};
+
+void add_render_flags(CLI::App& verb, RenderFlags& flags);
+
+/// What can be told before the scene is read. Throws Error, above all for an output that could not be written.
+void check_render_flags(const RenderFlags& flags);
+
+/// The settings for a scene. Throws Error.
+RenderSettings render_settings(const RenderFlags& flags, const Scene& scene);
+
+} // namespace pertev

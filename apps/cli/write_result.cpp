@@ -1,0 +1,117 @@
+#include "apps/cli/write_result.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "apps/cli/parse_values.h"
+#include "base/version.h"
+#include "image/auto_exposure.h"
+#include "image/picture_hash.h"
+#include "image/tone_map_image.h"
+#include "image/write_image.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kMebibyte = 1048576.0;
+
+double peak_memory_bytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024.0;
+}
+
+ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, const RenderRecord& record,
+                        const std::string& hash) {
+    return {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
+            {"pertev.scene", flags.scene.scene},
+            {"pertev.samples", static_cast<int32_t>(result.samples)},
+            {"pertev.max_depth", static_cast<int32_t>(flags.max_depth)},
+            {"pertev.integrator", flags.integrator},
+            {"pertev.sampler", flags.sampler},
+            {"pertev.filter", flags.filter},
+            {"pertev.seed", fmt::format("{}", flags.seed)},
+            {"pertev.clamp", flags.clamp},
+            {"pertev.device", record.device},
+            {"pertev.hash", hash},
+            {"pertev.invalid_samples", static_cast<double>(result.invalid_samples)},
+            {"pertev.load_seconds", record.load_seconds},
+            {"pertev.build_seconds", record.build_seconds},
+            {"pertev.render_seconds", result.render_seconds},
+            {"pertev.rays", static_cast<double>(result.rays.total())}};
+}
+
+std::vector<ExrLayer> layers_of(RenderResult& result) {
+    std::vector<ExrLayer> layers;
+    for (FilmLayer& layer : result.layers) {
+        layers.push_back({layer.name, layer.channels, std::move(layer.image.pixels)});
+    }
+    if (!result.ids.empty()) {
+        std::vector<uint32_t> ids;
+        for (const PixelIds& id : result.ids) ids.insert(ids.end(), {id.instance, id.primitive, id.material});
+        layers.push_back({"id", {"instance", "primitive", "material"}, std::move(ids)});
+    }
+    return layers;
+}
+
+bool is_tone_mapped(const std::string& output) {
+    const ImageFormat format = image_format_for(output);
+    return format == ImageFormat::Png || format == ImageFormat::Jpeg;
+}
+
+bool wants_auto_exposure(const RenderFlags& flags, bool default_light) {
+    return flags.exposure == "auto" || (flags.exposure.empty() && default_light);
+}
+
+/// Stops for PNG and JPEG.
+float exposure_of(const RenderFlags& flags, bool default_light, const Image& picture, Reporter& reporter) {
+    if (!wants_auto_exposure(flags, default_light)) {
+        return flags.exposure.empty() ? 0.0f : parse_number("--exposure", flags.exposure);
+    }
+    const float stops = auto_exposure_stops(picture);
+    if (std::ranges::any_of(flags.outputs, is_tone_mapped)) {
+        reporter.say(fmt::format("note: exposed by {:+.2f} stops (--exposure {:.2f})", stops, stops));
+    }
+    return stops;
+}
+
+} // namespace
+
+std::string write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
+                         Reporter& reporter) {
+    std::string hash = picture_hash(result.picture).hex();
+    WriteImageOptions write;
+    write.tone_map = *tone_map_named(flags.tone_map);
+    write.exposure_stops = exposure_of(flags, record.default_light, result.picture, reporter);
+    write.transparent = flags.transparent;
+    const std::vector<ExrLayer> layers = layers_of(result);
+    write.layers = layers;
+    write.metadata = metadata_of(flags, result, record, hash);
+    for (const std::string& output : flags.outputs) write_image(output, result.picture, write);
+    return hash;
+}
+
+void report_result(const RenderRecord& record, const RenderResult& result, const std::string& hash,
+                   double total_seconds, Reporter& reporter) {
+    const double samples = static_cast<double>(result.picture.width) * result.picture.height * result.samples;
+    const double samples_per_second = samples / result.render_seconds;
+    const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
+    const double device_bytes = static_cast<double>(result.device_peak_bytes), host_bytes = peak_memory_bytes();
+    reporter.say(
+        fmt::format("{} spp in {:.2f} s ({:.2f} s in all), {:.2f} Msamples/s, {:.1f} Mrays/s, peak {:.0f} MiB{}, "
+                    "{} invalid samples, picture {}",
+                    result.samples, result.render_seconds, total_seconds, samples_per_second * 1e-6,
+                    rays_per_second * 1e-6, host_bytes / kMebibyte,
+                    record.is_cuda ? fmt::format(" and {:.0f} MiB on the GPU", device_bytes / kMebibyte) : "",
+                    result.invalid_samples, hash));
+    reporter.event(fmt::format(
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{:.0f},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{}}})",
+        result.samples, result.render_seconds, total_seconds, json_number(samples_per_second),
+        json_number(rays_per_second), host_bytes, result.device_peak_bytes, result.invalid_samples, hash,
+        json_string(record.device)));
+}
+
+} // namespace pertev

@@ -1,0 +1,29 @@
+#pragma once
+
+// The end of a render: its files, with layers and metadata, and its last line.
+
+#include <string>
+
+#include "apps/cli/render_flags.h"
+#include "apps/cli/reporter.h"
+
+namespace pertev {
+
+/// What the result itself does not know.
+struct RenderRecord {
+    std::string device;
+    bool is_cuda = false;
+    bool default_light = false; // made up for lack of any: the exposure then follows the picture
+    double load_seconds = 0, build_seconds = 0;
+};
+
+/// Writes the files that the flags name, each all or nothing, and gives the picture's hash. Takes the layers out of
+/// `result`. Throws Error(FileWrite).
+std::string write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
+                         Reporter& reporter);
+
+/// Says time, rates, memory, invalid samples and hash. `total_seconds` since the scene began to load.
+void report_result(const RenderRecord& record, const RenderResult& result, const std::string& hash,
+                   double total_seconds, Reporter& reporter);
+
+} // namespace pertev

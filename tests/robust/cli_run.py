@@ -1,0 +1,145 @@
+"""Runs the program as a stranger would, for the tests of its command line: in an empty folder, with its own cache."""
+
+import json
+import os
+import resource
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+# Sanitized programs are slow and reserve terabytes of addresses.
+SANITIZED = "--sanitized" in sys.argv
+PROGRAM = os.path.abspath(next(argument for argument in sys.argv[1:] if not argument.startswith("-")))
+PATIENCE_S = 300  # a machine under load; what must be quick is measured by itself
+
+
+def limit_addresses(gibibytes):
+    """For preexec_fn: an allocation that the input does not justify fails instead of filling the machine."""
+
+    def limit():
+        if not SANITIZED:
+            resource.setrlimit(resource.RLIMIT_AS, (gibibytes << 30, gibibytes << 30))
+
+    return limit
+
+
+class Outcome:
+    def __init__(self, arguments, status, stdout, stderr):
+        self.arguments, self.status = arguments, status
+        self.stdout, self.stderr = stdout.decode("utf-8", "replace"), stderr.decode("utf-8", "replace")
+
+    def events(self, kind=None):
+        """The JSON lines of stdout, all of them or those of one kind; anything else there is an error."""
+        lines = [json.loads(line, parse_constant=refuse_constant) for line in self.stdout.splitlines()]
+        return lines if kind is None else [line for line in lines if line["event"] == kind]
+
+    def __str__(self):
+        return f"pertev {' '.join(self.arguments)}\nstatus {self.status}\n{self.stdout}{self.stderr}"
+
+
+def refuse_constant(name):
+    raise ValueError(f"{name} is not JSON")
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = os.path.join(scratch.name, "work")
+        os.mkdir(self.folder)
+        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(scratch.name, "cache"), CUDA_VISIBLE_DEVICES="")
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def files(self):
+        return sorted(os.listdir(self.folder))
+
+    def run_pertev(self, *arguments, **options):
+        options = {"cwd": self.folder, "env": self.environment, "stdin": subprocess.DEVNULL, "timeout": PATIENCE_S,
+                   "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+        arguments = [str(argument) for argument in arguments]
+        done = subprocess.run([PROGRAM, *arguments], check=False, **options)
+        return Outcome(arguments, done.returncode, done.stdout or b"", done.stderr or b"")
+
+    def succeed(self, *arguments, **options):
+        outcome = self.run_pertev(*arguments, **options)
+        self.assertEqual(outcome.status, 0, outcome)
+        return outcome
+
+    def refuse(self, status, *arguments, says=(), **options):
+        """Ends with this status, says each of `says` on stderr, and leaves the folder as it was."""
+        before = self.files()
+        outcome = self.run_pertev(*arguments, **options)
+        self.assertEqual(outcome.status, status, outcome)
+        for text in says:
+            self.assertIn(text, outcome.stderr, outcome)
+        self.assertNotIn("mistake of pertev's own", outcome.stderr, outcome)
+        self.assertNotEqual(outcome.stderr.strip(), "", outcome)
+        self.assertEqual(self.files(), before, outcome)
+        return outcome
+
+    def render(self, *arguments, scene="cornell-box", size="16x16", spp=1, output="picture.png"):
+        """A small picture on the CPU; gives the event that ends it."""
+        outcome = self.succeed("render", scene, "-o", output, "--size", size, "--spp", spp, "--device", "cpu", "--json",
+                               *arguments)
+        return outcome.events("done")[0]
+
+    def info(self, name):
+        return self.succeed("info", name, "--json").events("info")[0]
+
+
+def read_exr(path):
+    """{channel: [[value of each column] of each row]} and size of a picture as pertev writes it: lines, ZIP."""
+    with open(path, "rb") as file:
+        data = file.read()
+    assert data[:8] == struct.pack("<II", 20000630, 2), "one part of lines"
+    at, header = 8, {}
+    while data[at]:
+        name, kind, rest = data[at:].split(b"\0", 2)
+        at += len(name) + len(kind) + 2
+        size = struct.unpack_from("<i", data, at)[0]
+        header[name.decode()] = data[at + 4 : at + 4 + size]
+        at += 4 + size
+    assert header["compression"] == b"\3", "ZIP"
+    low_x, low_y, high_x, high_y = struct.unpack("<4i", header["dataWindow"])
+    width, height = high_x - low_x + 1, high_y - low_y + 1
+    channels, rest = [], header["channels"]
+    while rest[0]:
+        name, rest = rest.split(b"\0", 1)
+        channels.append((name.decode(), {0: "I", 2: "f"}[struct.unpack_from("<i", rest)[0]]))
+        rest = rest[16:]
+    rows = {name: [None] * height for name, _ in channels}
+    blocks = (height + 15) // 16
+    for offset in struct.unpack_from(f"<{blocks}Q", data, at + 1):
+        first, size = struct.unpack_from("<2i", data, offset)
+        lines = min(16, height - (first - low_y))
+        block = data[offset + 8 : offset + 8 + size]
+        if size < 4 * width * len(channels) * lines:
+            block = unpack_zip(zlib.decompress(block))
+        position = 0
+        for line in range(first - low_y, first - low_y + lines):
+            for name, code in channels:
+                rows[name][line] = struct.unpack_from(f"<{width}{code}", block, position)
+                position += 4 * width
+    return width, height, rows
+
+
+def unpack_zip(packed):
+    """Undoes OpenEXR's differences between bytes, then its split into even and odd ones."""
+    values, last = bytearray(len(packed)), 128
+    for i, byte in enumerate(packed):
+        last = byte if i == 0 else (last + byte - 128) & 255
+        values[i] = last
+    half, out = (len(values) + 1) // 2, bytearray(len(values))
+    out[0::2], out[1::2] = values[:half], values[half:]
+    return bytes(out)
+
+
+def main():
+    """Runs the tests of the calling file; the program's path and --sanitized are ours, the rest is unittest's."""
+    rest = [argument for argument in sys.argv[1:] if argument != "--sanitized" and os.path.abspath(argument) != PROGRAM]
+    unittest.main(argv=[sys.argv[0], *rest])

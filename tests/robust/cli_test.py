@@ -1,0 +1,476 @@
+#!/usr/bin/env python3
+"""What the command line promises to a stranger: exit codes, what it says and where, and that nothing is left behind."""
+
+import json
+import math
+import os
+import pty
+import re
+import resource
+import signal
+import statistics
+import subprocess
+import threading
+import time
+
+from cli_run import PROGRAM, SANITIZED, CliTest, limit_addresses, main, read_exr
+
+FLAGS = {
+    "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
+              "--view-height --aperture --focus --environment --environment-rotation --environment-scale --size "
+              "--tone-map --exposure --transparent --aov --spp --time --integrator --max-depth --seed --sampler "
+              "--filter --filter-radius --clamp --device --threads --no-bvh-cache",
+    "info": "--allow-path --quiet -q --json",
+    "compare": "--quiet -q --json",
+    "bench": "--scene --size --spp --device --threads --quiet -q --json",
+}
+
+# A floor of 2 by 2 m at y = 0 around the origin.
+FLOOR = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n"
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def gltf_with_cameras():
+    """Two cameras, one square before them: "wide" is 2:1, "tall" 1:2."""
+    def camera(name, aspect):
+        return {"name": name, "type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1, "aspectRatio": aspect}}
+
+    positions = "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"  # (-1,-1,0) (1,-1,0) (0,1,0)
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4]}, {"camera": 1, "translation": [0, 0, 8]}],
+        "cameras": [camera("wide", 2.0), camera("tall", 0.5)],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0],
+                       "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + positions}]})
+
+
+class WhatIsRefused(CliTest):
+    def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
+        for flag in ["--foo", "--spp 0", "--spp -1", "--spp 1.5", "--spp 4294967297", "--fov nan", "--fov 0",
+                     "--fov 180", "--aperture -1", "--aperture nan", "--focus 0", "--focus inf", "--clamp nan",
+                     "--clamp 0", "--time 0", "--time nan", "--environment-scale nan", "--environment-scale -1",
+                     "--environment-rotation inf", "--exposure much", "--exposure inf", "--seed -1",
+                     "--seed 4294967296", "--threads 0", "--filter-radius nan", "--filter-radius 1e9",
+                     "--view-height inf", "--max-depth -1", "--tone-map x", "--sampler x", "--filter x",
+                     "--integrator x", "--projection x", "--aov x", "--aov albedo", "--size 10", "--size 0x10",
+                     "--size x", "--size 10x", "--size 10x10x10", "--size -1x10", "--size nanxnan", "--device gpu",
+                     "--device cuda:x", "--eye 1,2", "--eye 1,2,nan", "--target 1,2,3,4", "--up x,y,z",
+                     "--environment -1,0,0", "--environment 1,2", "--environment no.hdr", "--allow-path nowhere"]:
+            with self.subTest(flag=flag):
+                arguments = flag.split()
+                self.refuse(2, "render", "cornell-box", "-o", "x.png", *arguments, says=[arguments[0]])
+
+    def test_a_line_without_verb_scene_or_output_ends_with_2(self):
+        self.refuse(2, says=["render"])
+        self.refuse(2, "frobnicate")
+        self.refuse(2, "render", "-o", "x.png", says=["SCENE"])
+        self.refuse(2, "render", "cornell-box", says=["--output"])
+        self.refuse(2, "compare", "x.png")
+        self.refuse(2, "info")
+
+    def test_a_missing_or_foreign_file_ends_with_2_and_is_named(self):
+        os.mkdir(self.path("folder.obj"))
+        os.mkfifo(self.path("pipe.obj"))
+        os.symlink("/dev/zero", self.path("endless.png"))
+        write(self.path("empty.png"), "")
+        for name in ["nowhere.obj", "nowhere.gltf", "cornel-box", "folder.obj", "pipe.obj", "a" * 300 + ".obj"]:
+            self.refuse(2, "render", name, "-o", "x.png", says=[name])
+            self.refuse(2, "info", name, says=[name])
+        for name in ["nowhere.exr", "endless.png", "empty.png"]:
+            self.refuse(2, "info", name, says=[name])
+            self.refuse(2, "compare", name, name, says=[name])
+            self.refuse(2, "render", "cornell-box", "-o", "x.png", "--environment", name, says=[name])
+
+    def test_more_than_a_limit_ends_with_3(self):
+        for flag in ["--size 70000x70000", "--size 70000x1", "--size 65536x65536", "--size 99999999999x1",
+                     "--eye 1e30,0,0", "--target 0,2e12,0"]:
+            with self.subTest(flag=flag):
+                self.refuse(3, "render", "cornell-box", "-o", "x.png", *flag.split(), says=["limit"])
+
+    def test_a_picture_that_memory_cannot_hold_ends_with_4_and_lists_the_largest_buffers(self):
+        if SANITIZED:
+            self.skipTest("sanitizers reserve more than any limit")
+        self.refuse(4, "render", "cornell-box", "-o", "x.png", "--size", "20000x20000", "--device", "cpu",
+                    says=["film", "MiB"], preexec_fn=limit_addresses(2))
+
+    def test_cuda_without_a_gpu_ends_with_2_and_the_reason(self):
+        outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cuda", says=["--device cuda: "])
+        self.assertGreater(len(outcome.stderr.split("--device cuda: ")[1]), 20)
+
+    def test_an_eye_in_its_own_target_or_up_along_the_view_is_refused(self):
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "1,2,3", "--target", "1,2,3", says=["--eye"])
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "0,3,0", "--target", "0,0,0", "--up", "0,1,0",
+                    says=["--up"])
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--up", "0,0,0", says=["--up"])
+
+    def test_a_camera_that_is_not_there_is_answered_by_those_that_are(self):
+        write(self.path("two.gltf"), gltf_with_cameras())
+        for name in ["middle", "2", "-1", "0x0"]:
+            self.refuse(2, "render", "two.gltf", "-o", "x.png", "--camera", name, says=["0  wide", "1  tall"])
+
+    def test_errors_are_said_on_stderr_even_when_quiet(self):
+        for flags in [[], ["-q"], ["--json"], ["-q", "--json"]]:
+            outcome = self.refuse(2, "render", "nowhere.obj", "-o", "x.png", *flags, says=["nowhere.obj"])
+            self.assertEqual(outcome.stdout, "")
+
+    def test_a_sample_that_is_not_finite_fails_only_a_strict_render_and_is_always_counted(self):
+        light = ["--environment", "1e13,1e13,1e13", "--eye", "0,0,-3", "--target", "0,0,0"]
+        self.assertEqual(self.render(*light)["invalid_samples"], 256)
+        outcome = self.run_pertev("render", "cornell-box", "-o", "strict.png", "--size", "16x16", "--spp", "1",
+                                  "--strict", *light)
+        self.assertEqual(outcome.status, 2, outcome)
+        self.assertIn("256 samples", outcome.stderr)
+        self.assertEqual(self.render("--strict")["invalid_samples"], 0)
+
+
+class WhatIsWritten(CliTest):
+    def test_an_output_that_cannot_be_written_ends_with_6_before_the_scene_is_read(self):
+        os.mkdir(self.path("folder.png"))
+        os.symlink("/dev/full", self.path("full.png"))
+        os.symlink("nowhere/x.png", self.path("dangling.png"))
+        for name in ["nowhere/x.png", "folder.png", "full.png", "dangling.png", "/proc/x.png", "a" * 300 + ".png"]:
+            with self.subTest(output=name):
+                self.refuse(6, "render", "nowhere.obj", "-o", "good.png", "-o", name, says=[name])
+
+    def test_an_unknown_extension_ends_with_2_and_lists_those_known(self):
+        for name in ["x.bmp", "x", "x.png.", ".png"]:
+            self.refuse(2, "render", "cornell-box", "-o", name, says=[name, ".exr"])
+
+    def test_a_disk_that_fills_up_ends_with_6_and_keeps_the_old_picture(self):
+        self.render(output="x.hdr")
+        with open(self.path("x.hdr"), "rb") as file:
+            old = file.read()
+
+        def fill():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+        self.refuse(6, "render", "cornell-box", "-o", "x.hdr", "--size", "128x128", "--spp", "1", says=["x.hdr"],
+                    preexec_fn=fill)
+        with open(self.path("x.hdr"), "rb") as file:
+            self.assertEqual(file.read(), old)
+
+    def test_one_render_writes_every_output_that_is_named_wherever_it_stands(self):
+        self.succeed("render", "-o", "a.png", "cornell-box", "-o", "b.EXR", "--size", "16x8", "--spp", "1", "-o",
+                     "c.jpg", "--aov", "normal", "-o", "d.hdr")
+        self.assertEqual(self.files(), ["a.png", "b.EXR", "c.jpg", "d.hdr"])
+        for name in self.files():
+            self.assertEqual((self.info(name)["width"], self.info(name)["height"]), (16, 8), name)
+        self.succeed("render", "-o", "a.exr", "--aov", "normal", "cornell-box", "--size", "8x8", "--spp", "1")
+
+    def test_an_output_that_is_a_symbolic_link_stays_one(self):
+        os.mkdir(self.path("real"))
+        os.symlink("real/picture.png", self.path("link.png"))
+        for _ in range(2):  # first there is nothing at its end, then a picture
+            self.render(output="link.png")
+            self.assertTrue(os.path.islink(self.path("link.png")))
+            self.assertEqual(os.listdir(self.path("real")), ["picture.png"])
+
+    def test_a_full_standard_output_ends_with_6(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            for arguments in [["--version"], ["--help"], ["info", "cornell-box"], ["info", "cornell-box", "--json"]]:
+                outcome = self.run_pertev(*arguments, stdout=full)
+                self.assertEqual(outcome.status, 6, outcome)
+                self.assertIn("standard output", outcome.stderr)
+
+    def test_closed_or_full_standard_error_does_not_end_up_in_a_picture(self):
+        whole = self.render(output="whole.png")["hash"]
+        arguments = ["render", "cornell-box", "-o", "x.exr", "--size", "16x16", "--spp", "1", "--device", "cpu"]
+        self.succeed(*arguments, preexec_fn=lambda: os.closerange(0, 3))
+        self.assertEqual(self.info("x.exr")["hash"], whole)
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            self.succeed(*arguments, stderr=full)
+            self.assertEqual(self.run_pertev("info", "nowhere.obj", stderr=full).status, 2)
+
+    def test_a_cache_folder_that_cannot_be_written_is_a_warning(self):
+        mesh = "".join(f"v {x} {math.sin(x * y)} {y}\n" for y in range(40) for x in range(40))
+        mesh += "".join(f"f {1 + x + 40 * y} {2 + x + 40 * y} {41 + x + 40 * y}\n" for y in range(39) for x in range(39))
+        write(self.path("hills.obj"), mesh)
+        self.environment["XDG_CACHE_HOME"] = "/proc"
+        done = self.render(scene="hills.obj")
+        self.environment.pop("XDG_CACHE_HOME")
+        self.environment["HOME"] = "/nowhere"
+        self.assertEqual(self.render(scene="hills.obj")["hash"], done["hash"])
+        self.assertEqual(self.render("--no-bvh-cache", scene="hills.obj")["hash"], done["hash"])
+
+
+class WhatIsSaid(CliTest):
+    def test_json_lines_all_parse_and_stdout_has_nothing_else(self):
+        outcome = self.succeed("render", "cornell-box", "-o", "x.exr", "--size", "32x32", "--spp", "3", "--json")
+        kinds = [event["event"] for event in outcome.events()]
+        self.assertLessEqual(set(kinds), {"notice", "warning", "progress", "done"})
+        self.assertEqual(kinds[-1], "done")
+        self.assertEqual(outcome.stderr, "")
+        self.assertEqual(outcome.events("progress")[-1]["samples"], 3)
+        self.assertEqual(len(self.succeed("info", "x.exr", "--json").events()), 1)
+        self.assertEqual(len(self.succeed("compare", "x.exr", "x.exr", "--json").events()), 1)
+
+    def test_json_is_json_for_any_file_name(self):
+        for name in [b"\xff\xfe.obj", b'"quotes\\".obj', "käfer\u2028\x7f.obj".encode(), b"line\nbreak.obj"]:
+            name = os.fsdecode(name)
+            write(self.path(name), FLOOR)
+            self.succeed("info", name, "--json").events("info")
+            self.render(scene=name)
+
+    def test_quiet_says_nothing_on_success(self):
+        write(self.path("floor.obj"), FLOOR)
+        for arguments in [["render", "floor.obj", "-o", "x.exr", "--size", "8x8", "--spp", "1"],
+                          ["info", "floor.obj"], ["info", "x.exr"], ["compare", "x.exr", "x.exr"]]:
+            outcome = self.succeed(*arguments, "-q")
+            self.assertEqual(outcome.stdout + outcome.stderr, "", outcome)
+
+    def test_the_last_line_has_time_rates_memory_hash_and_invalid_samples(self):
+        outcome = self.succeed("render", "cornell-box", "-o", "x.exr", "--size", "8x8", "--spp", "2")
+        self.assertEqual(outcome.stdout, "")
+        self.assertRegex(outcome.stderr.splitlines()[-1],
+                         r"^2 spp in [\d.]+ s .*Msamples/s, [\d.]+ Mrays/s, peak \d+ MiB.*, 0 invalid samples, "
+                         r"picture [0-9a-f]{32}$")
+        self.assertEqual(outcome.stderr.split()[-1], self.info("x.exr")["hash"])
+
+    def test_version_is_quick(self):
+        seconds = []
+        for _ in range(9):
+            start = time.monotonic()
+            self.assertRegex(self.succeed("--version").stdout, r"^pertev \d+\.\d+\.\d+ \([0-9a-f]+(, changed)?|unknown\)")
+            seconds.append(time.monotonic() - start)
+        print(f"pertev --version: median {1000 * statistics.median(seconds):.1f} ms", flush=True)
+        self.assertLess(statistics.median(seconds), 2.0 if SANITIZED else 0.2)  # 5 ms alone; machines are loaded
+
+    def test_help_of_each_verb_lists_every_flag(self):
+        verbs = self.succeed("--help").stdout
+        for verb, flags in FLAGS.items():
+            self.assertIn(verb, verbs)
+            text = self.succeed(verb, "--help").stdout
+            listed = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", re.sub(r" {3,}.*", "", text)))
+            self.assertEqual(listed - {"-h", "--help"}, set(flags.split()), verb)
+
+    def test_the_progress_bar_shows_share_samples_rate_and_time_left_on_a_terminal_alone(self):
+        arguments = ["render", "cornell-box", "-o", "x.png", "--size", "64x64", "--spp", "8", "--device", "cpu"]
+        self.assertNotIn("\r", self.succeed(*arguments).stderr)
+        self.assertNotIn("spp  ", self.succeed(*arguments).stderr)
+        self.assertRegex(self.stderr_on_a_terminal(arguments),
+                         r"\r\[=+\] 100 %  8/8 spp  [\d.]+ Mrays/s  0 s left\x1b\[K\r\n8 spp in ")
+        self.assertEqual(self.stderr_on_a_terminal([*arguments, "-q"]), "")
+        self.assertEqual(self.stderr_on_a_terminal([*arguments, "--json"]), "")
+
+    def stderr_on_a_terminal(self, arguments):
+        leader, follower = pty.openpty()
+        said = []
+
+        def listen():
+            try:
+                while chunk := os.read(leader, 65536):
+                    said.append(chunk)
+            except OSError:
+                pass  # how Linux tells that the other side is closed
+
+        listener = threading.Thread(target=listen)
+        listener.start()
+        outcome = self.run_pertev(*arguments, stderr=follower)
+        os.close(follower)
+        listener.join()
+        os.close(leader)
+        self.assertEqual(outcome.status, 0, outcome)
+        return b"".join(said).decode()
+
+
+class WhenItEnds(CliTest):
+    def start(self, *arguments):
+        program = subprocess.Popen([PROGRAM, "render", "cornell-box", *arguments], cwd=self.folder,
+                                   env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        return program
+
+    def test_an_interrupt_writes_the_whole_samples_so_far_and_ends_with_75(self):
+        for kind in [signal.SIGINT, signal.SIGTERM]:
+            program = self.start("-o", "part.exr", "-o", "part.png", "--size", "48x48", "--spp", "100000000", "--json")
+            seen = 0
+            for line in program.stdout:
+                seen += json.loads(line)["event"] == "progress"
+                if seen == 2:
+                    break
+            program.send_signal(kind)
+            stdout, stderr = program.communicate(timeout=300)
+            self.assertEqual(program.returncode, 75, stderr)
+            done = json.loads(stdout.splitlines()[-1])
+            self.assertEqual(done["event"], "done")
+            self.assertGreaterEqual(done["samples"], 2)
+            part = self.info("part.exr")
+            self.assertEqual((part["hash"], part["pertev.samples"]), (done["hash"], done["samples"]))
+            self.assertEqual(self.render(size="48x48", spp=done["samples"], output="whole.exr")["hash"], done["hash"])
+            self.assertEqual(self.files(), ["part.exr", "part.png", "whole.exr"])
+
+    def test_a_second_interrupt_kills_and_nothing_is_left_behind(self):
+        program = self.start("-o", "x.png", "--size", "6000x6000", "--spp", "64", "--threads", "1")
+        interrupts = 1 << (signal.SIGINT - 1)
+        while program.poll() is None and not self.signals_caught(program.pid) & interrupts:
+            time.sleep(0.01)
+        program.send_signal(signal.SIGINT)
+        while program.poll() is None and self.signals_caught(program.pid) & interrupts:
+            time.sleep(0.01)  # until the first is heard
+        self.assertIsNone(program.poll(), "the first interrupt waits for the sample to be whole")
+        program.send_signal(signal.SIGINT)
+        program.communicate(timeout=300)
+        self.assertEqual(program.returncode, -signal.SIGINT)
+        self.assertEqual(self.files(), [])
+
+    @staticmethod
+    def signals_caught(pid):
+        with open(f"/proc/{pid}/status", encoding="ascii") as file:
+            return int(re.search(r"SigCgt:\s*([0-9a-f]+)", file.read()).group(1), 16)
+
+    def test_a_time_limit_ends_at_a_whole_sample_with_0(self):
+        done = self.render("--time", "0.5", size="48x48", spp=100000000)
+        self.assertLess(done["seconds"], 60)
+        self.assertEqual(self.render(size="48x48", spp=done["samples"])["hash"], done["hash"])
+        self.assertEqual(self.render("--time", "1e-9", size="48x48", spp=100)["samples"], 1)
+
+
+class WhatIsRendered(CliTest):
+    def test_the_picture_does_not_depend_on_the_number_of_threads(self):
+        hashes = {self.render("--threads", count, size="40x30", spp=4)["hash"] for count in [1, 2, 5]}
+        self.assertEqual(len(hashes), 1)
+
+    def test_info_prints_the_hash_of_the_last_line(self):
+        for flags in [[], ["--transparent"], ["--aov", "albedo,ids"]]:
+            done = self.render(*flags, output="x.exr")
+            self.assertEqual(self.info("x.exr")["hash"], done["hash"])
+            self.assertEqual(self.info("x.exr")["pertev.hash"], done["hash"])
+
+    def test_the_metadata_of_an_exr_tell_how_it_was_made(self):
+        self.render("--seed", "7", "--max-depth", "3", spp=5, output="x.exr")
+        made = self.info("x.exr")
+        self.assertEqual((made["pertev.samples"], made["pertev.seed"], made["pertev.max_depth"]), (5, "7", 3))
+        for name in ["version", "scene", "integrator", "sampler", "filter", "device", "rays", "render_seconds",
+                     "load_seconds", "build_seconds", "invalid_samples"]:
+            self.assertIn(f"pertev.{name}", made)
+
+    def test_aov_layers_are_in_the_exr_and_agree_with_each_other(self):
+        # The tall and the short box before the open side; one sample a pixel, so that no pixel is a mean of two things.
+        self.render("--aov", "albedo,normal,depth", "--aov", "position,ids", size="24x20", output="x.exr")
+        width, height, layers = read_exr(self.path("x.exr"))
+        self.assertEqual((width, height), (24, 20))
+        self.assertEqual(set(layers), {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y",
+                                       "normal.Z", "depth.Z", "position.X", "position.Y", "position.Z", "id.instance",
+                                       "id.primitive", "id.material"})
+        pixels = [{name: rows[y][x] for name, rows in layers.items()} for y in range(height) for x in range(width)]
+        hits = [pixel for pixel in pixels if pixel["id.instance"] < 8]
+        self.assertGreater(len(hits), 0.9 * len(pixels))
+        for pixel in hits:
+            normal = [pixel["normal." + axis] for axis in "XYZ"]
+            position = [pixel["position." + axis] for axis in "XYZ"]
+            self.assertAlmostEqual(math.hypot(*normal), 1, places=3)
+            self.assertTrue(all(-1e-4 <= p <= 0.5593 for p in position), position)
+            self.assertAlmostEqual(pixel["depth.Z"], position[2] + 0.8, places=3)  # the eye is at z = -0.8
+            self.assertTrue(all(0 <= pixel["albedo." + channel] <= 1 for channel in "RGB"))
+            self.assertLess(pixel["id.material"], 4)
+        self.assertGreater(len({pixel["id.instance"] for pixel in hits}), 5)
+
+    def test_transparent_keeps_coverage_and_leaves_what_is_covered_alone(self):
+        write(self.path("floor.obj"), FLOOR)
+        view = ["--eye", "0,2,4", "--target", "0,0,0", "--environment", "1,1,1"]
+        self.render(*view, "--transparent", scene="floor.obj", output="x.exr", spp=4)
+        _, _, layers = read_exr(self.path("x.exr"))
+        alphas = [value for row in layers["A"] for value in row]
+        self.assertEqual((min(alphas), max(alphas)), (0, 1))
+        self.assertEqual((layers["A"][0][0], layers["R"][0][0]), (0, 0))
+        self.render(*view, scene="floor.obj", output="opaque.exr", spp=4)
+        _, _, opaque = read_exr(self.path("opaque.exr"))
+        self.assertNotIn("A", opaque)
+        self.assertEqual(opaque["R"][0][0], 1)
+        for x in range(16):
+            if layers["A"][9][x] == 1:
+                self.assertEqual(layers["R"][9][x], opaque["R"][9][x])
+        self.render(*view, "--transparent", scene="floor.obj", output="x.png")
+        with open(self.path("x.png"), "rb") as file:
+            self.assertEqual(file.read()[25], 6)  # PNG's colour type with alpha
+
+    def test_tone_maps_and_exposure_change_pngs_and_leave_the_picture_alone(self):
+        pictures, hashes = set(), set()
+        for flags in [["--tone-map", name] for name in ["srgb", "agx", "aces", "neutral"]] + [["--exposure", "-2"]]:
+            hashes.add(self.render(*flags)["hash"])
+            pictures.add(self.info("picture.png")["hash"])
+        self.assertEqual((len(hashes), len(pictures)), (1, 5))
+
+    def test_every_choice_that_changes_the_light_changes_the_hash(self):
+        choices = [[], ["--seed", "1"], ["--sampler", "independent"], ["--filter", "box"], ["--filter", "tent"],
+                   ["--filter", "gaussian"], ["--filter-radius", "3"], ["--integrator", "direct"],
+                   ["--integrator", "indirect"], ["--max-depth", "2"], ["--clamp", "0.1"], ["--fov", "30"],
+                   ["--environment", "1,0.5,0.2"], ["--environment", "1,1,1", "--environment-scale", "3"],
+                   ["--aperture", "0.05", "--focus", "0.9"], ["--aperture", "0.05", "--focus", "1.3"],
+                   ["--eye", "0.3,0.3,-0.7"], ["--target", "0.2,0.2,0"], ["--up", "1,1,0"],
+                   ["--projection", "orthographic"], ["--projection", "orthographic", "--view-height", "0.3"]]
+        hashes = [self.render(*flags, size="32x32", spp=2)["hash"] for flags in choices]
+        self.assertEqual(len(set(hashes)), len(choices))
+        self.assertEqual(self.render("--aperture", "0", size="32x32", spp=2)["hash"], hashes[0])
+
+    def test_a_camera_is_chosen_by_name_or_number_and_gives_the_picture_its_shape(self):
+        write(self.path("two.gltf"), gltf_with_cameras())
+        shapes, hashes = {}, {}
+        for flags in [[], ["--camera", "wide"], ["--camera", "0"], ["--camera", "tall"], ["--camera", "1"]]:
+            key = flags[-1] if flags else "none"
+            self.succeed("render", "two.gltf", "-o", "x.exr", "--spp", "1", *flags)
+            made = self.info("x.exr")
+            shapes[key], hashes[key] = (made["width"], made["height"]), made["hash"]
+        self.assertEqual((shapes["wide"], shapes["tall"]), ((1440, 720), (360, 720)))
+        self.assertEqual({hashes[key] for key in ["none", "wide", "0"]}, {hashes["wide"]})
+        self.assertEqual(hashes["tall"], hashes["1"])
+        self.assertEqual(self.info("two.gltf")["cameras"], ["wide", "tall"])
+
+    def test_looking_straight_down_shows_what_lies_below(self):
+        write(self.path("floor.obj"), FLOOR)
+        for eye, height in [("0,3,0", 3), ("0.5,7,0.5", 7)]:
+            self.render("--eye", eye, "--target", eye.replace(str(height), "0"), "--fov", "10", "--aov", "depth,ids",
+                        scene="floor.obj", output="x.exr")
+            _, _, layers = read_exr(self.path("x.exr"))
+            for row in layers["depth.Z"]:
+                self.assertTrue(all(abs(depth - height) < 1e-4 for depth in row))
+
+    def test_an_orthographic_view_has_parallel_rays_and_the_height_asked_for(self):
+        write(self.path("floor.obj"), FLOOR)
+        view = ["--eye", "0,3,0", "--target", "0,0,0", "--projection", "orthographic", "--filter", "box"]
+        self.render(*view, "--view-height", "1.6", "--aov", "position", scene="floor.obj", output="x.exr", size="20x20",
+                    spp=16)
+        _, _, layers = read_exr(self.path("x.exr"))
+        for x in range(20):
+            column = [layers["position.X"][y][x] for y in range(20)]
+            self.assertTrue(all(abs(value - (x - 9.5) * 0.08) < 0.03 for value in column), column)
+        # Without a height, what the perspective view shows in the plane of the target.
+        done = self.render(*view, "--fov", "30", scene="floor.obj")
+        same = self.render(*view, "--view-height", 6 * math.tan(math.radians(15)), scene="floor.obj")
+        self.assertEqual(self.picture_difference(done, same), 0)
+
+    def picture_difference(self, *renders):
+        return len({done["hash"] for done in renders}) - 1
+
+    def test_negative_numbers_are_values_and_not_flags(self):
+        for view in [["--eye", "-.5,0.2,-1"], ["--eye=-0.5,0.2,-1"]]:
+            self.render(*view, "--target", "-0.5,0.2,0", "--exposure", "-1", "--environment-rotation", "-30")
+
+
+class WhatIsCompared(CliTest):
+    def test_a_picture_equals_itself_and_differs_from_another(self):
+        self.render(output="a.exr", spp=2)
+        self.render("--seed", "1", output="b.exr", spp=2)
+        same = self.succeed("compare", "a.exr", "a.exr", "--json").events("compare")[0]
+        self.assertEqual([same[key] for key in ["equal", "rel_mse", "mse", "flip", "hdr_flip"]], [True, 0, 0, 0, 0])
+        other = self.succeed("compare", "a.exr", "b.exr", "--json").events("compare")[0]
+        self.assertFalse(other["equal"])
+        self.assertGreater(min(other[key] for key in ["rel_mse", "mse", "flip", "hdr_flip"]), 0)
+        self.assertIn("the same to the last bit", self.succeed("compare", "a.exr", "a.exr").stdout)
+
+    def test_pictures_of_different_sizes_are_refused_with_both_sizes(self):
+        self.render(output="a.exr", size="16x8")
+        self.render(output="b.exr", size="8x16")
+        self.refuse(2, "compare", "a.exr", "b.exr", says=["16x8", "8x16"])
+
+
+if __name__ == "__main__":
+    main()
