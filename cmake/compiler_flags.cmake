@@ -20,6 +20,7 @@ endif()
 add_compile_definitions($<$<STREQUAL:${PERTEV_THREADS},STD>:PERTEV_STD_THREADS>)
 
 if(PERTEV_SANITIZE)
-  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${PERTEV_SANITIZE};-fno-sanitize-recover=all;-fno-omit-frame-pointer;-g>")
+  add_compile_definitions(_GLIBCXX_ASSERTIONS)
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${PERTEV_SANITIZE};-fno-sanitize-recover=all;-fno-omit-frame-pointer;-g1>")
   add_link_options(-fsanitize=${PERTEV_SANITIZE})
 endif()

@@ -36,7 +36,8 @@ bool meets(const Bounds3& box, const LocalRay& ray) {
     return from <= to * 1.0001f; // boxes may be flat
 }
 
-/// Branchless, so that the compiler makes one loop of vector instructions of it.
+/// Branchless, so that the compiler makes one loop of vector instructions of it. Of two sides at one distance the front
+/// counts, so that the order in which threads come by does not.
 void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, RayPack& rays) {
     for (std::size_t k = 0; k < RayPack::width; ++k) {
         const Vec3 direction = {rays.dx[k], rays.dy[k], rays.dz[k]};
@@ -44,7 +45,8 @@ void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, RayPack& rays) {
         const float det = dot(ab, p), inv = 1.0f / det; // not finite for det = 0: no comparison below holds
         const Vec3 s = Vec3{rays.ox[k], rays.oy[k], rays.oz[k]} - a, q = cross(s, ab);
         const float u = dot(s, p) * inv, v = dot(direction, q) * inv, t = dot(ac, q) * inv;
-        const bool is_nearer = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & (t < rays.distance[k]);
+        const bool is_first = (t < rays.distance[k]) | ((t == rays.distance[k]) & (det > 0));
+        const bool is_nearer = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & is_first;
         rays.distance[k] = is_nearer ? t : rays.distance[k];
         rays.facing[k] = is_nearer ? det : rays.facing[k];
     }
@@ -78,7 +80,10 @@ void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, std::vect
             const RayPack& from = packs[i / RayPack::width];
             const std::size_t k = i % RayPack::width;
             LookHit& hit = hits[rays[i].index];
-            if (from.distance[k] < hit.distance) hit = {from.distance[k], from.facing[k] > 0};
+            const bool is_front = from.facing[k] > 0;
+            if (from.distance[k] < hit.distance || (from.distance[k] == hit.distance && is_front)) {
+                hit = {from.distance[k], is_front};
+            }
         }
     });
 }

@@ -9,32 +9,20 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "shading/environment_light.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/options.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
+using namespace pertev::test;
 
 namespace {
 
 constexpr double kPiDouble = 3.141592653589793;
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : bits_(seed) {}
-    float number() { return (static_cast<float>(bits_() >> 9) + 0.5f) * 0x1p-23f; }
-    Vec2 pair() {
-        const float x = number();
-        return {x, number()};
-    }
-
-private:
-    std::mt19937 bits_;
-};
 
 double as_double(float x) { return static_cast<double>(x); }
 double luminance_in_double(Rgb c) { return as_double(c.r) + as_double(c.g) + as_double(c.b); }
@@ -65,7 +53,7 @@ Environment make_sky(uint32_t width, uint32_t height, float rotation) {
     for (uint32_t y = 0; y < height; ++y) {
         for (uint32_t x = 0; x < 3 * width; ++x) {
             const bool is_black = y > height / 2 && x < width;
-            sky.image.pixels.push_back(is_black ? 0.0f : 0.2f * random.number());
+            sky.image.pixels.push_back(is_black ? 0.0f : 0.2f * random.unit());
         }
     }
     for (int c = 0; c < 3; ++c) sky.image.at(width / 4, height / 3)[c] = 100;
@@ -169,7 +157,7 @@ TEST_CASE("environment: samples follow the density, within texels too") {
     Environment sky = make_sky(width, height, 1.1f);
     const EnvironmentData data = build(sky);
     const EnvironmentView view = view_of(data);
-    const uint32_t samples = static_cast<uint32_t>(test::effort(300'000, 10'000'000));
+    const uint32_t samples = static_cast<uint32_t>(effort(300'000, 10'000'000));
     // Cells: each texel cut into 3 x 3 parts of equal solid angle, placed by the convention's own formulas in double.
     const auto height_at = [&](uint32_t edge) { // cos(theta) at the upper edge of a row of cells
         const uint32_t row = edge / parts;
@@ -199,7 +187,7 @@ TEST_CASE("environment: samples follow the density, within texels too") {
             std::min(static_cast<uint32_t>((turns - std::floor(turns)) * width * parts), width * parts - 1);
         observed[y * width * parts + x] += 1;
     }
-    const test::ChiSquareResult result = test::chi_square(observed, expected);
+    const ChiSquareResult result = test::chi_square(observed, expected);
     CHECK_MESSAGE(result.passes(1), result.describe());
 }
 

@@ -8,30 +8,18 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <random>
 #include <vector>
 
 #include "shading/build_light_set.h"
 #include "tests/support/options.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
+using namespace pertev::test;
 
 namespace {
 
 constexpr double kPiDouble = 3.141592653589793;
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : bits_(seed) {}
-    float number() { return (static_cast<float>(bits_() >> 9) + 0.5f) * 0x1p-23f; }
-    Vec2 pair() {
-        const float x = number();
-        return {x, number()};
-    }
-
-private:
-    std::mt19937 bits_;
-};
 
 double as_double(float x) { return static_cast<double>(x); }
 
@@ -109,7 +97,7 @@ Estimate irradiance(const LightSetView& view, Vec3 point, Vec3 normal, uint64_t 
     Random random(seed);
     double sum = 0, squares = 0;
     for (uint64_t i = 0; i < draws; ++i) {
-        const float u_choice = random.number();
+        const float u_choice = random.unit();
         LightSample sample;
         if (!sample_light(view, point, u_choice, random.pair(), sample)) continue;
         REQUIRE(sample.pdf > 0);
@@ -186,20 +174,20 @@ TEST_CASE("lights: a texture's emission is where the texture has it") {
 }
 
 TEST_CASE("lights: a triangle is drawn wherever its texture has one bright texel, and not where it has none") {
-    std::mt19937 random(8);
+    Random random(8);
     int drawn = 0, dark = 0;
     for (int i = 0; i < 400; ++i) {
         constexpr uint32_t width = 300, height = 200;
         Scene scene;
         Mesh mesh = make_square(1);
-        const auto coordinate = [&] { return static_cast<float>(random() % 2000) / 500.0f - 2.0f; };
+        const auto coordinate = [&] { return static_cast<float>(random.below(2000)) / 500.0f - 2.0f; };
         const Vec2 corner = {coordinate(), coordinate()};
         const float side = i % 2 == 0 ? 0.1f : 0.7f;
         for (Vec2& uv : mesh.uv[0]) uv = corner + side * uv;
         add_emitter(scene, mesh, {1, 1, 1}, make_translation({0, 1, 0}));
         TextureImage image;
         image.rgba8 = {width, height, std::vector<uint8_t>(std::size_t(4) * width * height)};
-        image.rgba8.pixels[4 * (random() % (width * height))] = 255;
+        image.rgba8.pixels[4 * random.below(width * height)] = 255;
         scene.images.push_back(image);
         TextureRef& ref = scene.materials[0].emission_texture;
         ref.image = 0;
@@ -331,8 +319,8 @@ TEST_CASE("lights: the density of a sample is found again from its point or its 
     Random random(6);
     uint64_t on_triangles = 0, from_sky = 0, sky_differs = 0;
     for (int i = 0; i < 50'000; ++i) {
-        const Vec3 from = {random.number() - 0.5f, -random.number(), random.number()};
-        const float u_choice = random.number();
+        const Vec3 from = {random.unit() - 0.5f, -random.unit(), random.unit()};
+        const float u_choice = random.unit();
         LightSample sample;
         if (!sample_light(lights.view, from, u_choice, random.pair(), sample)) continue;
         CHECK_FALSE(sample.is_delta);
@@ -423,8 +411,8 @@ TEST_CASE("lights: what cannot be lit is no sample, never a value that is not fi
     for (int i = 0; i < 20'000; ++i) {
         // In the plane of the square, on it, at the point light, and next to them.
         const float tiny = i % 2 == 0 ? 0.0f : 1e-38f;
-        const Vec3 from = i % 3 == 0 ? Vec3{0, 1 + tiny, 0} : Vec3{3 * random.number(), tiny, random.number() - 0.5f};
-        const float u_choice = random.number();
+        const Vec3 from = i % 3 == 0 ? Vec3{0, 1 + tiny, 0} : Vec3{3 * random.unit(), tiny, random.unit() - 0.5f};
+        const float u_choice = random.unit();
         if (!sample_light(lights.view, from, u_choice, random.pair(), sample)) continue;
         CHECK(sample.primitive != 2);
         CHECK(is_finite(sample.wi));

@@ -98,21 +98,4 @@ std::vector<BvhTriangle> triangles_of(const TriangleMesh& mesh, uint32_t instanc
     return triangles;
 }
 
-uint32_t Random::bits() {
-    state_ = state_ * 747796405u + 2891336453u;
-    const uint32_t w = ((state_ >> ((state_ >> 28) + 4)) ^ state_) * 277803737u;
-    return (w >> 22) ^ w;
-}
-
-Vec3 Random::point(float lo, float hi) {
-    Vec3 p;
-    for (float* x : {&p.x, &p.y, &p.z}) *x = within(lo, hi);
-    return p;
-}
-
-Vec3 Random::direction() {
-    const float z = within(-1, 1), phi = kTwoPi * unit(), r = safe_sqrt(1 - z * z);
-    return {r * std::cos(phi), r * std::sin(phi), z};
-}
-
 } // namespace pertev::test

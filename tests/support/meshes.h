@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "accel/bvh/bvh.h"
+#include "tests/support/random.h"
 #include "trace/intersect_triangle.h"
 #include "trace/ray.h"
 
@@ -31,23 +32,7 @@ TriangleMesh read_obj_geometry(const std::filesystem::path& path);
 /// What a builder takes; primitive ids in the mesh's order.
 std::vector<BvhTriangle> triangles_of(const TriangleMesh& mesh, uint32_t instance = 0);
 
-/// Counter-based random numbers for tests; quality of PCG's output function.
-class Random {
-public:
-    explicit Random(uint32_t seed) : state_(seed) {}
-    uint32_t bits();
-    float unit() { return static_cast<float>(bits() >> 8) * 0x1p-24f; } // [0, 1)
-    float within(float lo, float hi) { return lo + (hi - lo) * unit(); }
-    uint32_t below(uint32_t n) { return static_cast<uint32_t>((static_cast<uint64_t>(bits()) * n) >> 32); }
-    Vec3 point(float lo, float hi);
-    /// Uniform on the unit sphere.
-    Vec3 direction();
-
-private:
-    uint32_t state_;
-};
-
-/// Tests every triangle: DESIGN.md's result rule, word by word. Takes over a better hit into `best`.
+/// Tests every triangle: the result rule of docs/conventions.md, word by word. Takes over a better hit into `best`.
 template <class Accept>
 void trace_by_brute_force(std::span<const BvhTriangle> triangles, const Ray& ray, uint32_t instance,
                           const Accept& accept, Hit& best) {

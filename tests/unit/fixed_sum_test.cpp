@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/fixed_sum.h"
-#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
 

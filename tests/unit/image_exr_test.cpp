@@ -22,6 +22,7 @@
 #include "image/read_exr.h"
 #include "image/write_exr.h"
 #include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -122,13 +123,7 @@ void check_values(const Image& image, uint32_t channels) {
 }
 
 std::string message_of(const std::vector<std::byte>& bytes) {
-    try {
-        decode(bytes);
-    } catch (const Error& error) {
-        CHECK(error.code() == ErrorCode::BadInput);
-        return error.what();
-    }
-    return "no error";
+    return test::bad_input_message([&] { decode(bytes); });
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "image/decode_image.h"
 #include "image/write_hdr.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -33,13 +34,7 @@ std::vector<float> reds(const Image& image) {
 }
 
 std::string message_of(const std::string& text) {
-    try {
-        decode(text);
-    } catch (const Error& error) {
-        CHECK(error.code() == ErrorCode::BadInput);
-        return error.what();
-    }
-    return "no error";
+    return test::bad_input_message([&] { decode(text); });
 }
 
 } // namespace

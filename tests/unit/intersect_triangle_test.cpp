@@ -5,8 +5,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <initializer_list>
 
-#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 #include "trace/ray.h"
 
 using namespace pertev;

@@ -88,6 +88,30 @@ TEST_CASE("rays find the nearest triangle and its side, also through a mirrored 
     CHECK(!cast_rays(scene, {&away, 1})[0].is_hit());
 }
 
+TEST_CASE("of a sheet's two sides at one distance rays see the front, whichever triangle comes first") {
+    for (const bool is_front_first : {true, false}) {
+        for (const std::size_t between : {std::size_t{0}, std::size_t{20'000}}) { // the second: on another thread
+            Scene scene;
+            Mesh mesh;
+            mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {50, 50, 50}, {51, 50, 50}, {50, 51, 50}};
+            const std::array<uint32_t, 3> front = {0, 1, 2}, back = {0, 2, 1};
+            const auto add = [&](const std::array<uint32_t, 3>& triangle) {
+                mesh.indices.insert(mesh.indices.end(), triangle.begin(), triangle.end());
+            };
+            add(is_front_first ? front : back);
+            for (std::size_t i = 0; i < between; ++i) add({3, 4, 5});
+            add(is_front_first ? back : front);
+            scene.meshes.push_back(std::move(mesh));
+            scene.materials.emplace_back();
+            scene.instances.push_back({.name = "sheet", .mesh = 0, .material = 0, .world_from_local = {}});
+            const LookRay ray = {{0, 0, 5}, {0, 0, -1}};
+            const LookHit hit = cast_rays(scene, {&ray, 1})[0];
+            CHECK(hit.distance == 5);
+            CHECK(hit.is_front);
+        }
+    }
+}
+
 TEST_CASE("a solid thing is seen from outside and above, whole, at any shape of picture") {
     for (const Vec3 size : {Vec3{1, 1, 1}, Vec3{10, 0.1f, 3}, Vec3{1e-3f, 2e-3f, 1e-3f}, Vec3{1, 100, 1}}) {
         for (const float aspect : {16.0f / 9.0f, 1.0f, 0.5f}) {

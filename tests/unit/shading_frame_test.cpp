@@ -2,30 +2,16 @@
 
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
-#include <random>
 
 #include "shading/shading_frame.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
+using namespace pertev::test;
 
 namespace {
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : bits_(seed) {}
-    Vec3 direction() {
-        for (;;) {
-            const float x = number(), y = number();
-            const Vec3 v = {x, y, number()};
-            if (length_squared(v) > 0.01f && length_squared(v) < 1) return normalize(v);
-        }
-    }
-    float number() { return static_cast<float>(bits_() >> 8) * 0x1p-23f - 1.0f; }
-
-private:
-    std::mt19937 bits_;
-};
 
 bool is_near(Vec3 a, Vec3 b, float within = 1e-5f) { return length(a - b) < within; }
 
@@ -63,7 +49,7 @@ TEST_CASE("shading frame: the tangent follows the texture on any triangle") {
     for (int i = 0; i < 2000; ++i) {
         const Vec3 ab = random.direction(), ac = random.direction();
         if (length(cross(ab, ac)) < 0.1f) continue;
-        const Vec2 uv_ab = {random.number(), random.number()}, uv_ac = {random.number(), random.number()};
+        const Vec2 uv_ab = {random.within(-1, 1), random.within(-1, 1)}, uv_ac = {random.within(-1, 1), random.within(-1, 1)};
         const float det = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
         if (std::abs(det) < 0.05f) continue;
         const Vec3 normal = normalize(cross(ab, ac));
