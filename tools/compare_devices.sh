@@ -27,7 +27,7 @@ for spp in "${counts[@]}"; do
 cornell-box cornell-box
 sponza $scenes/crytek-sponza/sponza.obj
 sibenik $scenes/sibenik/sibenik.obj
-helmet $scenes/DamagedHelmet/DamagedHelmet.glb
+helmet $scenes/gltf/DamagedHelmet/DamagedHelmet.glb
 glass $scenes/cornell-box-mcguire/CornellBox-Glass.obj
 mirror $scenes/cornell-box-mcguire/CornellBox-Mirror.obj
 water $scenes/cornell-box-mcguire/CornellBox-Water.obj

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Everything that touches device code, on a machine with a GPU, in one go:
+#   tools/check_gpu.sh BIN SCENES [PART ...]
+# BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
+# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench; all but long and
+# references without any. Exits 1 when something failed.
+set -uo pipefail
+bin=$1 scenes=$2
+shift 2
+here=$(cd "$(dirname "$0")" && pwd)
+parts=("$@")
+[ ${#parts[@]} -gt 0 ] || parts=(tests pictures sanitizers bench)
+export PERTEV_SCENES=$scenes
+status=0
+
+run() {
+    echo "--- $*"
+    "$@" || { echo "FAILED: $*"; status=1; }
+}
+
+for part in "${parts[@]}"; do
+    echo "=== $part"
+    case $part in
+    tests) run "$bin/pertev_tests" --device cuda --source-file='*/consistency/*' ;;
+    long) run "$bin/pertev_tests" --device cuda --long --source-file='*/device_functions*' ;;
+    pictures) run "$here/compare_devices.sh" "$bin/pertev" "$scenes" 1 16 ;;
+    sanitizers)
+        for tool in memcheck racecheck initcheck synccheck; do
+            run compute-sanitizer --tool "$tool" --error-exitcode 1 "$bin/pertev_tests" --device cuda \
+                --test-case='the GPU gives the bytes*,BSDFs have the same bits*,light samples*'
+        done
+        ;;
+    references)
+        for script in images/bitterli_cornell_box statistical/sponza_energy; do
+            run python3 "$here/../tests/$script.py" "$bin/pertev" --device cuda
+        done
+        ;;
+    bench)
+        for job in S5 S8; do
+            run "$bin/pertev" bench render --job $job --scene "$scenes/crytek-sponza/sponza.obj" --spp 256
+        done
+        run "$bin/pertev" bench
+        ;;
+    *) echo "no such part: $part" && status=1 ;;
+    esac
+done
+[ $status -eq 0 ] && echo "all of: ${parts[*]} - passed"
+exit $status
