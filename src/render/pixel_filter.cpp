@@ -36,7 +36,9 @@ std::vector<float> make_filter_table(PixelFilter filter) {
     std::vector<float> table(kFilterTableSize + 1);
     std::size_t step = 0;
     for (std::size_t i = 0; i <= kFilterTableSize; ++i) {
-        const double target = cumulative.back() * static_cast<double>(i) / kFilterTableSize;
+        const double at = static_cast<double>(i) / kFilterTableSize;
+        const double of_tent = at < 0.5 ? 2 * at * at : 1 - 2 * (1 - at) * (1 - at);
+        const double target = cumulative.back() * of_tent;
         while (step + 1 < steps && cumulative[step + 1] < target) ++step;
         const double width = cumulative[step + 1] - cumulative[step];
         const double within = width > 0 ? (target - cumulative[step]) / width : 0.0;

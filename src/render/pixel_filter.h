@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/host_device.h"
+#include "math/sampling.h"
 #include "math/scalar.h"
 #include "math/vec2.h"
 
@@ -24,10 +25,12 @@ inline constexpr int kFilterTableSize = 256;
 struct PixelFilterView {
     PixelFilter kind;
     float radius;       // pixels
-    const float* table; // [kFilterTableSize + 1]: distance / radius at cumulative probability i / size; table kinds only
+    const float* table; // [kFilterTableSize + 1], of make_filter_table; table kinds only
 };
 
 /// Inverse of the cumulative distribution along one axis, in radii; empty for Box and Tent, which have closed forms.
+/// Entry i stands at the cumulative probability that a tent has reached at 2 i / kFilterTableSize - 1 of its radius: the
+/// inverse is steep where a filter fades out, and that puts the entries close together there.
 /// Gaussian: standard deviation radius / 3 (cut at 3 sigma). Blackman-Harris: the 4-term window over [-radius, radius].
 std::vector<float> make_filter_table(PixelFilter filter);
 
@@ -35,12 +38,11 @@ std::vector<float> make_filter_table(PixelFilter filter);
 HD inline float sample_filter_axis(const PixelFilterView& filter, float u) {
     switch (filter.kind) {
     case PixelFilter::Box: return filter.radius * (2.0f * u - 1.0f);
-    case PixelFilter::Tent:
-        return filter.radius * (u < 0.5f ? sqrt(2.0f * u) - 1.0f : 1.0f - sqrt(2.0f - 2.0f * u));
+    case PixelFilter::Tent: return filter.radius * sample_tent(u);
     case PixelFilter::Gaussian:
     case PixelFilter::BlackmanHarris: break;
     }
-    const float x = u * static_cast<float>(kFilterTableSize);
+    const float x = (0.5f + 0.5f * sample_tent(u)) * static_cast<float>(kFilterTableSize);
     const int i = to_int(x, 0, kFilterTableSize - 1);
     return filter.radius * lerp(filter.table[i], filter.table[i + 1], x - static_cast<float>(i));
 }

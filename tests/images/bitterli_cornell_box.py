@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders Bitterli's Cornell box from his scene file and compares with his reference picture.
 
-Errors are relMSE over the best 98 % of blocks of pixels (`pertev compare --blocks`), and the channel means over the same
+Errors are relMSE over the best 98 % of blocks of pixels (`pertev compare --blocks`) and the channel means over the same
 blocks. The render has the reference's size, filter and depth, so the mean over a block is a mean over the same light in
 both: blocks change nothing but the noise. What a block of the render varies by was measured from two seeds:
 relMSE 0.0031 for 64 samples a block, falling as 1 / samples. The reference's own noise is 5e-4 a pixel, so every bound
@@ -35,7 +35,8 @@ def main():
         text, width, height = convert(source)
         scene.write_text(text)
         done = job.run("done", "render", scene, "-o", picture, "--size", f"{width}x{height}", "--spp", samples,
-                       "--filter", "tent", "--filter-radius", 1, "--max-depth", 64, "--device", job.device, "--no-bvh-cache")
+                       "--filter", "tent", "--filter-radius", 1, "--max-depth", 64, "--device", job.device,
+                       "--no-bvh-cache")
         job.check("samples that were not finite", done["invalid_samples"], 0, 0)
         for side, (error, mean_error) in bounds.items():
             far = job.run("compare", "compare", picture, reference, "--blocks", side)

@@ -1,0 +1,81 @@
+// What the auxiliary layers say of a plane seen by an orthographic camera, where each has a closed form: also the one
+// test of where on the picture a pixel is.
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kWidth = 8, kHeight = 4;
+
+/// A large square at z = -3, and a camera at z = 2 that looks along -z at 8 x 4 metres of it, one a pixel.
+RenderResult render_plane(PixelFilter filter, bool whole_plane) {
+    Scene scene;
+    Mesh square;
+    const float right = whole_plane ? 50.0f : 0.0f;
+    square.positions = {{-50, -50, -3}, {right, -50, -3}, {right, 50, -3}, {-50, 50, -3}};
+    square.indices = {0, 1, 2, 0, 2, 3};
+    scene.meshes = {square, square};
+    scene.materials = {{.name = "unused"}, {.name = "wall", .base_color = {0.25f, 0.5f, 0.75f}}};
+    scene.instances = {{"wall", 1, 1, {}}};
+    Camera camera;
+    camera.projection = Projection::Orthographic;
+    camera.ortho_height = 4;
+    camera.world_from_camera = make_translation({0, 0, 2});
+    RenderSettings settings;
+    settings.width = kWidth;
+    settings.height = kHeight;
+    settings.samples = 1024;
+    settings.filter = filter;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    settings.transparent = true;
+    Queue queue = Queue::make_cpu();
+    return test::render(queue, scene, camera, settings);
+}
+
+} // namespace
+
+TEST_CASE("a pixel's samples lie about its centre, left to right and from the top down, for every filter") {
+    for (const PixelFilter filter :
+         {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {
+        CAPTURE(static_cast<int>(filter));
+        const Image position = render_plane(filter, true).layers.at(3).image;
+        for (uint32_t y = 0; y < kHeight; ++y) {
+            for (uint32_t x = 0; x < kWidth; ++x) {
+                CHECK(std::abs(double(position.at(x, y)[0]) - (x + 0.5 - 4)) < 2e-3);
+                CHECK(std::abs(double(position.at(x, y)[1]) - (2 - (y + 0.5))) < 2e-3);
+                CHECK(position.at(x, y)[2] == doctest::Approx(-3).epsilon(1e-6));
+            }
+        }
+    }
+}
+
+TEST_CASE("albedo, normal, depth and ids are those of the first surface") {
+    const RenderResult result = render_plane(PixelFilter::Box, true);
+    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+        CHECK(result.layers.at(0).image.pixels[3 * i + 2] == 0.75f);
+        CHECK(result.layers.at(1).image.pixels[3 * i + 2] == 1.0f); // towards the camera
+        CHECK(result.layers.at(2).image.pixels[i] == doctest::Approx(5).epsilon(1e-6));
+        CHECK(result.picture.pixels[4 * i + 3] == 1.0f);
+        CHECK(result.ids.at(i).instance == 0);
+        CHECK(result.ids.at(i).material == 1);
+    }
+}
+
+TEST_CASE("where only a part of a pixel is covered, alpha is that part and depth is the surface's own") {
+    const RenderResult result = render_plane(PixelFilter::Tent, false); // covers x < 0; the tent reaches a pixel far
+    const auto alpha = [&](uint32_t x) { return static_cast<double>(result.picture.at(x, 1)[3]); };
+    CHECK(alpha(2) == 1);
+    CHECK(alpha(3) == doctest::Approx(0.875).epsilon(3e-3)); // 1 - the tent's integral over [0.5, 1]
+    CHECK(alpha(4) == doctest::Approx(0.125).epsilon(2e-2));
+    CHECK(alpha(5) == 0);
+    CHECK(result.layers.at(2).image.at(4, 1)[0] == doctest::Approx(5).epsilon(1e-6));
+    CHECK(result.layers.at(2).image.at(5, 1)[0] == 0);
+    CHECK(result.layers.at(0).image.at(3, 1)[1] == doctest::Approx(0.5 * 0.875).epsilon(3e-3));
+    CHECK(result.ids.at(kWidth + 6).instance == kNoHit);
+}

@@ -1,0 +1,244 @@
+#!/usr/bin/env python3
+"""The test of the tests: breaks the renderer in one known way at a time and sees which tests notice.
+
+Works on a copy of the tree under build-mutations/, which holds only the test files that are named below, with a build
+folder of its own (with ccache it takes minutes). Each mutation replaces text that must be there exactly once, so a
+patch that no longer applies is found; then the tests named for it run, and each of them must fail. Without a mutation
+all of them must pass, and that is tried first.
+
+`tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all. Prints a table, and
+exits 1 when a mutation went unnoticed by a test named for it, did not apply or did not build.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+WORK = ROOT / "build-mutations"
+TREE, BUILD = WORK / "tree", WORK / "tree/build"  # as in a checkout, so that ccache finds what was built there
+TIMEOUT_S = 300  # of one test; a mutation may make it hang, which is noticing
+
+
+@dataclass
+class Mutation:
+    name: str
+    edits: list  # of (file, text that is there once, what replaces it)
+    tests: list  # CTest's names; each must notice
+
+
+def edit(file, old, new):
+    return (file, old, new)
+
+
+MUTATIONS = [
+    Mutation("drop a cosine", [edit("src/shading/diffuse_bsdf.h", "return {pdf * albedo, pdf};",
+                                    "return {kInvPi * albedo, pdf};")],
+             ["statistical/bsdf_energy", "statistical/glowing_room"]),
+    Mutation("swap a MIS weight", [edit("src/integrators/path/shade_hit.h", "power_heuristic(light.pdf, scattered.pdf)",
+                                        "power_heuristic(scattered.pdf, light.pdf)")],
+             ["statistical/path_parts", "statistical/glowing_room"]),
+    Mutation("count emission twice beside next-event estimation",
+             [edit("src/integrators/path/shade_hit.h", "weight = power_heuristic(path.bsdf_pdf, light_pdf);",
+                   "weight = 1;")],
+             ["statistical/path_parts", "statistical/glowing_room"]),
+    Mutation("roulette without compensation",
+             [edit("src/integrators/path/shade_hit.h", "path.throughput = (1.0f / survival) * path.throughput;", "")],
+             ["statistical/glowing_room"]),
+    Mutation("one scattering too many", [edit("src/integrators/path/shade_hit.h", "path.depth >= settings.max_depth",
+                                              "path.depth > settings.max_depth")],
+             ["statistical/glowing_room"]),
+    Mutation("a fused product in the source", [edit("src/math/vec3.h", "return a.x * b.x + a.y * b.y + a.z * b.z;",
+                                                    "return fma(a.x, b.x, a.y * b.y) + a.z * b.z;")],
+             ["consistency/contraction"]),
+    Mutation("contraction allowed in one module",
+             [edit("src/CMakeLists.txt", "pertev_module(integrators pertev_render)",
+                   "pertev_module(integrators pertev_render)\n"
+                   "target_compile_options(pertev_integrators PRIVATE -ffp-contract=fast)")],
+             ["sources/flags"]),
+    Mutation("the first hit of several at one t wins",
+             [edit("src/trace/trace_closest.h", "if (hit.t > best.t) return false;",
+                   "if (hit.t >= best.t) return false;")],
+             ["consistency/walks"]),
+    Mutation("boxes are not grown", [edit("src/trace/ray_boxes.h", "const float e = 0x1p-20f * (",
+                                          "const float e = 0.0f * (")],
+             ["consistency/walks", "robust/watertight"]),
+    Mutation("a node at equal t is skipped",  # where boxes are not grown, else its entry is less than the hit's t
+             [edit("src/trace/ray_boxes.h", "const float e = 0x1p-20f * (", "const float e = 0.0f * ("),
+              edit("src/trace/ray_boxes.h", "return entry <= exit;", "return entry < exit;"),
+              edit("src/trace/walk_wide.h", "_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)",
+                   "_mm256_cmp_ps(entry, exit, _CMP_LT_OQ)")],
+             ["consistency/walks"]),
+    Mutation("any hit looks past t_max", [edit("src/trace/trace_any.h", "    walk_scene(scene, ray, visitor, counter);",
+                                               "    Ray longer = ray;\n    longer.t_max = visitor.t_max = kInfinity;\n"
+                                               "    walk_scene(scene, longer, visitor, counter);")],
+             ["consistency/walks"]),
+    Mutation("an instance's ray is renormalised",
+             [edit("src/trace/scene_bvh.h", "transform_vector(local_from_world, ray.direction),",
+                   "normalize(transform_vector(local_from_world, ray.direction)),")],
+             ["consistency/walks"]),
+    Mutation("accept does not look at alpha", [edit("src/render/accept_hit.h",
+                                                    "if (placed.has_alpha == 0) return true;",
+                                                    "if (placed.has_alpha <= 1) return true;")],
+             ["unit/accept_hit"]),
+    Mutation("a ray meets the triangle it leaves",
+             [edit("src/render/accept_hit.h",
+                   "if (instance == start.instance && primitive == start.primitive) return false;", "")],
+             ["unit/accept_hit"]),
+    Mutation("wrong density of the environment",
+             [edit("src/shading/environment_light.h", "(0.25f * kInvPi) / (row_bounds.y - row_bounds.x)",
+                   "(0.25f * kInvPi) * 1.02f / (row_bounds.y - row_bounds.x)")],
+             ["statistical/environment_sampling"]),
+    Mutation("the density of a light forgets its choice",
+             [edit("src/shading/light_set.h", "alias_pmf(view.choice, light) * triangle_pdf(", "triangle_pdf(")],
+             ["statistical/light_sampling", "statistical/glowing_room"]),
+    Mutation("the film loses a carry", [edit("src/render/fixed_sum.h",
+                                             "value.high += old + value.low < old ? 1 : 0;",
+                                             "static_cast<void>(old);")],
+             ["unit/fixed_sum", "unit/film"]),
+    Mutation("an invalid sample is added", [edit("src/render/film_view.h", "return abs(x) <= kMaxSampleValue;",
+                                                 "return !(abs(x) > kInfinity);")],
+             ["unit/film"]),
+    Mutation("half a pixel off", [edit("src/integrators/path/generate_path.h",
+                                       "static_cast<float>(pixel % camera.width) + 0.5f + offset.x",
+                                       "static_cast<float>(pixel % camera.width) + offset.x")],
+             ["unit/first_hit"]),
+    Mutation("a pixel filter of another width", [edit("src/render/pixel_filter.cpp", "exp(-4.5f * x * x)",
+                                                      "exp(-4.4f * x * x)")],
+             ["unit/pixel_filter"]),
+    Mutation("rays start on the wrong side", [edit("src/render/ray_origin.h", "dot(direction, normal) < 0 ?",
+                                                   "dot(direction, normal) > 0 ?")],
+             ["unit/ray_origin"]),
+    Mutation("the wavefront draws other numbers", [edit("src/integrators/path/path_stages.h",
+                                                        "first_sample + i / pixels", "first_sample + i / pixels + 1")],
+             ["consistency/one_picture"]),
+    Mutation("the film adds floats", [edit("src/render/film_view.h", "atomic_add(&sums[0], to_fixed(radiance.r));",
+                                           "sums[0] = to_fixed(mean_of(sums[0], 1) + radiance.r);")],
+             ["unit/film"]),
+]
+
+
+def tracked_files():
+    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT,
+                            check=True, capture_output=True).stdout.decode().split("\0")
+    return [name for name in listed if name and (ROOT / name).is_file()]
+
+
+def test_names(mutations):
+    return sorted({test for mutation in mutations for test in mutation.tests})
+
+
+def wanted(name, tests):
+    """All but the test files that no mutation names."""
+    return not name.endswith("_test.cpp") or name[len("tests/"):-len("_test.cpp")] in tests
+
+
+def write_tree(edits, tests):
+    """Brings the copy to the tree's content with `edits` made; files that are right already keep their times. Returns
+    what does not apply."""
+    contents = {name: (ROOT / name).read_bytes() for name in tracked_files() if wanted(name, tests)}
+    for file, old, new in edits:
+        count = contents.get(file, b"").count(old.encode())
+        if count != 1:
+            return f"{file} has {count} times: {old}"
+        contents[file] = contents[file].replace(old.encode(), new.encode())
+    for path in list(TREE.rglob("*")):
+        if path.is_file() and BUILD not in path.parents and str(path.relative_to(TREE)) not in contents:
+            path.unlink()
+    for name, content in contents.items():
+        path = TREE / name
+        if not path.is_file() or path.read_bytes() != content:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+            shutil.copymode(ROOT / name, path)
+    return None
+
+
+def build(jobs, tests):
+    """Error text, or nothing."""
+    environment = {**os.environ, "CCACHE_BASEDIR": str(TREE), "CCACHE_NOHASHDIR": "1"}
+    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    steps = [["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DPERTEV_CUDA=OFF", *launcher]]
+    if any(not test.startswith("sources/") for test in tests):
+        steps.append(["cmake", "--build", BUILD, "-j", str(jobs), "--target", "pertev_tests"])
+    for step in steps:
+        done = subprocess.run(step, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        if done.returncode != 0:
+            return done.stdout.decode(errors="replace")[-2000:]
+    return None
+
+
+def failed_tests(tests):
+    """Those of `tests` that fail."""
+    report = WORK / "report.xml"
+    report.unlink(missing_ok=True)
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PERTEV_")}
+    pattern = "^(" + "|".join(map(re.escape, tests)) + ")$"
+    subprocess.run(["ctest", "--test-dir", BUILD, "-R", pattern, "--timeout", str(TIMEOUT_S), "--output-junit", report],
+                   env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+    status = {case.get("name"): case.get("status") for case in ElementTree.parse(report).getroot().iter("testcase")}
+    missing = [test for test in tests if test not in status]
+    if missing:
+        sys.exit(f"CTest has no test named {', '.join(missing)}")
+    return [test for test in tests if status[test] != "run"]
+
+
+def try_mutation(mutation, all_tests, jobs):
+    """(whether all is well, what to say)"""
+    problem = write_tree(mutation.edits, all_tests)
+    if problem:
+        return False, "does not apply: " + problem
+    problem = build(jobs, mutation.tests)
+    if problem:
+        return False, "does not build:\n" + problem
+    failed = failed_tests(mutation.tests)
+    blind = [test for test in mutation.tests if test not in failed]
+    text = ("noticed by " + ", ".join(failed)) if failed else "noticed by none"
+    return not blind, text + ("; NOT by " + ", ".join(blind) if blind else "")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", help="mutations to try; all where none is named")
+    parser.add_argument("--list", action="store_true", help="name the mutations and the tests that must notice")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers at once")
+    arguments = parser.parse_args()
+    unknown = set(arguments.names) - {mutation.name for mutation in MUTATIONS}
+    if unknown:
+        sys.exit(f"no mutation is named {', '.join(map(repr, sorted(unknown)))}; --list names them")
+    mutations = [m for m in MUTATIONS if not arguments.names or m.name in arguments.names]
+    if arguments.list:
+        for mutation in mutations:
+            print(f"{mutation.name}: {', '.join(mutation.tests)}")
+        return
+
+    all_tests, tests = test_names(MUTATIONS), test_names(mutations)
+    write_tree([], all_tests)
+    problem = build(arguments.jobs, tests)
+    if problem:
+        sys.exit("the tree does not build without a mutation:\n" + problem)
+    failed = failed_tests(tests)
+    if failed:
+        sys.exit("these tests fail without a mutation: " + ", ".join(failed))
+
+    good = True
+    width = max(len(mutation.name) for mutation in mutations)
+    for mutation in mutations:
+        start = time.monotonic()
+        ok, text = try_mutation(mutation, all_tests, arguments.jobs)
+        good &= ok
+        print(f"{'ok    ' if ok else 'FAILED'} {mutation.name:{width}}  {text}  [{time.monotonic() - start:.0f} s]",
+              flush=True)
+    write_tree([], all_tests)
+    sys.exit(0 if good else 1)
+
+
+if __name__ == "__main__":
+    main()
