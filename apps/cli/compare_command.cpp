@@ -22,9 +22,9 @@ struct CompareFlags {
 
 int compare(const CompareFlags& flags) {
     Reporter reporter(flags.report);
-    Messages messages;
+    Messages& messages = reporter.messages();
     const Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
-    reporter.say(messages);
+    reporter.say_messages();
     const Hash128 hash_a = picture_hash(a), hash_b = picture_hash(b);
     const double rel_mse = relative_error(a, b, 1.0).rel_mse, trimmed = relative_error(a, b).rel_mse;
     const double mse = mean_squared_error(a, b), flip_mean = flip(a, b).mean, hdr_flip_mean = hdr_flip(a, b).mean;
