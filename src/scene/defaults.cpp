@@ -123,20 +123,22 @@ Opening opening(float fov, float aspect) {
     return {2 * atan2(half_y, 1.0f), half_y * aspect, half_y};
 }
 
-/// From `direction` (unit, towards the eye), as near as shows the whole box.
-Camera fitted(const Bounds3& box, Vec3 direction, float aspect, const char* name) {
+/// From `direction` (unit, towards the eye), as near as shows all of the scene (of large meshes a part of the vertices).
+Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspect, const char* name) {
     const Opening o = opening(kFovOutside, aspect);
     const Vec3 centre = box.centre();
     const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
     float distance = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 p =
-            Vec3{corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z} -
-            centre;
-        const float x = abs(dot(p, column(view, 0))), y = abs(dot(p, column(view, 1))), z = dot(p, column(view, 2));
-        distance = max(distance, z + max(x / o.half_x, y / o.half_y));
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        const std::size_t step = 1 + mesh.indices.size() / 20'000;
+        for (std::size_t i = 0; i < mesh.indices.size(); i += step) {
+            const Vec3 p = transform_point(instance.world_from_local, mesh.positions[mesh.indices[i]]) - centre;
+            const float x = abs(dot(p, column(view, 0))), y = abs(dot(p, column(view, 1))), z = dot(p, column(view, 2));
+            distance = max(distance, z + max(x / o.half_x, y / o.half_y));
+        }
     }
-    return look(centre + (1.06f * distance) * direction, centre, o.fov_y, name);
+    return look(centre + (1.08f * distance) * direction, centre, o.fov_y, name);
 }
 
 Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
@@ -166,11 +168,11 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     Camera camera;
     switch (around.kind) {
     case SurroundingsKind::Object:
-        camera = fitted(around.bounds, normalize({0.55f, 0.42f, 0.8f}), aspect, "default, outside");
+        camera = fitted(scene, around.bounds, normalize({0.55f, 0.42f, 0.8f}), aspect, "default, outside");
         what = "a view from outside and above";
         break;
     case SurroundingsKind::Stage:
-        camera = fitted(around.bounds, around.open_side, aspect, "default, in front");
+        camera = fitted(scene, around.bounds, around.open_side, aspect, "default, in front");
         what = "a view through the open side";
         break;
     case SurroundingsKind::Room:

@@ -19,12 +19,13 @@ enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 
 struct PathSettings {
     uint32_t max_depth = 16;     // scattering vertices: 0 emission only, 1 direct light
-    uint32_t roulette_depth = 2; // first vertex (counted from 1) at which Russian roulette may end the path
+    uint32_t roulette_depth = 5; // first vertex (counted from 1) at which Russian roulette may end the path
     PathLight light = PathLight::Path;
     LightStrategy strategy = LightStrategy::Mis;
     float clamp = 0; // largest channel of one contribution after the first scattering, W/(sr m2); 0 = off
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
+    bool hide_background = false; // a camera ray that hits nothing brings nothing: for pictures with alpha
     Vec3 camera_axis = {0, 0, -1}; // unit, world space; PathRenderer sets it: depth is measured along it
 };
 
