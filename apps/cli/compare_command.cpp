@@ -28,16 +28,10 @@ std::string json_triple(const double (&values)[3]) {
 
 int compare(const CompareFlags& flags) {
     Reporter reporter(flags.report);
-<<<<<<< HEAD
-    Messages messages;
-    Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
-    reporter.say(messages);
-    check_comparable(a, b);
-=======
     Messages& messages = reporter.messages();
-    const Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
+    Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
     reporter.say_messages();
->>>>>>> cli
+    check_comparable(a, b);
     const Hash128 hash_a = picture_hash(a), hash_b = picture_hash(b);
     const bool equal = hash_a == hash_b;
     if (flags.blocks > 1) {
