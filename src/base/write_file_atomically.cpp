@@ -43,9 +43,20 @@ void write_all(int fd, std::span<const std::byte> bytes) {
     }
 }
 
-/// Where the bytes go: the end of a chain of symbolic links. Throws for anything but a regular file or nothing.
+/// The end of a chain of symbolic links, whether it exists or not (std::filesystem::weakly_canonical gives the link
+/// itself where it does not).
+fs::path follow_links(fs::path path) {
+    constexpr int most = 40; // as Linux does
+    for (int i = 0; fs::is_symlink(fs::symlink_status(path)); ++i) {
+        if (i == most) throw std::system_error(std::make_error_code(std::errc::too_many_symbolic_link_levels));
+        path = path.parent_path() / fs::read_symlink(path); // an absolute one replaces what stands before it
+    }
+    return path;
+}
+
+/// Where the bytes go. Throws for anything but a regular file or nothing.
 fs::path resolve_target(const fs::path& path) {
-    const fs::path target = fs::is_symlink(fs::symlink_status(path)) ? fs::weakly_canonical(path) : path;
+    const fs::path target = follow_links(path);
     const fs::file_status status = fs::status(target);
     if (fs::exists(status) && !fs::is_regular_file(status)) {
         throw Error(ErrorCode::FileWrite,

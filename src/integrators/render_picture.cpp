@@ -47,7 +47,9 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
     Film film(queue, settings.width, settings.height, settings.aovs);
     const float radius = settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
     const PathBody body = queue.is_cuda() ? PathBody::Wavefront : settings.body;
-    PathRenderer renderer(queue, scene.view(), camera, settings.filter, radius, settings.path, settings.width,
+    PathSettings path = settings.path;
+    path.hide_background = settings.transparent;
+    PathRenderer renderer(queue, scene.view(), camera, settings.filter, radius, path, settings.width,
                           settings.height, body, batch_of(settings));
     if (settings.stage_seconds != nullptr) renderer.time_stages(*settings.stage_seconds);
     queue.wait();

@@ -17,7 +17,7 @@ struct RenderSettings {
     PixelFilter filter = PixelFilter::BlackmanHarris;
     float filter_radius = 0; // pixels; 0 = the filter's default
     uint32_t aovs = 0;       // AovBits
-    bool transparent = false;
+    bool transparent = false; // RGBA: the background is left out, alpha says how much of the pixel is covered
     double time_limit_s = 0; // 0 = none; ends at a whole sample
     PathSettings path;
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront

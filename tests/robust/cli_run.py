@@ -33,7 +33,7 @@ class Outcome:
 
     def events(self, kind=None):
         """The JSON lines of stdout, all of them or those of one kind; anything else there is an error."""
-        lines = [json.loads(line, parse_constant=refuse_constant) for line in self.stdout.splitlines()]
+        lines = [json.loads(line, parse_constant=refuse_constant) for line in self.stdout.split("\n") if line]
         return lines if kind is None else [line for line in lines if line["event"] == kind]
 
     def __str__(self):

@@ -153,7 +153,8 @@ HD inline bool shade_hit(const SceneView& scene, const PathSettings& settings, c
         if (path.depth == 0 && (film.aovs & kAovIds) != 0 && path.sample == 0) {
             film.ids[path.pixel] = {kNoHit, kNoHit, kNoHit};
         }
-        if (scene.lights.environment_light != kNoLight) {
+        const bool is_hidden = settings.hide_background && path.depth == 0;
+        if (scene.lights.environment_light != kNoLight && !is_hidden) {
             add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction),
                          path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f);
         }

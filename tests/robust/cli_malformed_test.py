@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+"""A damaged file, wherever it is used, ends in an error that names it or in a warning and a picture: never in a crash,
+a hang or memory that its size does not justify. Files damaged here, and the public collection under PERTEV_SCENES."""
+
+import json
+import os
+import resource
+import shutil
+import unittest
+
+from cli_run import SANITIZED, CliTest, limit_addresses, main
+
+MAX_SECONDS = 60 if SANITIZED else 5  # of processor time: the machine may be loaded
+IMAGES = (".png", ".jpg", ".exr", ".hdr")
+SCENES = (".obj", ".ply", ".gltf", ".glb", ".pbrt", ".xml")
+
+SQUARE = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
+
+
+def public_files(extensions):
+    root = os.path.join(os.environ.get("PERTEV_SCENES", ""), "malformed")
+    if "PERTEV_SCENES" not in os.environ or not os.path.isdir(root):
+        raise unittest.SkipTest("PERTEV_SCENES does not name the folder of the public scenes (docs/scenes.md)")
+    found = [os.path.join(folder, name) for folder, _, names in os.walk(root) for name in names]
+    return sorted(path for path in found if path.endswith(extensions))
+
+
+class MalformedTest(CliTest):
+    def survive(self, name, *arguments):
+        """Runs to an error that names `name`, or to a picture or description. Gives the status."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        outcome = self.run_pertev(*arguments, preexec_fn=limit_addresses(4))
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        self.assertIn(outcome.status, (0, 2, 3), outcome)
+        self.assertLess(seconds, MAX_SECONDS, outcome)
+        self.assertNotIn("Sanitizer", outcome.stderr, outcome)
+        self.assertNotIn("runtime error", outcome.stderr, outcome)
+        if outcome.status != 0:
+            self.assertIn(name, outcome.stderr, outcome)
+            self.assertEqual(outcome.stdout, "")
+        return outcome.status
+
+    def survive_render(self, name, scene, *arguments):
+        picture = self.path("picture.png")
+        status = self.survive(name, "render", scene, "-o", picture, "--size", "32x32", "--spp", "1", "--device", "cpu",
+                              *arguments)
+        self.assertEqual(os.path.exists(picture), status == 0)
+        if status == 0:
+            os.remove(picture)
+        return status
+
+    def use_image(self, path):
+        """As a picture, as the texture of an OBJ and of a glTF file, and as the environment."""
+        name = os.path.basename(path)
+        here = self.path(name)
+        if os.path.abspath(path) != here:
+            shutil.copy(path, here)
+            os.chmod(here, 0o644)
+        statuses = [self.survive(name, "info", name), self.survive_render(name, "cornell-box", "--environment", name)]
+        with open(self.path("model.obj"), "w", encoding="utf-8") as file:
+            file.write("mtllib model.mtl\nusemtl m\n" + SQUARE)
+        with open(self.path("model.mtl"), "w", encoding="utf-8") as file:
+            file.write(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
+        statuses.append(self.survive_render(name, "model.obj"))
+        with open(self.path("model.gltf"), "w", encoding="utf-8") as file:
+            file.write(gltf_with_texture(name))
+        statuses.append(self.survive_render(name, "model.gltf"))
+        return statuses
+
+
+def gltf_with_texture(name):
+    positions = "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"  # (-1,-1,0) (1,-1,0) (0,1,0), which also serve as uv
+    texture = {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "images": [{"uri": name}], "textures": [{"source": 0}], "materials": [texture],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0],
+                       "max": [1, 1, 0]},
+                      {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + positions}]})
+
+
+class FilesDamagedHere(MalformedTest):
+    def setUp(self):
+        super().setUp()
+        self.pictures = [f"whole{extension}" for extension in IMAGES]
+        outputs = [argument for name in self.pictures for argument in ("-o", name)]
+        self.succeed("render", "cornell-box", *outputs, "--size", "24x24", "--spp", "1", "--device", "cpu")
+        shutil.move(self.folder, self.folder + "-whole")
+        os.mkdir(self.folder)
+
+    def whole(self, name):
+        with open(os.path.join(self.folder + "-whole", name), "rb") as file:
+            return file.read()
+
+    def put(self, name, content):
+        with open(self.path(name), "wb") as file:
+            file.write(content)
+        return self.path(name)
+
+    def test_a_whole_picture_serves_everywhere(self):
+        for name in ["whole.png", "whole.jpg"]:
+            self.assertEqual(self.use_image(self.put(name, self.whole(name))), [0, 0, 0, 0], name)
+        for name in ["whole.exr", "whole.hdr"]:
+            self.assertEqual(self.use_image(self.put(name, self.whole(name)))[:2], [0, 0], name)
+
+    def test_a_picture_cut_anywhere_is_refused_or_shown_with_a_warning(self):
+        for name in self.pictures:
+            content = self.whole(name)
+            for length in [0, 1, 9, 40, len(content) // 2, len(content) - 1]:
+                with self.subTest(picture=name, length=length):
+                    self.use_image(self.put(f"cut{name[5:]}", content[:length]))
+
+    def test_a_picture_with_damaged_bytes_is_refused_or_shown(self):
+        for name in self.pictures:
+            content = self.whole(name)
+            for seed in range(4):
+                damaged = bytearray(content)
+                for i in range(8):
+                    damaged[(seed * 7919 + i * i * 6151) % (len(content) if seed else 64)] ^= 1 << (i + seed) % 8
+                with self.subTest(picture=name, seed=seed):
+                    self.use_image(self.put(f"damaged{name[5:]}", bytes(damaged)))
+
+    def test_files_that_are_no_pictures_are_refused(self):
+        for extension in IMAGES:
+            for content in [b"v 0 0 0\n", b"\0" * 4096, b"<html>not here</html>"]:
+                with self.subTest(extension=extension, content=content[:8]):
+                    self.assertEqual(self.use_image(self.put("fake" + extension, content))[:2], [2, 2])
+
+    def test_files_that_are_no_scenes_are_refused(self):
+        for extension in (".obj", ".ply", ".gltf", ".glb"):
+            for content in [b"", b"\0" * 4096, b"<html>not here</html>", b"{}", b"[" * 50000, b"ply\n", b"\xff\xfe\n" * 99]:
+                name = "fake" + extension
+                self.put(name, content)
+                with self.subTest(extension=extension, content=content[:8]):
+                    self.assertEqual(self.survive(name, "info", name), 2)
+                    self.assertEqual(self.survive_render(name, name), 2)
+
+    def test_meshes_without_anything_to_see_or_with_numbers_that_are_none_are_refused_or_repaired(self):
+        whole = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+        for text, status in [("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", 2), ("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 2),
+                             (whole + "v inf 0 0\nf 1 2 4\n", 0), (whole + "v 1e39 0 0\nf 1 2 4\n", 0),
+                             (whole + "f 1 2 9\n", 2), (whole + "f 1 1 2\n", 0), ("v 0 0 0\n", 2)]:
+            self.put("mesh.obj", text.encode())
+            with self.subTest(text=text):
+                self.assertEqual(self.survive("mesh.obj", "info", "mesh.obj"), status)
+                self.assertEqual(self.survive_render("mesh.obj", "mesh.obj"), status)
+
+    def test_a_texture_outside_the_scenes_folder_needs_leave(self):
+        inner = self.path("inner")
+        os.mkdir(inner)
+        self.put("whole.png", self.whole("whole.png"))
+        with open(os.path.join(inner, "model.gltf"), "w", encoding="utf-8") as file:
+            file.write(gltf_with_texture("../whole.png"))
+        self.assertEqual(self.survive_render("whole.png", "inner/model.gltf"), 2)
+        self.assertEqual(self.survive_render("whole.png", "inner/model.gltf", "--allow-path", "."), 0)
+
+
+class ThePublicCollection(MalformedTest):
+    def test_every_scene_ends_in_an_error_that_names_it_or_in_a_picture(self):
+        for path in public_files(SCENES):
+            name = os.path.basename(path)
+            with self.subTest(scene=path):
+                self.assertEqual(self.survive(name, "info", path), self.survive_render(name, path))
+
+    def test_every_image_ends_so_as_a_picture_a_texture_and_an_environment(self):
+        for path in public_files(IMAGES):
+            with self.subTest(image=path):
+                self.use_image(path)
+
+
+if __name__ == "__main__":
+    main()
