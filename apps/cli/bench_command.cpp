@@ -90,13 +90,13 @@ double mean_of(const Image& image) {
 
 int bench_job(const BenchFlags& flags) {
     Reporter reporter(flags.report);
-    Messages messages;
+    Messages& messages = reporter.messages();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     auto start = std::chrono::steady_clock::now();
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
     const double load_s = seconds_since(start);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    reporter.say(messages);
+    reporter.say_messages();
     const RenderSettings settings = job_settings(flags);
     const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
 
@@ -238,11 +238,11 @@ std::vector<std::string> default_scenes() {
 
 int bench_scenes(const BenchFlags& flags) {
     Reporter reporter(flags.report);
-    Messages messages;
+    Messages& messages = reporter.messages();
     std::vector<std::unique_ptr<Queue>> queues;
     queues.push_back(take_machine(flags.machine, messages));
     if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
-    reporter.say(messages);
+    reporter.say_messages();
     reporter.answer(
         fmt::format("seconds: load the file, build the trees, read them from the cache, first sample of every pixel, "
                     "render; Mrays/s by kind\n{:10} {:12} {:>9} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>8} "

@@ -28,9 +28,9 @@ std::string json_triple(const double (&values)[3]) {
 
 int compare(const CompareFlags& flags) {
     Reporter reporter(flags.report);
-    Messages messages;
+    Messages& messages = reporter.messages();
     Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
-    reporter.say(messages);
+    reporter.say_messages();
     check_comparable(a, b);
     const Hash128 hash_a = picture_hash(a), hash_b = picture_hash(b);
     const bool equal = hash_a == hash_b;

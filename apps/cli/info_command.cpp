@@ -122,7 +122,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
 
 int info(const InfoFlags& flags) {
     Reporter reporter(flags.report);
-    Messages messages;
+    Messages& messages = reporter.messages();
     Facts facts;
     facts.add("file", flags.file);
     if (is_image(flags.file)) {
@@ -130,7 +130,7 @@ int info(const InfoFlags& flags) {
     } else {
         describe_scene(flags, facts, messages);
     }
-    reporter.say(messages);
+    reporter.say_messages();
     facts.report(reporter);
     return 0;
 }

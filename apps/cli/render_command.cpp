@@ -16,16 +16,18 @@
 namespace pertev {
 namespace {
 
-std::string progress_detail(const RenderProgress& now) {
-    const double share = static_cast<double>(now.samples_done) / now.samples;
-    const double left = now.seconds * (1 - share) / std::max(share, 1e-9);
-    return fmt::format("{}/{} spp  {:.1f} Mrays/s  {:.0f} s left", now.samples_done, now.samples,
-                       static_cast<double>(now.rays.total()) / now.seconds * 1e-6, left);
+/// Of the samples, or of the time where that ends first.
+double share_done(const RenderProgress& now, double time_limit_s) {
+    const double of_samples = static_cast<double>(now.samples_done) / now.samples;
+    return time_limit_s > 0 ? std::max(of_samples, std::min(now.seconds / time_limit_s, 1.0)) : of_samples;
 }
 
 /// Shows the progress; false when asked to end.
-bool report_progress(const RenderProgress& now, Reporter& reporter) {
-    reporter.progress(static_cast<double>(now.samples_done) / now.samples, progress_detail(now));
+bool report_progress(const RenderProgress& now, double time_limit_s, Reporter& reporter) {
+    const double share = share_done(now, time_limit_s);
+    reporter.progress(share, fmt::format("{}/{} spp  {:.1f} Mrays/s  {:.0f} s left", now.samples_done, now.samples,
+                                         static_cast<double>(now.rays.total()) / now.seconds * 1e-6,
+                                         now.seconds * (1 - share) / std::max(share, 1e-9)));
     reporter.event(fmt::format(R"({{"event":"progress","samples":{},"of":{},"seconds":{:.3f},"rays":{}}})",
                                now.samples_done, now.samples, now.seconds, now.rays.total()));
     return !interrupted();
@@ -34,7 +36,7 @@ bool report_progress(const RenderProgress& now, Reporter& reporter) {
 int render(const RenderFlags& flags) {
     check_render_flags(flags);
     Reporter reporter(flags.report);
-    Messages messages;
+    Messages& messages = reporter.messages();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     const auto start = std::chrono::steady_clock::now();
     const auto seconds = [&] {
@@ -49,7 +51,7 @@ int render(const RenderFlags& flags) {
     PrepareOptions prepare;
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);
-    reporter.say(messages);
+    reporter.say_messages();
     reporter.say(fmt::format("{}: {} triangles, {} instances, {} lights; loaded in {:.2f} s, trees in {:.2f} s; "
                              "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
                              flags.scene.scene, prepared.triangles, scene.instances.size(),
@@ -58,8 +60,9 @@ int render(const RenderFlags& flags) {
                              static_cast<double>(predicted_bytes(prepared, settings, queue->is_cuda())) / 1048576.0));
 
     listen_for_interrupt();
-    RenderResult result = render_picture(*queue, prepared, camera, settings,
-                                         [&](const RenderProgress& now) { return report_progress(now, reporter); });
+    RenderResult result = render_picture(*queue, prepared, camera, settings, [&](const RenderProgress& now) {
+        return report_progress(now, settings.time_limit_s, reporter);
+    });
     reporter.end_progress();
     const RenderRecord record = {.device = queue->device_name(),
                                  .is_cuda = queue->is_cuda(),

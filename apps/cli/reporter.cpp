@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <new>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -65,11 +66,17 @@ void add_report_flags(CLI::App& verb, ReportFlags& flags) {
 
 Reporter::Reporter(const ReportFlags& flags) : flags_(flags), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
-Reporter::~Reporter() { end_progress(); }
+Reporter::~Reporter() {
+    end_progress();
+    try {
+        say_messages();
+    } catch (const std::bad_alloc&) { // there is worse to say then
+    }
+}
 
-void Reporter::say(const Messages& messages) {
-    for (; said_ < messages.all().size(); ++said_) {
-        const Message& message = messages.all()[said_];
+void Reporter::say_messages() {
+    for (; said_ < messages_.all().size(); ++said_) {
+        const Message& message = messages_.all()[said_];
         if (flags_.json && !flags_.quiet) {
             event(fmt::format(R"({{"event":"{}","text":{},"times":{}}})", message.is_warning ? "warning" : "notice",
                               json_string(message.text), message.times));

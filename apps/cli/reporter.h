@@ -36,8 +36,9 @@ public:
     Reporter(const Reporter&) = delete;
     Reporter& operator=(const Reporter&) = delete;
 
-    /// Says what was not said before.
-    void say(const Messages& messages);
+    /// What the verb's libraries have to say. The destructor says what was not said: before an error, it may tell why.
+    Messages& messages() { return messages_; }
+    void say_messages();
     /// One line for people, on stderr.
     void say(const std::string& line);
     /// Share done in [0, 1], and what stands behind the bar. Redrawn in place, only on a terminal.
@@ -54,6 +55,7 @@ private:
     bool is_silent() const { return flags_.quiet || flags_.json; }
 
     ReportFlags flags_;
+    Messages messages_;
     bool terminal_;
     bool drawn_ = false;
     std::size_t said_ = 0;

@@ -73,7 +73,8 @@ float exposure_of(const RenderFlags& flags, bool default_light, const Image& pic
     }
     const float stops = auto_exposure_stops(picture);
     if (std::ranges::any_of(flags.outputs, is_tone_mapped)) {
-        reporter.say(fmt::format("note: exposed by {:+.2f} stops (--exposure {:.2f})", stops, stops));
+        reporter.messages().note(fmt::format("exposed by {:+.2f} stops (--exposure {:.2f})", stops, stops));
+        reporter.say_messages();
     }
     return stops;
 }

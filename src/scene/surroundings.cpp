@@ -60,6 +60,9 @@ std::vector<Sight> look_from(const Scene& scene, const std::vector<Vec3>& points
     return sights;
 }
 
+/// Thinner than any room: a panel, whose two sheets see each other.
+bool is_flat(Vec3 size) { return min(size.x, min(size.y, size.z)) < 0.04f * max_component(size); }
+
 bool is_long(Vec3 size) { return max(size.x, size.z) > 1.25f * min(size.x, size.z); }
 
 } // namespace
@@ -69,9 +72,9 @@ Surroundings look_around(const Scene& scene) {
     result.bounds = bounds_of(scene);
     uint64_t triangles = 0;
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
-    if (triangles > kMostTriangles) return result;
-
     const Vec3 centre = result.bounds.centre(), size = result.bounds.size();
+    if (triangles > kMostTriangles || is_flat(size)) return result;
+
     const Vec3 along = size.x >= size.z ? Vec3{0.2f * size.x, 0, 0} : Vec3{0, 0, 0.2f * size.z};
     const Vec3 down = {0, 0.2f * size.y, 0};
     const std::vector<Vec3> points = {centre, centre - down, centre - down + along, centre - down - along};

@@ -120,6 +120,11 @@ class WhatIsRefused(CliTest):
             outcome = self.refuse(2, "render", "nowhere.obj", "-o", "x.png", *flags, says=["nowhere.obj"])
             self.assertEqual(outcome.stdout, "")
 
+    def test_what_was_left_out_is_said_before_the_error_that_follows_from_it(self):
+        write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        outcome = self.refuse(2, "info", "flat.obj", says=["1 triangles without area", "no geometry"])
+        self.assertLess(outcome.stderr.index("without area"), outcome.stderr.index("no geometry"))
+
     def test_a_sample_that_is_not_finite_fails_only_a_strict_render_and_is_always_counted(self):
         light = ["--environment", "1e13,1e13,1e13", "--eye", "0,0,-3", "--target", "0,0,-9"]
         self.assertEqual(self.render(*light)["invalid_samples"], 256)

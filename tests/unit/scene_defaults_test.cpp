@@ -142,6 +142,15 @@ TEST_CASE("a closed room, and a long court open at the top, is seen from inside 
     }
 }
 
+TEST_CASE("a panel of two sheets that face each other is no room") {
+    Scene scene;
+    add_box(scene, {-1, -1, 0}, {1, 1, 0.07f}, kAll, true);
+    Messages messages;
+    const Camera camera = make_default_camera(scene, 1.5f, messages);
+    CHECK(!is_within(bounds_of(scene), eye_of(camera)));
+    check_shows_all(scene, camera, 1.5f);
+}
+
 TEST_CASE("a box that is open in front is seen through its open side") {
     Scene scene;
     add_box(scene, {-1, 0, -1}, {1, 2, 1}, kWithoutFront, true);
