@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/reporter.h"
 #include "image/block_means.h"
 #include "image/flip.h"
@@ -62,7 +63,8 @@ void add_compare_command(CLI::App& app, int& status) {
     verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")->type_name("")->required();
     verb.add_option("B", flags->reference, "the reference")->type_name("")->required();
     verb.add_option("--blocks", flags->blocks, "compare means over blocks of N x N pixels: less noise, same structure")
-        ->check(CLI::Range(1u, 4096u))
+        ->type_name("N")
+        ->check(whole_between(1, 4096))
         ->capture_default_str();
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = compare(*flags); });
