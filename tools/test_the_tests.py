@@ -6,8 +6,8 @@ folder of its own (with ccache it takes minutes). Each mutation replaces text th
 patch that no longer applies is found; then the tests named for it run, and each of them must fail. Without a mutation
 all of them must pass, and that is tried first.
 
-`tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all. Prints a table, and
-exits 1 when a mutation went unnoticed by a test named for it, did not apply or did not build.
+`tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all. Prints a table,
+and exits 1 when a mutation went unnoticed by a test named for it, did not apply or did not build.
 """
 
 import argparse
@@ -83,7 +83,7 @@ MUTATIONS = [
     Mutation("an instance's ray is renormalised",
              [edit("src/trace/scene_bvh.h", "transform_vector(local_from_world, ray.direction),",
                    "normalize(transform_vector(local_from_world, ray.direction)),")],
-             ["consistency/walks"]),
+             ["unit/trace_instance"]),
     Mutation("accept does not look at alpha", [edit("src/render/accept_hit.h",
                                                     "if (placed.has_alpha == 0) return true;",
                                                     "if (placed.has_alpha <= 1) return true;")],

@@ -39,7 +39,7 @@ Seen look_around(float albedo, const PathSettings& path) {
     Camera camera;
     camera.world_from_camera = look_at({0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}, {0, 1, 0});
     camera.fov_y = 2.0f;
-    Queue queue = Queue::make_cpu();
+    Queue queue = test::cuda_requested() ? test::make_cuda_queue() : Queue::make_cpu();
     const RenderResult result = test::render(queue, make_room(albedo), camera, settings);
     CHECK(result.invalid_samples == 0);
     double sum = 0, square_sum = 0;
@@ -53,8 +53,8 @@ Seen look_around(float albedo, const PathSettings& path) {
     return {mean, std::sqrt((square_sum / pixels - mean * mean) / (pixels - 1))};
 }
 
-/// Within four standard errors, which must themselves be under 0.5 %, and a thousandth for what they do not show: beside
-/// an edge of the wall next-event estimation has rare, very bright samples.
+/// Within four standard errors, which must themselves be under 0.5 %, and a thousandth for what they do not show:
+/// beside an edge of the wall next-event estimation has rare, very bright samples.
 void check_radiance(double wanted, float albedo, const PathSettings& path) {
     const Seen seen = look_around(albedo, path);
     CAPTURE(seen.mean);
