@@ -20,8 +20,9 @@ HD inline PathState generate_path(const PathCamera& camera, const PathSettings& 
     const SampleKey key = {pixel, sample, settings.seed};
     const Vec2 offset = sample_filter(camera.filter, sample_2d(settings.sampler, key, kSlotFilter));
     const Vec2 lens = camera.view.aperture_radius > 0 ? sample_2d(settings.sampler, key, kSlotLens) : Vec2{};
-    const uint32_t row = pixel / camera.width, column = pixel % camera.width;
-    const Vec2 place = {static_cast<float>(column) + 0.5f + offset.x, static_cast<float>(row) + 0.5f + offset.y};
+    const uint32_t row = pixel / camera.width;
+    const Vec2 place = {static_cast<float>(pixel % camera.width) + 0.5f + offset.x,
+                        static_cast<float>(row) + 0.5f + offset.y};
     const Ray ray = make_camera_ray(camera.view, place, lens);
     PathState path;
     path.origin = ray.origin;
