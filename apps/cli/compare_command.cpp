@@ -45,8 +45,8 @@ int compare(const CompareFlags& flags) {
     reporter.event(fmt::format(
         R"({{"event":"compare","rel_mse":{},"rel_mse_98":{},"mean_98":{},"reference_mean_98":{},"mse":{},"flip":{},"hdr_flip":{},"equal":{},"hash_a":"{}","hash_b":"{}"}})",
         json_number(rel_mse), json_number(trimmed.rel_mse), json_triple(trimmed.mean),
-        json_triple(trimmed.reference_mean), json_number(mse), json_number(flip_mean), json_number(hdr_flip_mean), equal,
-        hash_a.hex(), hash_b.hex()));
+        json_triple(trimmed.reference_mean), json_number(mse), json_number(flip_mean), json_number(hdr_flip_mean),
+        equal, hash_a.hex(), hash_b.hex()));
     reporter.answer(fmt::format("relMSE            {:.6g}\nrelMSE best 98 %  {:.6g}\nMSE               {:.6g}\n"
                                 "FLIP              {:.6g}\nHDR-FLIP          {:.6g}\n"
                                 "hash A            {}\nhash B            {}\n{}\n",

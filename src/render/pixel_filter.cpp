@@ -16,10 +16,14 @@ float filter_value(PixelFilter filter, float x) {
 
 float default_filter_radius(PixelFilter filter) {
     switch (filter) {
-    case PixelFilter::Box: return 0.5f;
-    case PixelFilter::Tent: return 1.0f;
-    case PixelFilter::Gaussian: return 1.5f;
-    case PixelFilter::BlackmanHarris: return 1.5f;
+    case PixelFilter::Box:
+        return 0.5f;
+    case PixelFilter::Tent:
+        return 1.0f;
+    case PixelFilter::Gaussian:
+        return 1.5f;
+    case PixelFilter::BlackmanHarris:
+        return 1.5f;
     }
     return 0.5f;
 }

@@ -29,18 +29,21 @@ struct PixelFilterView {
 };
 
 /// Inverse of the cumulative distribution along one axis, in radii; empty for Box and Tent, which have closed forms.
-/// Entry i stands at the cumulative probability that a tent has reached at 2 i / kFilterTableSize - 1 of its radius: the
-/// inverse is steep where a filter fades out, and that puts the entries close together there.
-/// Gaussian: standard deviation radius / 3 (cut at 3 sigma). Blackman-Harris: the 4-term window over [-radius, radius].
+/// Entry i stands at the cumulative probability that a tent has reached at 2 i / kFilterTableSize - 1 of its radius:
+/// the inverse is steep where a filter fades out, and that puts the entries close together there. Gaussian: standard
+/// deviation radius / 3 (cut at 3 sigma). Blackman-Harris: the 4-term window over [-radius, radius].
 std::vector<float> make_filter_table(PixelFilter filter);
 
 /// Offset from the pixel's centre along one axis, pixels. u in (0, 1).
 HD inline float sample_filter_axis(const PixelFilterView& filter, float u) {
     switch (filter.kind) {
-    case PixelFilter::Box: return filter.radius * (2.0f * u - 1.0f);
-    case PixelFilter::Tent: return filter.radius * sample_tent(u);
+    case PixelFilter::Box:
+        return filter.radius * (2.0f * u - 1.0f);
+    case PixelFilter::Tent:
+        return filter.radius * sample_tent(u);
     case PixelFilter::Gaussian:
-    case PixelFilter::BlackmanHarris: break;
+    case PixelFilter::BlackmanHarris:
+        break;
     }
     const float x = (0.5f + 0.5f * sample_tent(u)) * static_cast<float>(kFilterTableSize);
     const int i = to_int(x, 0, kFilterTableSize - 1);
