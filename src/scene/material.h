@@ -24,7 +24,7 @@ struct Material {
     std::string name;
     MaterialKind kind = MaterialKind::Diffuse;
 
-    Rgb base_color = {0.8f, 0.8f, 0.8f}; // [0, 1], linear; times the texture (alpha in .w of the texture)
+    Rgb base_color = {0.5f, 0.5f, 0.5f}; // [0, 1], linear; times the texture (alpha in .w of the texture)
     TextureRef base_color_texture;
 
     float alpha = 1;          // [0, 1]; times the base colour texture's alpha, the vertex colour's, and alpha_texture

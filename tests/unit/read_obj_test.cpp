@@ -276,7 +276,7 @@ TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
 
 TEST_CASE("mtl: a missing file and a missing material are grey with a warning; geometry only is grey without") {
     const Loaded missing = load_text("mtllib none.mtl other.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
-    CHECK(missing.scene.materials[0].base_color == grey(0.8f));
+    CHECK(missing.scene.materials[0].base_color == grey(0.5f));
     CHECK(missing.said("there is no material file none.mtl"));
     CHECK(missing.said("(x is the first)"));
 
@@ -284,7 +284,7 @@ TEST_CASE("mtl: a missing file and a missing material are grey with a warning; g
     test::write_text(folder / "a.mtl", "newmtl x\nKd 1 0 0\nmap_Kd none.png\n");
     const fs::path path = test::write_text(folder / "a.obj", "mtllib a.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     const Loaded grey_only = load(path, {.allowed_paths = {}, .geometry_only = true});
-    CHECK(grey_only.scene.materials[0].base_color == grey(0.8f));
+    CHECK(grey_only.scene.materials[0].base_color == grey(0.5f));
     CHECK(grey_only.messages.all().empty());
 }
 
