@@ -19,9 +19,6 @@ std::string json_string(std::string_view text);
 /// A number in JSON, to 9 digits; null where it is not finite, which JSON has no word for.
 std::string json_number(double value);
 
-/// The number in JSON, which has no infinity and no NaN: null then.
-std::string json_number(double number);
-
 /// -q silences all but errors; --json turns everything into JSON lines on stdout. Every verb has both.
 struct ReportFlags {
     bool quiet = false, json = false;

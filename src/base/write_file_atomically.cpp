@@ -59,9 +59,9 @@ fs::path resolve_target(const fs::path& path) {
     const fs::path target = follow_links(path);
     const fs::file_status status = fs::status(target);
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-        throw Error(ErrorCode::FileWrite,
-                    fmt::format("{}: cannot write: it is not a regular file; name a file to create or replace",
-                                path.string()));
+        throw Error(
+            ErrorCode::FileWrite,
+            fmt::format("{}: cannot write: it is not a regular file; name a file to create or replace", path.string()));
     }
     return target;
 }

@@ -26,7 +26,7 @@ bool is_within(const fs::path& path, const fs::path& root) {
 
 } // namespace
 
-FileAccess::FileAccess(const fs::path& scene_file, std::vector<fs::path> allowed) {
+FileAccess::FileAccess(const fs::path& scene_file, const std::vector<fs::path>& allowed) {
     roots_.push_back(canonical_folder(scene_file.parent_path(), "the scene's folder cannot be opened"));
     for (const fs::path& folder : allowed) {
         roots_.push_back(canonical_folder(folder, "the folder of --allow-path cannot be opened"));

@@ -13,7 +13,7 @@ namespace pertev {
 class FileAccess {
 public:
     /// `scene_file`: the file named by the user. `allowed`: further folders (--allow-path).
-    FileAccess(const std::filesystem::path& scene_file, std::vector<std::filesystem::path> allowed);
+    FileAccess(const std::filesystem::path& scene_file, const std::vector<std::filesystem::path>& allowed);
 
     /// The path of `reference`, as written in `from` (a file of the scene), after symbolic links, `..` and backslashes
     /// are resolved. Throws Error(BadInput) that names `from` and --allow-path when it leads outside. The file need

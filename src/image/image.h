@@ -11,12 +11,10 @@ namespace pertev {
 /// Float picture; colours are linear Rec. 709 unless the holder says otherwise.
 struct Image {
     uint32_t width = 0, height = 0;
-    uint32_t channels = 3; // 1 to 4: Y, (Y, A), RGB, RGBA
+    uint32_t channels = 3;     // 1 to 4: Y, (Y, A), RGB, RGBA
     std::vector<float> pixels; // [height * width * channels]
 
-    const float* at(uint32_t x, uint32_t y) const {
-        return pixels.data() + (std::size_t(y) * width + x) * channels;
-    }
+    const float* at(uint32_t x, uint32_t y) const { return pixels.data() + (std::size_t(y) * width + x) * channels; }
     float* at(uint32_t x, uint32_t y) { return pixels.data() + (std::size_t(y) * width + x) * channels; }
 };
 

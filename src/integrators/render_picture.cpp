@@ -49,8 +49,8 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
     const PathBody body = queue.is_cuda() ? PathBody::Wavefront : settings.body;
     PathSettings path = settings.path;
     path.hide_background = settings.transparent;
-    PathRenderer renderer(queue, scene.view(), camera, settings.filter, radius, path, settings.width,
-                          settings.height, body, batch_of(settings));
+    PathRenderer renderer(queue, scene.view(), camera, settings.filter, radius, path, settings.width, settings.height,
+                          body, batch_of(settings));
     if (settings.stage_seconds != nullptr) renderer.time_stages(*settings.stage_seconds);
     queue.wait();
     result.upload_seconds = seconds_since(start);

@@ -15,15 +15,15 @@ struct RenderSettings {
     uint32_t width = 1280, height = 720;
     uint32_t samples = 64; // a pixel
     PixelFilter filter = PixelFilter::BlackmanHarris;
-    float filter_radius = 0; // pixels; 0 = the filter's default
-    uint32_t aovs = 0;       // AovBits
+    float filter_radius = 0;  // pixels; 0 = the filter's default
+    uint32_t aovs = 0;        // AovBits
     bool transparent = false; // RGBA: the background is left out, alpha says how much of the pixel is covered
-    double time_limit_s = 0; // 0 = none; ends at a whole sample
+    double time_limit_s = 0;  // 0 = none; ends at a whole sample
     PathSettings path;
-    PathBody body = PathBody::Loop; // CUDA always takes Wavefront
-    uint32_t batch = 1u << 22;      // paths in flight of the wavefront
+    PathBody body = PathBody::Loop;        // CUDA always takes Wavefront
+    uint32_t batch = 1u << 22;             // paths in flight of the wavefront
     StageSeconds* stage_seconds = nullptr; // filled by the wavefront, which is then slower
-    uint32_t pass_samples = 0;      // samples a pass; 0 = as many as fit a fraction of a second
+    uint32_t pass_samples = 0;             // samples a pass; 0 = as many as fit a fraction of a second
 };
 
 struct RenderProgress {

@@ -14,14 +14,10 @@ struct Transform {
     bool operator==(const Transform&) const = default;
 };
 
-HD inline Vec3 transform_vector(const Transform& m, Vec3 v) {
-    return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)};
-}
+HD inline Vec3 transform_vector(const Transform& m, Vec3 v) { return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)}; }
 HD inline Vec3 transform_point(const Transform& m, Vec3 p) { return transform_vector(m, p) + m.translation; }
 /// Transpose of the linear part times `n`: with m = local_from_world this carries a normal from local to world.
-HD inline Vec3 transform_transposed(const Transform& m, Vec3 n) {
-    return n.x * m.row0 + n.y * m.row1 + n.z * m.row2;
-}
+HD inline Vec3 transform_transposed(const Transform& m, Vec3 n) { return n.x * m.row0 + n.y * m.row1 + n.z * m.row2; }
 HD inline Vec3 column(const Transform& m, int k) {
     return {component(m.row0, k), component(m.row1, k), component(m.row2, k)};
 }

@@ -22,9 +22,7 @@ HD inline Vec3 operator/(Vec3 a, float s) { return (1.0f / s) * a; }
 HD inline Vec3& operator+=(Vec3& a, Vec3 b) { return a = a + b; }
 
 HD inline float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-HD inline Vec3 cross(Vec3 a, Vec3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+HD inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 HD inline float length_squared(Vec3 a) { return dot(a, a); }
 HD inline float length(Vec3 a) { return sqrt(dot(a, a)); }
 /// `a` at unit length; not finite for a zero vector.

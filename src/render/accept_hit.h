@@ -20,8 +20,8 @@ struct TriangleId {
 };
 
 /// Alpha of the material there: its factor, the textures' and the vertex colour's.
-HD inline float alpha_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh,
-                         uint32_t primitive, float u, float v) {
+HD inline float alpha_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh, uint32_t primitive,
+                         float u, float v) {
     const TriangleIndices i = triangle_indices(mesh, primitive);
     TextureRef color = material.base_color_texture;
     color.channel = 3;

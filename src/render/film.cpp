@@ -41,7 +41,8 @@ Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs)
 }
 
 std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs) {
-    const std::size_t of_pixel = channel_count(aovs) * sizeof(FixedSum) + ((aovs & kAovIds) != 0 ? sizeof(PixelIds) : 0);
+    const std::size_t of_pixel =
+        channel_count(aovs) * sizeof(FixedSum) + ((aovs & kAovIds) != 0 ? sizeof(PixelIds) : 0);
     return std::size_t(width) * height * of_pixel + sizeof(uint64_t);
 }
 
@@ -51,9 +52,7 @@ void Film::clear() {
     invalid_.zero();
 }
 
-FilmView Film::view() const {
-    return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_};
-}
+FilmView Film::view() const { return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_}; }
 
 Image Film::picture(uint64_t samples, bool transparent) const {
     const std::vector<FixedSum> sums = sums_.download();

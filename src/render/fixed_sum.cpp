@@ -28,8 +28,9 @@ float mean_of(FixedSum sum, uint64_t count) {
         quotient >>= 1;
         ++exponent;
     }
-    // An odd last bit below the rounding bit stands for everything cut; the double is exact, its conversion rounds once.
-    // Sums are multiples of 2^-64 / count > 2^-128, of which only those below 2^-126 meet subnormal floats: ldexp first.
+    // An odd last bit below the rounding bit stands for everything cut; the double is exact, its conversion rounds
+    // once. Sums are multiples of 2^-64 / count > 2^-128, of which only those below 2^-126 meet subnormal floats: ldexp
+    // first.
     const double exact = static_cast<double>(static_cast<uint64_t>((quotient << 1) | (sticky ? 1 : 0)));
     const float mean = static_cast<float>(std::ldexp(exact, exponent - 1));
     return negative ? -mean : mean;

@@ -32,8 +32,8 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material
 HD inline float textured_factor(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
                                 TriangleIndices i, float u, float v) {
     if (!ref.has_image()) return factor;
-    return factor * lookup_texture_channel(scene.images, ref, texture_coordinate(mesh, ref, i, u, v),
-                                           scene.linear_from_srgb);
+    return factor *
+           lookup_texture_channel(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
 }
 
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialView& material, const MeshView& mesh, TriangleIndices i,
@@ -45,9 +45,12 @@ HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialView& material, c
         clamp(textured_factor(scene, mesh, material.roughness, material.roughness_texture, i, u, v), 0.0f, 1.0f);
     switch (material.kind) {
     case MaterialKind::Diffuse:
-    case MaterialKind::Unlit: break; // above
-    case MaterialKind::Conductor: return make_conductor(material.eta, material.k, roughness);
-    case MaterialKind::Dielectric: return make_dielectric(material.ior, roughness, base_color);
+    case MaterialKind::Unlit:
+        break; // above
+    case MaterialKind::Conductor:
+        return make_conductor(material.eta, material.k, roughness);
+    case MaterialKind::Dielectric:
+        return make_dielectric(material.ior, roughness, base_color);
     case MaterialKind::MetallicRoughness: {
         const float metallic =
             clamp(textured_factor(scene, mesh, material.metallic, material.metallic_texture, i, u, v), 0.0f, 1.0f);

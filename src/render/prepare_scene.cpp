@@ -88,7 +88,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
         if (placement.bvh_of_mesh[i] == kBaked) continue;
         std::vector<BvhTriangle> triangles(scene.meshes[i].triangle_count());
         add_triangles(scene.meshes[i], Transform{}, 0, triangles);
-        prepared.mesh_bvhs[placement.bvh_of_mesh[i]] = 
+        prepared.mesh_bvhs[placement.bvh_of_mesh[i]] =
             load_or_build_bvh(triangles, options.bvh, options.bvh_cache, messages);
     }
     std::vector<PlacedBvh> placed;

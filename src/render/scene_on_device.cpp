@@ -122,7 +122,8 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
         bytes += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.tangents) + bytes_of(mesh.uv[0]) +
                  bytes_of(mesh.uv[1]) + bytes_of(mesh.colors) + bytes_of(mesh.indices);
     }
-    for (const TextureImage& image : scene.images) bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
+    for (const TextureImage& image : scene.images)
+        bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
     bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
     const LightSetData& lights = prepared.lights;
     bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.choice.blocks) +

@@ -97,13 +97,11 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
                               const MaterialView& material, const PlacedTriangle& triangle, const Hit& hit,
                               Vec3 geometric_normal, Vec3 wo) {
     if (mesh.normals == nullptr && !material.normal_texture.has_image()) return make_frame(geometric_normal);
-    const Vec3 local =
-        mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
+    const Vec3 local = mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
     Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
     if (material.normal_texture.has_image()) {
         const TextureRef& ref = material.normal_texture;
-        const Frame frame =
-            tangent_frame(instance, mesh, triangle, hit, normal, geometric_normal, ref.uv_set);
+        const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, geometric_normal, ref.uv_set);
         const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
                                           scene.linear_from_srgb);
         normal = mapped_normal(frame, {texel.x, texel.y, texel.z}, material.normal_scale);

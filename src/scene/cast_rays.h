@@ -21,8 +21,8 @@ struct LookHit {
     bool is_hit() const { return distance < kInfinity; }
 };
 
-/// The nearest hit of each ray; the front where a front and a back lie at one distance. Time: rays times triangles of all instances whose box some ray meets. The scene has
-/// been through validate().
+/// The nearest hit of each ray; the front where a front and a back lie at one distance. Time: rays times triangles of
+/// all instances whose box some ray meets. The scene has been through validate().
 std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays);
 
 } // namespace pertev

@@ -123,7 +123,8 @@ Opening opening(float fov, float aspect) {
     return {2 * atan2(half_y, 1.0f), half_y * aspect, half_y};
 }
 
-/// From `direction` (unit, towards the eye), as near as shows all of the scene (of large meshes a part of the vertices).
+/// From `direction` (unit, towards the eye), as near as shows all of the scene (of large meshes a part of the
+/// vertices).
 Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspect, const char* name) {
     const Opening o = opening(kFovOutside, aspect);
     const Vec3 centre = box.centre();

@@ -12,8 +12,7 @@ struct MaterialView {
     float alpha, alpha_cutoff;
     Rgb base_color, emission, eta, k;
     float metallic, roughness, ior, normal_scale;
-    TextureRef base_color_texture, alpha_texture, metallic_texture, roughness_texture, emission_texture,
-        normal_texture;
+    TextureRef base_color_texture, alpha_texture, metallic_texture, roughness_texture, emission_texture, normal_texture;
 };
 
 inline MaterialView make_material_view(const Material& m) {

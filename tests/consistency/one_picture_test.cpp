@@ -1,5 +1,5 @@
-// The one-picture law, held on the CPU: the picture and all its layers are the same bytes for any number of threads, any
-// split of the samples, either body of the path tracer, any batch, any tree. With --device cuda the GPU joins in.
+// The one-picture law, held on the CPU: the picture and all its layers are the same bytes for any number of threads,
+// any split of the samples, either body of the path tracer, any batch, any tree. With --device cuda the GPU joins in.
 
 #include <doctest/doctest.h>
 
@@ -106,8 +106,8 @@ TEST_CASE("the GPU gives the bytes of the CPU") {
                 settings.batch = batch;
                 settings.path.sampler = sampler;
                 settings.path.light = light;
-                const Hash128 gpu = hash_of(
-                    test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings));
+                const Hash128 gpu =
+                    hash_of(test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings));
                 CHECK(gpu == cpu_hash(settings));
             }
         }

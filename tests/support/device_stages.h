@@ -1,7 +1,8 @@
 #pragma once
 
-// Stages that run the renderer's host-device functions one by one and leave the bits of what they give. A test runs each
-// on the CPU and in CUDA and compares: what the statistical tests find of a function on the CPU then holds on the GPU.
+// Stages that run the renderer's host-device functions one by one and leave the bits of what they give. A test runs
+// each on the CPU and in CUDA and compares: what the statistical tests find of a function on the CPU then holds on the
+// GPU.
 
 #include "math/sampler.h"
 #include "shading/bsdf.h"

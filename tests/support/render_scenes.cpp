@@ -84,12 +84,17 @@ Scene make_mixed_scene() {
     const uint32_t floor = add(scene, {.name = "floor", .base_color = {1, 1, 1}, .base_color_texture = checker});
     const uint32_t red = add(scene, {.name = "red", .base_color = {0.7f, 0.2f, 0.15f}});
     const uint32_t gold = add(scene, {.name = "gold", .kind = MaterialKind::Conductor, .roughness = 0.3f});
-    const uint32_t glass = add(scene, {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0});
-    const uint32_t plastic = add(scene, {.name = "plastic", .kind = MaterialKind::MetallicRoughness, .base_color = {0.2f, 0.4f, 0.8f}, .roughness = 0.4f});
+    const uint32_t glass =
+        add(scene, {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0});
+    const uint32_t plastic = add(scene, {.name = "plastic",
+                                         .kind = MaterialKind::MetallicRoughness,
+                                         .base_color = {0.2f, 0.4f, 0.8f},
+                                         .roughness = 0.4f});
     const uint32_t lamp = add(scene, {.name = "lamp", .base_color = {0, 0, 0}, .emission = {6, 5, 4}});
     checker.m00 = checker.m11 = 1;
     const uint32_t mask = add(scene, {.name = "mask", .base_color_texture = checker, .alpha_mode = AlphaMode::Mask});
-    const uint32_t blend = add(scene, {.name = "blend", .base_color = {0.9f, 0.9f, 0.3f}, .alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
+    const uint32_t blend =
+        add(scene, {.name = "blend", .base_color = {0.9f, 0.9f, 0.3f}, .alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
 
     place(scene, 1, floor, {0, 0, 0}, {5, 1, 5});
     place(scene, 0, red, {-2.2f, 1, -1}, {1, 1, 1});
@@ -100,9 +105,23 @@ Scene make_mixed_scene() {
     stand(scene, 2, mask, {-1, 0.9f, 1}, 0.8f);
     stand(scene, 4, blend, {2.4f, 0.7f, 1.2f}, 0.5f);
 
-    scene.lights.push_back({.name = "point", .kind = LightKind::Point, .position = {-3, 2.5f, 2}, .direction = {0, -1, 0}, .intensity = {5, 6, 8}});
-    scene.lights.push_back({.name = "spot", .kind = LightKind::Spot, .position = {3, 4, 2}, .direction = normalize(Vec3{-3, -4, -3}), .intensity = {30, 20, 10}, .cos_inner = 0.97f, .cos_outer = 0.9f});
-    scene.lights.push_back({.name = "sun", .kind = LightKind::Directional, .position = {}, .direction = normalize(Vec3{1, -2, -1}), .intensity = {0.6f, 0.6f, 0.5f}});
+    scene.lights.push_back({.name = "point",
+                            .kind = LightKind::Point,
+                            .position = {-3, 2.5f, 2},
+                            .direction = {0, -1, 0},
+                            .intensity = {5, 6, 8}});
+    scene.lights.push_back({.name = "spot",
+                            .kind = LightKind::Spot,
+                            .position = {3, 4, 2},
+                            .direction = normalize(Vec3{-3, -4, -3}),
+                            .intensity = {30, 20, 10},
+                            .cos_inner = 0.97f,
+                            .cos_outer = 0.9f});
+    scene.lights.push_back({.name = "sun",
+                            .kind = LightKind::Directional,
+                            .position = {},
+                            .direction = normalize(Vec3{1, -2, -1}),
+                            .intensity = {0.6f, 0.6f, 0.5f}});
     scene.environment = sky();
     return scene;
 }

@@ -49,7 +49,8 @@ TEST_CASE("shading frame: the tangent follows the texture on any triangle") {
     for (int i = 0; i < 2000; ++i) {
         const Vec3 ab = random.direction(), ac = random.direction();
         if (length(cross(ab, ac)) < 0.1f) continue;
-        const Vec2 uv_ab = {random.within(-1, 1), random.within(-1, 1)}, uv_ac = {random.within(-1, 1), random.within(-1, 1)};
+        const Vec2 uv_ab = {random.within(-1, 1), random.within(-1, 1)},
+                   uv_ac = {random.within(-1, 1), random.within(-1, 1)};
         const float det = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
         if (std::abs(det) < 0.05f) continue;
         const Vec3 normal = normalize(cross(ab, ac));

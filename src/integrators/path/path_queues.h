@@ -48,7 +48,7 @@ struct PathQueueView {
 };
 
 struct HitQueueView {
-    Float4* place; // t, u, v, unused
+    Float4* place;   // t, u, v, unused
     Uint4* triangle; // instance, primitive, unused, unused
 
     HD Hit load(uint32_t i) const {

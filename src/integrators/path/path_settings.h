@@ -25,7 +25,7 @@ struct PathSettings {
     float clamp = 0; // largest channel of one contribution after the first scattering, W/(sr m2); 0 = off
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
-    bool hide_background = false; // a camera ray that hits nothing brings nothing: for pictures with alpha
+    bool hide_background = false;  // a camera ray that hits nothing brings nothing: for pictures with alpha
     Vec3 camera_axis = {0, 0, -1}; // unit, world space; PathRenderer sets it: depth is measured along it
 };
 

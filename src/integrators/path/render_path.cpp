@@ -31,7 +31,7 @@ PathRenderer::PathRenderer(Queue& queue, const SceneView& scene, const Camera& c
 }
 
 template <class Stage>
-void PathRenderer::run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::* seconds) {
+void PathRenderer::run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::*seconds) {
     if (seconds_ == nullptr) return launch(queue_, name, count, stage);
     queue_.wait();
     const auto start = std::chrono::steady_clock::now();

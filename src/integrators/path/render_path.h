@@ -50,7 +50,7 @@ private:
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
     void trace_batch(uint32_t paths, const FilmView& film);
     template <class Stage>
-    void run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::* seconds);
+    void run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::*seconds);
 
     Queue& queue_;
     SceneView scene_;

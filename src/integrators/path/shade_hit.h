@@ -22,9 +22,12 @@ HD inline float power_heuristic(float pdf, float other_pdf) {
 /// Whether light that was scattered `rough` times by other than delta lobes is asked for.
 HD inline bool counts(PathLight light, uint32_t rough) {
     switch (light) {
-    case PathLight::Path: return true;
-    case PathLight::Direct: return rough <= 1;
-    case PathLight::Indirect: return rough >= 2;
+    case PathLight::Path:
+        return true;
+    case PathLight::Direct:
+        return rough <= 1;
+    case PathLight::Indirect:
+        return rough >= 2;
     }
     return false;
 }
@@ -64,15 +67,15 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     if (is_black(scattered.f)) return false;
     if (light.instance != kNoLight && scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
-                                                                                  light.b1, light.b2)) {
+                                                                                    light.b1, light.b2)) {
         return false; // a hole in the light
     }
     float weight = 1;
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
-    shadow.contribution = clamp_contribution(
-        settings, path.depth, path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
+    shadow.contribution = clamp_contribution(settings, path.depth,
+                                             path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
     shadow.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, light.wi);
     shadow.target = {light.instance, light.primitive};
     if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
