@@ -94,8 +94,8 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     std::vector<std::string> channels;
     for (const ExrChannel& channel : exr.channels) channels.push_back(channel.name);
     facts.add("channels", channels);
-    for (const auto& [name, value] : exr.metadata) {
-        std::visit([&](const auto& v) { facts.add(name, v); }, value);
+    for (const auto& entry : exr.metadata) {
+        std::visit([&](const auto& value) { facts.add(entry.first, value); }, entry.second);
     }
 }
 
