@@ -63,7 +63,10 @@ class CliTest(unittest.TestCase):
                    "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
         arguments = [str(argument) for argument in arguments]
         done = subprocess.run([PROGRAM, *arguments], check=False, **options)
-        return Outcome(arguments, done.returncode, done.stdout or b"", done.stderr or b"")
+        outcome = Outcome(arguments, done.returncode, done.stdout or b"", done.stderr or b"")
+        for finding in ["Sanitizer", "runtime error"]:
+            self.assertNotIn(finding, outcome.stderr, outcome)
+        return outcome
 
     def succeed(self, *arguments, **options):
         outcome = self.run_pertev(*arguments, **options)
