@@ -52,6 +52,12 @@ public:
         if (count_ > 0) queue_->copy_to_host(values.data(), data_, count_ * sizeof(T));
         return values;
     }
+    /// The elements for reading: where they lie, or in `copy` where the device has memory of its own.
+    std::span<const T> read(std::vector<T>& copy) const {
+        if (queue_ == nullptr || !queue_->is_cuda()) return {data_, count_};
+        copy = download();
+        return copy;
+    }
     void zero() {
         if (count_ > 0) queue_->zero(data_, count_ * sizeof(T));
     }

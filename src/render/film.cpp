@@ -1,5 +1,7 @@
 #include "render/film.h"
 
+#include <span>
+
 #include "base/parallel_for.h"
 
 namespace pertev {
@@ -55,7 +57,8 @@ void Film::clear() {
 FilmView Film::view() const { return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_}; }
 
 Image Film::picture(uint64_t samples, bool transparent) const {
-    const std::vector<FixedSum> sums = sums_.download();
+    std::vector<FixedSum> copy;
+    const std::span<const FixedSum> sums = sums_.read(copy);
     Image image{width_, height_, transparent ? 4u : 3u, {}};
     image.pixels.resize(std::size_t(width_) * height_ * image.channels);
     parallel_for(std::size_t(width_) * height_, 4096, [&](uint64_t pixel) {
@@ -69,7 +72,8 @@ Image Film::picture(uint64_t samples, bool transparent) const {
 std::vector<FilmLayer> Film::layers(uint64_t samples) const {
     std::vector<FilmLayer> layers;
     if ((aovs_ & ~static_cast<uint32_t>(kAovIds)) == 0) return layers;
-    const std::vector<FixedSum> sums = sums_.download();
+    std::vector<FixedSum> copy;
+    const std::span<const FixedSum> sums = sums_.read(copy);
     uint32_t first = kFilmColorChannels;
     for (const AovLayout& layout : aov_layouts()) {
         if ((aovs_ & layout.bit) == 0) continue;
