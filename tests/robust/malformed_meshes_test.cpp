@@ -25,7 +25,7 @@ void check_survives(const fs::path& path) {
         CHECK(!scene.instances.empty());
     });
     if (error) CHECK(test::says(error, path.parent_path().string()));
-    CHECK(test::cpu_seconds() - start < 5);
+    CHECK(test::cpu_seconds() - start < test::allowed_seconds(5));
 }
 
 std::string bytes_of(const fs::path& path) {
