@@ -151,7 +151,7 @@ private:
     uint64_t number_ = 0;
 };
 
-enum Slot : std::size_t { X, Y, Z, NormalX, NormalY, NormalZ, Red, Green, Blue, Alpha, U, V, kSlots };
+enum Slot : std::size_t { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue, kAlpha, kU, kV, kSlots };
 
 std::size_t slot_of(const std::string& name) {
     struct Name {
@@ -159,35 +159,35 @@ std::size_t slot_of(const std::string& name) {
         Slot slot;
     };
     static constexpr Name names[] = {
-        {"x", X},
-        {"y", Y},
-        {"z", Z},
-        {"nx", NormalX},
-        {"ny", NormalY},
-        {"nz", NormalZ},
-        {"red", Red},
-        {"green", Green},
-        {"blue", Blue},
-        {"alpha", Alpha},
-        {"r", Red},
-        {"g", Green},
-        {"b", Blue},
-        {"a", Alpha},
-        {"diffuse_red", Red},
-        {"diffuse_green", Green},
-        {"diffuse_blue", Blue},
-        {"u", U},
-        {"v", V},
-        {"s", U},
-        {"t", V},
-        {"texture_u", U},
-        {"texture_v", V},
-        {"texture_s", U},
-        {"texture_t", V},
-        {"texcoord_u", U},
-        {"texcoord_v", V},
-        {"s0", U},
-        {"t0", V},
+        {"x", kX},
+        {"y", kY},
+        {"z", kZ},
+        {"nx", kNormalX},
+        {"ny", kNormalY},
+        {"nz", kNormalZ},
+        {"red", kRed},
+        {"green", kGreen},
+        {"blue", kBlue},
+        {"alpha", kAlpha},
+        {"r", kRed},
+        {"g", kGreen},
+        {"b", kBlue},
+        {"a", kAlpha},
+        {"diffuse_red", kRed},
+        {"diffuse_green", kGreen},
+        {"diffuse_blue", kBlue},
+        {"u", kU},
+        {"v", kV},
+        {"s", kU},
+        {"t", kV},
+        {"texture_u", kU},
+        {"texture_v", kV},
+        {"texture_s", kU},
+        {"texture_t", kV},
+        {"texcoord_u", kU},
+        {"texcoord_v", kV},
+        {"s0", kU},
+        {"t0", kV},
     };
     for (const Name& known : names) {
         if (known.name == name) return known.slot;
@@ -262,9 +262,9 @@ private:
             has[slot] = true;
             types[slot] = p.type;
         }
-        if (!has[X] || !has[Y] || !has[Z]) throw body_.fault("a vertex needs the properties x, y and z");
-        const bool has_normal = has[NormalX] && has[NormalY] && has[NormalZ];
-        const bool has_colour = has[Red] && has[Green] && has[Blue], has_uv = has[U] && has[V];
+        if (!has[kX] || !has[kY] || !has[kZ]) throw body_.fault("a vertex needs the properties x, y and z");
+        const bool has_normal = has[kNormalX] && has[kNormalY] && has[kNormalZ];
+        const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
         const auto count = static_cast<std::size_t>(element.count);
         mesh_.positions.resize(count);
         if (has_normal) mesh_.normals.resize(count);
@@ -272,9 +272,9 @@ private:
         if (has_uv) mesh_.uv[0].resize(count);
 
         std::array<double, kSlots + 1> values = {};
-        values[Alpha] = 1;
+        values[kAlpha] = 1;
         const auto number = [&](Slot slot) { return static_cast<float>(values[slot]); };
-        const auto channel = [&](Slot slot) { return colour(values[slot], types[slot], slot == Alpha); };
+        const auto channel = [&](Slot slot) { return colour(values[slot], types[slot], slot == kAlpha); };
         for (std::size_t i = 0; i < count; ++i) {
             body_.set_number(i);
             for (std::size_t k = 0; k < slots.size(); ++k) {
@@ -284,12 +284,13 @@ private:
                     values[slots[k]] = body_.value(element.properties[k].type);
                 }
             }
-            mesh_.positions[i] = {number(X), number(Y), number(Z)};
-            if (has_normal) mesh_.normals[i] = {number(NormalX), number(NormalY), number(NormalZ)};
+            mesh_.positions[i] = {number(kX), number(kY), number(kZ)};
+            if (has_normal) mesh_.normals[i] = {number(kNormalX), number(kNormalY), number(kNormalZ)};
             if (has_colour) {
-                mesh_.colors[i] = {channel(Red), channel(Green), channel(Blue), has[Alpha] ? channel(Alpha) : 1.0f};
+                mesh_.colors[i] = {channel(kRed), channel(kGreen), channel(kBlue),
+                                   has[kAlpha] ? channel(kAlpha) : 1.0f};
             }
-            if (has_uv) mesh_.uv[0][i] = {number(U), 1 - number(V)};
+            if (has_uv) mesh_.uv[0][i] = {number(kU), 1 - number(kV)};
         }
     }
 

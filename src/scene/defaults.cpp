@@ -165,12 +165,11 @@ void add_default_environment(Scene& scene, Messages& messages) {
 
 Camera make_default_camera(const Scene& scene, float aspect, Messages& messages) {
     const Surroundings around = look_around(scene);
-    const char* what = "";
+    const char* what = "a view from outside and above";
     Camera camera;
     switch (around.kind) {
     case SurroundingsKind::Object:
         camera = fitted(scene, around.bounds, normalize({0.55f, 0.42f, 0.8f}), aspect, "default, outside");
-        what = "a view from outside and above";
         break;
     case SurroundingsKind::Stage:
         camera = fitted(scene, around.bounds, around.open_side, aspect, "default, in front");
