@@ -88,18 +88,18 @@ Plane convolve(const Plane& from, Size size, const std::vector<float>& across, c
         const float* row = from.data() + y * static_cast<std::size_t>(size.width);
         for (int x = 0; x < size.width; ++x) {
             float sum = 0;
-            for (int k = -radius; k <= radius; ++k)
-                sum += across[static_cast<std::size_t>(k + radius)] * row[clamp(x + k, 0, size.width - 1)];
+            for (int k = 0; k <= 2 * radius; ++k)
+                sum += across[static_cast<std::size_t>(k)] * row[clamp(x + k - radius, 0, size.width - 1)];
             middle[y * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)] = sum;
         }
     });
     parallel_for(rows, 4, [&](uint64_t y) {
         float* row = to.data() + y * static_cast<std::size_t>(size.width);
-        for (int k = -radius; k <= radius; ++k) {
-            const int source = clamp(static_cast<int>(y) + k, 0, size.height - 1);
+        for (int k = 0; k <= 2 * radius; ++k) {
+            const int source = clamp(static_cast<int>(y) + k - radius, 0, size.height - 1);
             const float* other =
                 middle.data() + static_cast<std::size_t>(source) * static_cast<std::size_t>(size.width);
-            const float weight = down[static_cast<std::size_t>(k + radius)];
+            const float weight = down[static_cast<std::size_t>(k)];
             for (int x = 0; x < size.width; ++x) row[x] += weight * other[x];
         }
     });
@@ -166,8 +166,9 @@ Features find_features(const Plane& lightness, Size size, float pixels_per_degre
     const int radius = to_int(3.0f * deviation + 0.999999f, 1, 1 << 12);
     const std::vector<float> bell = gaussian(radius, 0.5f / variance);
     std::vector<float> edge = bell, point = bell;
-    for (int x = -radius; x <= radius; ++x) {
-        const auto k = static_cast<std::size_t>(x + radius);
+    for (int i = 0; i <= 2 * radius; ++i) {
+        const int x = i - radius;
+        const auto k = static_cast<std::size_t>(i);
         edge[k] *= static_cast<float>(-x);
         point[k] *= static_cast<float>(x * x) / variance - 1.0f;
     }

@@ -16,9 +16,9 @@ struct LocalRay {
 
 /// Rays side by side, eight to a vector register, and the nearest hit of each.
 struct RayPack {
-    static constexpr std::size_t width = 8;
-    float ox[width], oy[width], oz[width], dx[width], dy[width], dz[width];
-    float distance[width], facing[width]; // facing: above 0 on the front side
+    static constexpr std::size_t kWidth = 8;
+    float ox[kWidth], oy[kWidth], oz[kWidth], dx[kWidth], dy[kWidth], dz[kWidth];
+    float distance[kWidth], facing[kWidth]; // facing: above 0 on the front side
 };
 
 bool meets(const Bounds3& box, const LocalRay& ray) {
@@ -39,7 +39,7 @@ bool meets(const Bounds3& box, const LocalRay& ray) {
 /// Branchless, so that the compiler makes one loop of vector instructions of it. Of two sides at one distance the front
 /// counts, so that the order in which threads come by does not.
 void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, RayPack& rays) {
-    for (std::size_t k = 0; k < RayPack::width; ++k) {
+    for (std::size_t k = 0; k < RayPack::kWidth; ++k) {
         const Vec3 direction = {rays.dx[k], rays.dy[k], rays.dz[k]};
         const Vec3 p = cross(direction, ac);
         const float det = dot(ab, p), inv = 1.0f / det; // not finite for det = 0: no comparison below holds
@@ -53,11 +53,11 @@ void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, RayPack& rays) {
 }
 
 std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
-    std::vector<RayPack> packs((rays.size() + RayPack::width - 1) / RayPack::width);
-    for (std::size_t i = 0; i < packs.size() * RayPack::width; ++i) {
+    std::vector<RayPack> packs((rays.size() + RayPack::kWidth - 1) / RayPack::kWidth);
+    for (std::size_t i = 0; i < packs.size() * RayPack::kWidth; ++i) {
         const LocalRay& ray = rays[min(i, rays.size() - 1)]; // the last fills up its pack
-        RayPack& to = packs[i / RayPack::width];
-        const std::size_t k = i % RayPack::width;
+        RayPack& to = packs[i / RayPack::kWidth];
+        const std::size_t k = i % RayPack::kWidth;
         to.ox[k] = ray.origin.x, to.oy[k] = ray.origin.y, to.oz[k] = ray.origin.z;
         to.dx[k] = ray.direction.x, to.dy[k] = ray.direction.y, to.dz[k] = ray.direction.z;
         to.distance[k] = kInfinity, to.facing[k] = 0;
@@ -77,8 +77,8 @@ void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, std::vect
         }
         const std::lock_guard lock(merging);
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const RayPack& from = packs[i / RayPack::width];
-            const std::size_t k = i % RayPack::width;
+            const RayPack& from = packs[i / RayPack::kWidth];
+            const std::size_t k = i % RayPack::kWidth;
             LookHit& hit = hits[rays[i].index];
             const bool is_front = from.facing[k] > 0;
             if (from.distance[k] < hit.distance || (from.distance[k] == hit.distance && is_front)) {

@@ -2,6 +2,7 @@
 
 // A triangle mesh: geometry only, in its local space. Material and place are the instance's.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,12 +16,12 @@ namespace pertev {
 
 struct Mesh {
     std::string name;
-    std::vector<Vec3> positions;   // [vertices], metres
-    std::vector<Vec3> normals;     // [vertices] unit, or empty: the geometric normal is used
-    std::vector<Vec4> tangents;    // [vertices] unit xyz, w = +-1 handedness of the bitangent; or empty
-    std::vector<Vec2> uv[2];       // [vertices] each, or empty
-    std::vector<Vec4> colors;      // [vertices] linear RGBA in [0, 1], or empty
-    std::vector<uint32_t> indices; // [3 * triangles], counter-clockwise seen from the front
+    std::vector<Vec3> positions;         // [vertices], metres
+    std::vector<Vec3> normals;           // [vertices] unit, or empty: the geometric normal is used
+    std::vector<Vec4> tangents;          // [vertices] unit xyz, w = +-1 handedness of the bitangent; or empty
+    std::array<std::vector<Vec2>, 2> uv; // [vertices] each, or empty
+    std::vector<Vec4> colors;            // [vertices] linear RGBA in [0, 1], or empty
+    std::vector<uint32_t> indices;       // [3 * triangles], counter-clockwise seen from the front
 
     uint32_t triangle_count() const { return static_cast<uint32_t>(indices.size() / 3); }
 };
