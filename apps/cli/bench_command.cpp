@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "apps/cli/reporter.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/stopwatch.h"
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
@@ -36,10 +36,6 @@ struct BenchFlags {
     MachineFlags machine;
     ReportFlags report;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double rate(uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds * 1e-6 : 0.0; }
 
@@ -92,9 +88,9 @@ int bench_job(const BenchFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
-    auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
-    const double load_s = seconds_since(start);
+    const double load_s = watch.seconds();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     reporter.say_messages();
     const RenderSettings settings = job_settings(flags);
@@ -164,9 +160,9 @@ private:
 SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& flags) {
     SceneFigures figures{.scene = std::filesystem::path(file).stem().string(), .device = queue.device_name()};
     Messages messages;
-    auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     Scene scene = read_scene(file, {}, messages);
-    figures.load_s = seconds_since(start);
+    figures.load_s = watch.seconds();
     add_default_environment(scene, messages);
 
     const ScratchCache cache;

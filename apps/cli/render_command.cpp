@@ -1,7 +1,6 @@
 // pertev render SCENE -o OUT
 
 #include <algorithm>
-#include <chrono>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "apps/cli/render_flags.h"
 #include "apps/cli/write_result.h"
 #include "base/error.h"
+#include "base/stopwatch.h"
 
 namespace pertev {
 namespace {
@@ -38,16 +38,13 @@ int render(const RenderFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
+    const Stopwatch watch;
     const LoadedScene loaded = load_scene(flags.scene, messages);
     const Scene& scene = loaded.scene;
     const RenderSettings settings = render_settings(flags, scene);
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
-    const double load_s = seconds();
+    const double load_s = watch.seconds();
     PrepareOptions prepare;
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);
@@ -70,7 +67,7 @@ int render(const RenderFlags& flags) {
                                  .load_seconds = load_s,
                                  .build_seconds = prepared.build_seconds};
     const std::string hash = write_result(flags, record, result, reporter);
-    report_result(record, result, hash, seconds(), reporter);
+    report_result(record, result, hash, watch.seconds(), reporter);
     if (flags.strict && result.invalid_samples > 0) {
         throw Error(ErrorCode::BadInput, fmt::format("--strict: {} samples were not finite; the picture is written",
                                                      result.invalid_samples));

@@ -1,17 +1,12 @@
 #include "integrators/render_picture.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 
+#include "base/stopwatch.h"
 #include "render/scene_on_device.h"
 
 namespace pertev {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Samples of the next pass: aims at a third of a second, so that progress moves and Ctrl-C is heard, at no cost that
 /// shows. Never past the time that is left.
@@ -42,7 +37,7 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
                             const RenderSettings& settings,
                             const std::function<bool(const RenderProgress&)>& keep_going) {
     RenderResult result;
-    auto start = std::chrono::steady_clock::now();
+    Stopwatch watch;
     const SceneOnDevice scene(queue, prepared);
     Film film(queue, settings.width, settings.height, settings.aovs);
     const float radius = settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
@@ -53,20 +48,20 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
                           body, batch_of(settings));
     if (settings.stage_seconds != nullptr) renderer.time_stages(*settings.stage_seconds);
     queue.wait();
-    result.upload_seconds = seconds_since(start);
+    result.upload_seconds = watch.seconds();
 
-    start = std::chrono::steady_clock::now();
+    watch.restart();
     while (result.samples < settings.samples) {
-        const uint32_t count = next_pass(settings, result.samples, seconds_since(start));
+        const uint32_t count = next_pass(settings, result.samples, watch.seconds());
         renderer.render(result.samples, count, film);
         result.samples += count;
-        const double seconds = seconds_since(start);
+        const double seconds = watch.seconds();
         if (result.first_pixel_seconds == 0) result.first_pixel_seconds = seconds;
         const RenderProgress progress{result.samples, settings.samples, seconds, renderer.rays()};
         if (keep_going && !keep_going(progress)) break;
         if (settings.time_limit_s > 0 && seconds >= settings.time_limit_s) break;
     }
-    result.render_seconds = seconds_since(start);
+    result.render_seconds = watch.seconds();
     result.rays = renderer.rays();
     result.invalid_samples = film.invalid_samples();
     result.picture = film.picture(result.samples, settings.transparent);

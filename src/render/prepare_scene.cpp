@@ -7,6 +7,7 @@
 #include "accel/bvh/bvh_cache.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "image/srgb_table.h"
 
 namespace pertev {
@@ -76,7 +77,7 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const Placement& pl
 } // namespace
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     PreparedScene prepared;
     prepared.scene = &scene;
     const Placement placement = place_instances(scene);
@@ -84,7 +85,6 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.baked = load_or_build_bvh(baked_triangles(scene, placement), options.bvh, options.bvh_cache, messages);
     prepared.mesh_bvhs.resize(placement.mesh_bvh_count);
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        if (placement.uses[i] > 0) prepared.unique_triangles += scene.meshes[i].triangle_count();
         if (placement.bvh_of_mesh[i] == kBaked) continue;
         std::vector<BvhTriangle> triangles(scene.meshes[i].triangle_count());
         add_triangles(scene.meshes[i], Transform{}, 0, triangles);
@@ -101,7 +101,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.top_level = build_top_level_bvh(placed);
     prepared.triangles = prepared.baked.triangles.size();
     for (const Bvh& bvh : prepared.mesh_bvhs) prepared.triangles += bvh.triangles.size();
-    prepared.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    prepared.build_seconds = watch.seconds();
 
     prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages);
     return prepared;

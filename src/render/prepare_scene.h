@@ -3,7 +3,6 @@
 // From a validated Scene to what a render needs on the host: which meshes are baked into world space, the trees over
 // them (built, or loaded from the cache), the lights. The same for every device and every structure.
 
-#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -28,7 +27,6 @@ struct PreparedScene {
     TopLevelBvh top_level;        // over the instances that are not baked
     LightSetData lights;
     uint64_t triangles = 0;        // in all trees
-    uint64_t unique_triangles = 0; // of all meshes used
     double build_seconds = 0;      // trees alone, built or read from the cache
 };
 

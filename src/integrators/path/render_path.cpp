@@ -1,11 +1,10 @@
 #include "integrators/path/render_path.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <chrono>
 
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "device/launch.h"
 #include "integrators/path/path_stages.h"
 
@@ -34,10 +33,15 @@ template <class Stage>
 void PathRenderer::run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::*seconds) {
     if (seconds_ == nullptr) return launch(queue_, name, count, stage);
     queue_.wait();
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     launch(queue_, name, count, stage);
     queue_.wait();
-    seconds_->*seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_->*seconds += watch.seconds();
+}
+
+PathQueueView PathRenderer::path_queue() const {
+    return {path_floats_[0].data(), path_floats_[1].data(), path_floats_[2].data(), path_floats_[3].data(),
+            path_ids_.data()};
 }
 
 void PathRenderer::render(uint32_t first, uint32_t count, Film& film) {
@@ -86,8 +90,7 @@ void PathRenderer::render_wavefront(uint32_t first, uint32_t count, const FilmVi
     const uint32_t picture = width_ * height_;
     const uint32_t pixels = std::min(picture, capacity_);
     const uint32_t samples = std::min(count, capacity_ / pixels);
-    const PathQueueView paths = {path_floats_[0].data(), path_floats_[1].data(), path_floats_[2].data(),
-                                 path_floats_[3].data(), path_ids_.data()};
+    const PathQueueView paths = path_queue();
     for (uint32_t sample = 0; sample < count; sample += samples) {
         for (uint32_t pixel = 0; pixel < picture; pixel += pixels) {
             const uint32_t batch_pixels = std::min(pixels, picture - pixel);
@@ -103,8 +106,7 @@ void PathRenderer::render_wavefront(uint32_t first, uint32_t count, const FilmVi
 }
 
 void PathRenderer::trace_batch(uint32_t batch, const FilmView& film) {
-    const PathQueueView paths = {path_floats_[0].data(), path_floats_[1].data(), path_floats_[2].data(),
-                                 path_floats_[3].data(), path_ids_.data()};
+    const PathQueueView paths = path_queue();
     const HitQueueView hits = {hit_floats_.data(), hit_ids_.data()};
     const ShadowQueueView shadows = {shadow_floats_[0].data(), shadow_floats_[1].data(), shadow_floats_[2].data(),
                                      shadow_ids_.data()};

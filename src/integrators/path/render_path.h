@@ -49,6 +49,7 @@ private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film);
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
     void trace_batch(uint32_t paths, const FilmView& film);
+    PathQueueView path_queue() const;
     template <class Stage>
     void run(const char* name, uint32_t count, const Stage& stage, double StageSeconds::*seconds);
 
