@@ -26,8 +26,8 @@ struct PreparedScene {
     std::vector<Bvh> mesh_bvhs;   // of the meshes that are not baked everywhere, local space
     TopLevelBvh top_level;        // over the instances that are not baked
     LightSetData lights;
-    uint64_t triangles = 0;        // in all trees
-    double build_seconds = 0;      // trees alone, built or read from the cache
+    uint64_t triangles = 0;   // in all trees
+    double build_seconds = 0; // trees alone, built or read from the cache
 };
 
 /// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local
