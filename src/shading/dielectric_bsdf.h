@@ -53,16 +53,18 @@ struct DielectricBsdf {
         }
         float f = share * lost_o * glass_lost(cos_i, alpha, 1.0f / eta) / average_far * cosine;
         float pdf = lost_o * share * grazing;
-        // The half vector of refraction; its length is |wo . h + eta wi . h|.
-        const Vec3 i = {wi.x, wi.y, -cos_i};
-        const Vec3 sum = o + eta * i;
+        // All of refraction is computed from the outside's direction a and the inside's b, whichever of them is wo: the
+        // two ways then round alike, and near the critical angle, where a . h cancels, the lobe stays reciprocal.
+        const bool outside = wo.z > 0;
+        const Vec3 a = outside ? wo : wi, b = outside ? wi : wo;
+        const Vec3 sum = a + ior * b; // the half vector; its length is |a . h + ior b . h|
         const float length2 = length_squared(sum);
-        const Vec3 h = ((eta > 1 ? -1.0f : 1.0f) / sqrt(length2)) * sum; // towards wo
-        const float oh = min(dot(o, h), 1.0f), ih = -dot(i, h);
-        if (oh > 0 && ih > 0 && h.z > 0) {
-            const float passed = 1.0f - fresnel_dielectric(oh, eta).reflectance;
+        const Vec3 h = ((ior > 1 ? -1.0f : 1.0f) / sqrt(length2)) * sum; // towards a
+        const float ah = min(dot(a, h), 1.0f), bh = min(-dot(b, h), 1.0f);
+        if (ah > 0 && bh > 0 && h.z > 0) {
             const float so = ggx_slope_length(o.z, alpha), si = ggx_slope_length(cos_i, alpha);
-            const float d = 2.0f * passed * ggx_normals(h, alpha) * oh * ih * (eta * eta) / length2;
+            const float jacobian = (outside ? ior * ior : 1.0f) / length2;
+            const float d = 2.0f * transmittance_dielectric(ah, bh, ior) * ggx_normals(h, alpha) * ah * bh * jacobian;
             f += d * cos_i / (so * cos_i + si * o.z);
             pdf += (1.0f - lost_o) * d / (o.z + so);
         }

@@ -29,6 +29,13 @@ HD inline DielectricFresnel fresnel_dielectric(float cos_o, float eta) {
     return {min(0.5f * (s * s + p * p), 1.0f), cos_t};
 }
 
+/// 1 - reflectance, of cosines that obey Snell's law; nothing cancels near total reflection, and from the other side
+/// (cosines exchanged, 1 / eta) it is the same.
+HD inline float transmittance_dielectric(float cos_o, float cos_t, float eta) {
+    const float s = cos_o + eta * cos_t, p = eta * cos_o + cos_t;
+    return 2.0f * eta * cos_o * cos_t * (1.0f / (s * s) + 1.0f / (p * p));
+}
+
 /// Average of the reflectance over a cosine-weighted hemisphere of the near side.
 HD inline float fresnel_dielectric_average(float eta) {
     if (eta == 1) return 0;

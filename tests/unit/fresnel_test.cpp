@@ -30,6 +30,20 @@ double cosine_average(F f) { // 2 int f(mu) mu dmu, midpoints
 
 } // namespace
 
+TEST_CASE(
+    "dielectric transmittance is what is not reflected, to 1e-6 of itself down to grazing, and equal from both sides") {
+    for (const float eta : {1.1f, 1.33f, 1.5f, 2.4f, 3.0f})
+        for (const float cosine : {1e-6f, 1e-4f, 0.01f, 0.3f, 0.7f, 1.0f}) {
+            const double c = cosine, n = eta, far = std::sqrt(1 - (1 - c * c) / (n * n));
+            const double s = (c - n * far) / (c + n * far), p = (n * c - far) / (n * c + far);
+            const double passed = 0.5 * ((1 - s) * (1 + s) + (1 - p) * (1 + p));
+            INFO("cosine " << cosine << " eta " << eta);
+            const auto cos_t = static_cast<float>(far);
+            CHECK(double(transmittance_dielectric(cosine, cos_t, eta)) == doctest::Approx(passed).epsilon(1e-6));
+            CHECK(double(transmittance_dielectric(cos_t, cosine, 1 / eta)) == doctest::Approx(passed).epsilon(1e-6));
+        }
+}
+
 TEST_CASE("dielectric reflectance agrees with complex arithmetic to 1e-5, total reflection included") {
     for (const float eta : {1.0f / 2.4f, 1.0f / 1.5f, 0.99f, 1.0f, 1.01f, 1.33f, 1.5f, 3.0f})
         for (int i = 1; i <= 1000; i++) {
