@@ -13,15 +13,18 @@
 
 namespace pertev {
 
-/// Plain pointers, host's or device's.
-struct SceneBvhView {
-    BvhView baked; // world space; triangles carry their instance
+/// Plain pointers, host's or device's. `Tree` is the view of whatever structure stands over triangles; the tree over
+/// instances is always binary.
+template <class Tree>
+struct SceneTrees {
+    Tree baked; // world space; triangles carry their instance
     const BvhNode* top_nodes = nullptr;
     const InstanceRecord* instances = nullptr; // [a leaf link of the top level]
-    const BvhView* meshes = nullptr;           // [InstanceRecord::mesh_bvh], local space
+    const Tree* meshes = nullptr;              // [InstanceRecord::mesh_bvh], local space
     uint32_t top_root = kNoLink;
     float top_reach = 0, top_growth = 0; // TopLevelBvh's
 };
+using SceneBvhView = SceneTrees<BvhView>;
 
 /// The ray in an instance's space. The direction is not renormalised, so that t is shared by all spaces.
 HD inline Ray transform_ray(const Transform& local_from_world, const Ray& ray) {

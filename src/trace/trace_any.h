@@ -23,10 +23,11 @@ struct AnyVisitor {
     }
 };
 
-template <class Accept, class Counter = NoWalkCounter>
-HD inline bool trace_any(const SceneBvhView& scene, const Ray& ray, const Accept& accept, const Counter& counter = {}) {
+template <class Walk = StackWalk, class Accept, class Counter = NoWalkCounter>
+HD inline bool trace_any(const SceneTrees<typename Walk::Tree>& scene, const Ray& ray, const Accept& accept,
+                         const Counter& counter = {}) {
     AnyVisitor<Accept> visitor = {accept, ray.t_max};
-    walk_scene(scene, ray, visitor, counter);
+    walk_scene<Walk>(scene, ray, visitor, counter);
     return visitor.found;
 }
 

@@ -11,8 +11,8 @@
 
 #include "base/host_device.h"
 #include "base/limits.h"
-#include "trace/intersect_triangle.h"
 #include "trace/scene_bvh.h"
+#include "trace/test_leaf.h"
 #include "trace/walk_tree.h"
 #if !PERTEV_ON_DEVICE
 #include "trace/walk_wide.h"
@@ -20,43 +20,46 @@
 
 namespace pertev {
 
-/// Walks one mesh's tree. `instance` is kNoHit where the triangles carry their own. True when the visitor ended it.
-template <class Visitor, class Counter>
-HD inline bool walk_triangles(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
-                              WalkStackEntry* stack, const Counter& counter) {
-#if !PERTEV_ON_DEVICE
-    if (bvh.wide != nullptr && !(bvh.root & kLeafBit)) return walk_wide(bvh, ray, instance, visitor, counter);
-#endif
-    const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, bvh.bounds_max_abs);
-    const RayShear shear = make_ray_shear(ray.direction);
-    TreeWalk walk = {bvh.root};
-    for (;;) {
-        const uint32_t leaf =
-            next_leaf<Visitor::kNearestFirst>(walk, bvh.nodes, boxes, ray.t_min, visitor.limit(), stack, counter);
-        if (leaf == kNoLink) return false;
-        for (const BvhTriangle* at = bvh.triangles + (leaf & ~kLeafBit);; ++at) {
-            counter.add_triangle();
-            const BvhTriangle triangle = load_aligned(at);
-            TriangleHit hit;
-            if (intersect_triangle(ray.origin, shear, ray.t_min, ray.t_max, triangle.a, triangle.b, triangle.c, hit) &&
-                visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit)) {
-                return true;
-            }
-            if (triangle.flags & kLastInLeaf) break;
-        }
-        leave_leaf(walk, stack, visitor.limit());
-    }
-}
+// A "walk" is how one tree over triangles is walked; the walk of the scene is the same for all:
+//   using Tree                                                  what it walks, a view
+//   static bool walk(tree, ray, instance, visitor, counter)     `instance` is kNoHit where the triangles carry their
+//                                                               own; true when the visitor ended it
 
-template <class Visitor, class Counter>
-HD inline void walk_scene(const SceneBvhView& scene, const Ray& ray, Visitor& visitor, const Counter& counter) {
-    WalkStackEntry stack[kMaxBvhDepth], top_stack[kMaxTopLevelDepth];
+/// The one that pictures are made with: a stack, near child first where the visitor wants that. On the host eight boxes
+/// at a time where the tree has wide nodes.
+struct StackWalk {
+    using Tree = BvhView;
+
+    template <class Visitor, class Counter>
+    HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
+                        const Counter& counter) {
+#if !PERTEV_ON_DEVICE
+        if (bvh.wide != nullptr && !(bvh.root & kLeafBit)) return walk_wide(bvh, ray, instance, visitor, counter);
+#endif
+        WalkStackEntry stack[kMaxBvhDepth];
+        const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, bvh.bounds_max_abs);
+        const RayShear shear = make_ray_shear(ray.direction);
+        TreeWalk walk = {bvh.root};
+        for (;;) {
+            const uint32_t leaf =
+                next_leaf<Visitor::kNearestFirst>(walk, bvh.nodes, boxes, ray.t_min, visitor.limit(), stack, counter);
+            if (leaf == kNoLink) return false;
+            if (test_leaf(bvh.triangles, leaf, ray, shear, instance, visitor, counter)) return true;
+            leave_leaf(walk, stack, visitor.limit());
+        }
+    }
+};
+
+template <class Walk, class Visitor, class Counter>
+HD inline void walk_scene(const SceneTrees<typename Walk::Tree>& scene, const Ray& ray, Visitor& visitor,
+                          const Counter& counter) {
+    WalkStackEntry top_stack[kMaxTopLevelDepth];
     TreeWalk top = {scene.top_root};
-    BvhView bvh = scene.baked;
+    typename Walk::Tree tree = scene.baked;
     Ray local = ray;
     uint32_t instance = kNoHit;
     for (;;) { // one mesh a turn, so that the device has one copy of the inner walk and a warp meets again here
-        if (walk_triangles(bvh, local, instance, visitor, stack, counter)) return;
+        if (Walk::walk(tree, local, instance, visitor, counter)) return;
         if (instance != kNoHit) leave_leaf(top, top_stack, visitor.limit());
         if (top.link == kNoLink) return;
         // Made anew at each turn: cheaper than keeping it in registers through the inner walk.
@@ -66,7 +69,7 @@ HD inline void walk_scene(const SceneBvhView& scene, const Ray& ray, Visitor& vi
         if (leaf == kNoLink) return;
         const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
         instance = record.instance;
-        bvh = scene.meshes[record.mesh_bvh];
+        tree = scene.meshes[record.mesh_bvh];
         local = transform_ray(record.local_from_world, ray);
     }
 }

@@ -12,20 +12,9 @@
 #include "base/host_device.h"
 #include "trace/load_bvh.h"
 #include "trace/ray_boxes.h"
+#include "trace/walk_counter.h"
 
 namespace pertev {
-
-/// What a walk did, for tests and benchmarks; NoWalkCounter costs nothing.
-struct NoWalkCounter {
-    HD void add_node() const {}
-    HD void add_triangle() const {}
-};
-struct WalkCounter {
-    uint64_t* nodes;
-    uint64_t* triangles;
-    HD void add_node() const { ++*nodes; }
-    HD void add_triangle() const { ++*triangles; }
-};
 
 struct WalkStackEntry {
     uint32_t link;
@@ -53,7 +42,7 @@ HD inline uint32_t next_leaf(TreeWalk& walk, const BvhNode* nodes, const RayBoxe
         return kNoLink;
     };
     while (!(link & kLeafBit)) {
-        counter.add_node();
+        counter.add_node(nodes + link);
         const BvhNode node = load_aligned(nodes + link);
         float entry0, entry1;
         const bool enters0 = enters_child(boxes, node, 0, t_min, t_limit, entry0);

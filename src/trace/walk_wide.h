@@ -65,8 +65,8 @@ inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Vis
     Entry at = {ray.t_min, 0, 0};
     for (;;) {
         if (!(at.link & kLeafBit)) {
-            counter.add_node();
             const WideBvhNode& node = bvh.wide[at.link];
+            counter.add_node(&node);
             alignas(32) float entries[kWideChildren];
             unsigned entered = enters_children(wide, node, t_min, _mm256_set1_ps(visitor.limit()), entries);
             if (entered != 0) {
@@ -90,7 +90,7 @@ inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Vis
             for (uint32_t i = 0; i < at.count; i += 4) {
                 const BvhTriangle* first = bvh.triangles + (at.link & ~kLeafBit) + i;
                 const uint32_t count = min(at.count - i, 4u);
-                for (uint32_t k = 0; k < count; ++k) counter.add_triangle();
+                for (uint32_t k = 0; k < count; ++k) counter.add_triangle(first + k);
                 TriangleHit4 hits;
                 unsigned hit = intersect_4_triangles(ray.origin, shear, shear4, ray.t_min, ray.t_max, visitor.limit(),
                                                      first, count, hits);

@@ -3,124 +3,18 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdio>
-#include <string>
 #include <vector>
 
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "accel/bvh/wide_bvh.h"
-#include "tests/support/meshes.h"
-#include "trace/trace_any.h"
-#include "trace/trace_closest.h"
+#include "tests/support/check_walk.h"
+#include "tests/support/nasty_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
 
 namespace {
-
-/// A pure function of the primitive and the place on it, as an alpha cut-out is.
-struct AcceptSome {
-    HD bool operator()(uint32_t instance, uint32_t primitive, float u, float) const {
-        return (primitive * 2654435761u + instance) % 3 != 0 || u > 0.5f;
-    }
-};
-
-std::vector<BvhTriangle> grid_with_doubles() {
-    // An axis-aligned lattice of quads, each triangle there twice: every hit is a tie, every box is flat.
-    std::vector<BvhTriangle> triangles;
-    for (int axis = 0; axis < 3; ++axis) {
-        for (int k = -3; k <= 3; ++k) {
-            for (int i = -3; i < 3; ++i) {
-                for (int j = -3; j < 3; ++j) {
-                    const auto at = [&](int a, int b) {
-                        const float p[3] = {static_cast<float>(k), static_cast<float>(a), static_cast<float>(b)};
-                        return Vec3{p[(3 - axis) % 3], p[(4 - axis) % 3], p[(5 - axis) % 3]};
-                    };
-                    for (int twice = 0; twice < 2; ++twice) {
-                        const auto id = static_cast<uint32_t>(triangles.size());
-                        triangles.push_back({at(i, j), id, at(i + 1, j), id % 2, at(i + 1, j + 1), 0});
-                        triangles.push_back({at(i, j), id + 1, at(i + 1, j + 1), id % 2, at(i, j + 1), 0});
-                    }
-                }
-            }
-        }
-    }
-    // Scene order and memory order differ.
-    Random random(3);
-    for (std::size_t i = triangles.size(); i > 1; --i) {
-        std::swap(triangles[i - 1], triangles[random.below(static_cast<uint32_t>(i))]);
-    }
-    return triangles;
-}
-
-std::vector<BvhTriangle> soup(uint32_t count, float away) {
-    std::vector<BvhTriangle> triangles;
-    Random random(11);
-    for (uint32_t i = 0; i < count; ++i) {
-        const Vec3 at = random.point(-1, 1) + Vec3{away, 0, -away};
-        const float size = i % 7 == 0 ? 1.0f : 0.05f;
-        BvhTriangle t;
-        t.a = at + random.point(-size, size);
-        t.b = at + random.point(-size, size);
-        t.c = i % 11 == 0 ? t.a : at + random.point(-size, size); // some without area
-        t.primitive = i / 2, t.instance = i % 2;
-        triangles.push_back(t);
-    }
-    return triangles;
-}
-
-/// Rays at random, at vertices, along axes, along planes and edges of boxes, through lattice points, and with short t
-/// ranges.
-std::vector<Ray> nasty_rays(uint32_t count, Vec3 centre, const std::vector<BvhTriangle>& targets, uint32_t seed) {
-    std::vector<Ray> rays;
-    Random random(seed);
-    for (uint32_t i = 0; i < count; ++i) {
-        Ray ray;
-        ray.origin = centre + random.point(-4, 4);
-        ray.direction = random.direction();
-        const auto snap = [](float x) { return floor(x + 0.5f); };
-        if (i % 2 == 0) ray.origin = {snap(ray.origin.x), snap(ray.origin.y), snap(ray.origin.z)};
-        if (i % 4 == 0) ray.direction = {snap(ray.direction.x), snap(ray.direction.y), snap(ray.direction.z)};
-        if (i % 16 == 2) ray.direction = {0.0f, -0.0f, random.unit() < 0.5f ? 1.0f : -1.0f};
-        if (i % 16 == 6) ray.direction = {1.0f, 0x1p-140f, -0x1p-90f};
-        if (i % 5 == 1 && !targets.empty()) {
-            ray.direction = targets[random.below(static_cast<uint32_t>(targets.size()))].b - ray.origin;
-        }
-        if (ray.direction == Vec3{}) ray.direction = {1, 0, 0};
-        if (i % 3 == 0) {
-            ray.t_min = 1;
-            ray.t_max = static_cast<float>(1 + random.below(4));
-        }
-        rays.push_back(ray);
-    }
-    return rays;
-}
-
-std::string text_of(const Ray& r) {
-    char text[256];
-    std::snprintf(text, sizeof text, "origin %a %a %a direction %a %a %a t %a %a", static_cast<double>(r.origin.x),
-                  static_cast<double>(r.origin.y), static_cast<double>(r.origin.z), static_cast<double>(r.direction.x),
-                  static_cast<double>(r.direction.y), static_cast<double>(r.direction.z), static_cast<double>(r.t_min),
-                  static_cast<double>(r.t_max));
-    return text;
-}
-
-template <class Accept>
-void check_rays(const SceneBvhView& scene, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
-                const Accept& accept) {
-    uint64_t wrong = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        Hit hit;
-        const bool found = trace_closest(scene, rays[i], accept, hit);
-        const bool any = trace_any(scene, rays[i], accept);
-        Hit want = expected[i];
-        if (want.instance == kNoHit) want.t = rays[i].t_max;
-        if (hit == want && found == (want.instance != kNoHit) && any == found) continue;
-        if (wrong++ == 0) FAIL_CHECK("ray ", i, ": ", text_of(rays[i]), " t ", hit.t, " want ", want.t, " any ", any);
-    }
-    CHECK(wrong == 0);
-}
 
 const BvhBuildSettings kSettings[] = {{},
                                       {.bins = 2, .max_leaf = 1},
@@ -130,27 +24,13 @@ const BvhBuildSettings kSettings[] = {{},
 } // namespace
 
 TEST_CASE("a tree of any build setting gives the hits of testing every triangle, bit for bit") {
-    struct Case {
-        const char* name;
-        std::vector<BvhTriangle> triangles;
-        Vec3 centre;
-    };
-    const Case cases[] = {{"lattice of doubled quads", grid_with_doubles(), {}},
-                          {"soup", soup(3000, 0), {}},
-                          {"soup 100 km away", soup(1500, 1e5f), {1e5f, 0, -1e5f}},
-                          {"torus", triangles_of(make_torus(40, 24), 5), {}},
-                          {"one triangle", soup(1, 0), {}},
-                          {"nothing", {}, {}}};
-    for (const Case& c : cases) {
+    for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(2000, c.centre, c.triangles, 17);
-        std::vector<Hit> all(rays.size()), some(rays.size());
+        const std::vector<Ray> rays = nasty_rays(2000, c, 17);
+        const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
+        const std::vector<Hit> some = hits_by_brute_force(c.triangles, rays, AcceptSome{});
         uint64_t hits = 0;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            trace_by_brute_force(c.triangles, rays[i], kNoHit, AcceptAll{}, all[i]);
-            trace_by_brute_force(c.triangles, rays[i], kNoHit, AcceptSome{}, some[i]);
-            hits += all[i].instance != kNoHit ? 1 : 0;
-        }
+        for (const Hit& hit : all) hits += hit.instance != kNoHit ? 1 : 0;
         if (c.triangles.size() > 1) CHECK(hits > rays.size() / 20);
         for (const BvhBuildSettings& settings : kSettings) {
             CAPTURE(settings.bins);
@@ -161,16 +41,16 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
                 SceneBvhView scene;
                 scene.baked = view_of(bvh);
                 if (wide) scene.baked.wide = wide_nodes.data();
-                check_rays(scene, rays, all, AcceptAll{});
-                check_rays(scene, rays, some, AcceptSome{});
+                check_walk(scene, rays, all, AcceptAll{});
+                check_walk(scene, rays, some, AcceptSome{});
             }
         }
     }
 }
 
 TEST_CASE("instances give the hits of testing every triangle of every instance, bit for bit") {
-    const std::vector<BvhTriangle> meshes[] = {triangles_of(make_torus(16, 12)), soup(300, 0), soup(200, 1000.0f),
-                                               triangles_of(make_sphere(0, {}, 1))};
+    const std::vector<BvhTriangle> meshes[] = {triangles_of(make_torus(16, 12)), make_soup(300, 0),
+                                               make_soup(200, 1000.0f), triangles_of(make_sphere(0, {}, 1))};
     const std::vector<BvhTriangle> baked = triangles_of(make_torus(20, 16), 7);
     std::vector<Bvh> trees;
     std::vector<BvhView> views;
@@ -200,7 +80,7 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
         SceneBvhView scene = {{},        top.nodes.data(), top.instances.data(), views.data(), top.root,
                               top.reach, top.growth};
         if (with_baked) scene.baked = view_of(baked_tree);
-        const std::vector<Ray> rays = nasty_rays(3000, {}, baked, 23);
+        const std::vector<Ray> rays = nasty_rays(3000, {"torus", baked, {}, 1}, 23);
         std::vector<Hit> expected(rays.size());
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (with_baked) trace_by_brute_force(baked, rays[i], kNoHit, AcceptSome{}, expected[i]);
@@ -209,7 +89,7 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
                 trace_by_brute_force(meshes[p.mesh_bvh], local, p.instance, AcceptSome{}, expected[i]);
             }
         }
-        check_rays(scene, rays, expected, AcceptSome{});
+        check_walk(scene, rays, expected, AcceptSome{});
     }
 }
 
@@ -242,5 +122,5 @@ TEST_CASE("rays at the very edge of instances whose boxes leave no slack are not
         hits += expected[i].instance != kNoHit ? 1 : 0;
     }
     CHECK(hits > 5000);
-    check_rays(scene, rays, expected, AcceptAll{});
+    check_walk(scene, rays, expected, AcceptAll{});
 }

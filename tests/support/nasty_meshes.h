@@ -1,0 +1,36 @@
+#pragma once
+
+// Meshes and rays that break structures and walks: ties, slivers, flat boxes, huge coordinates, rays along planes.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "accel/bvh/bvh.h"
+#include "tests/support/meshes.h"
+#include "trace/ray.h"
+
+namespace pertev::test {
+
+struct NastyMesh {
+    const char* name;
+    std::vector<BvhTriangle> triangles; // (instance, primitive) pairs are unique unless the name says otherwise
+    Vec3 centre;
+    float extent = 1; // rays start within 4 of these of the centre, metres
+};
+
+/// Triangles of random sizes around (away, 0, -away), some without area.
+std::vector<BvhTriangle> make_soup(uint32_t count, float away);
+
+/// A lattice of doubled quads, coincident triangles, long slivers, soups at the origin and 150 km away, huge
+/// coordinates, `line` triangles in a line, a torus, one triangle, nothing.
+std::vector<NastyMesh> nasty_meshes(uint32_t line = 3000);
+
+/// Rays at random, at vertices, along edges, axes and planes of boxes, through lattice points, with components near 0,
+/// and with short t ranges.
+std::vector<Ray> nasty_rays(uint32_t count, const NastyMesh& mesh, uint32_t seed);
+
+/// A ray as hex floats.
+std::string text_of(const Ray& ray);
+
+} // namespace pertev::test
