@@ -1,0 +1,66 @@
+#pragma once
+
+// The two tests that every walk is made of, box and triangle, as one choice. ExactTests is the one that pictures are
+// made with: conservative boxes, watertight triangles, equal bits everywhere. FastTests is for the laboratory alone, to
+// tell what that costs: it is what most tracers do, and rays at edges slip through it.
+//
+// Source of the fast triangle test: Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+
+#include "base/host_device.h"
+#include "trace/intersect_triangle.h"
+#include "trace/ray.h"
+#include "trace/ray_boxes.h"
+
+namespace pertev {
+
+struct ExactTests {
+    using Boxes = RayBoxes;
+    using Triangles = RayShear; // what is computed once a ray
+
+    HD static Boxes make_boxes(const Ray& ray, float bounds_max_abs) {
+        return make_ray_boxes(ray.origin, ray.direction, bounds_max_abs);
+    }
+    HD static Triangles make_triangles(const Ray& ray) { return make_ray_shear(ray.direction); }
+    HD static bool intersect(const Ray& ray, const Triangles& shear, Vec3 a, Vec3 b, Vec3 c, TriangleHit& hit) {
+        return intersect_triangle(ray.origin, shear, ray.t_min, ray.t_max, a, b, c, hit);
+    }
+};
+
+/// 1 / x, to about one unit in the last place on the device.
+HD inline float fast_reciprocal(float x) {
+#if PERTEV_ON_DEVICE
+    return __fdividef(1.0f, x);
+#else
+    return 1.0f / x;
+#endif
+}
+
+struct FastTests {
+    using Boxes = RayBoxes; // of a growth of 0: lo and hi are equal, which the compiler sees
+    struct Triangles {};
+
+    HD static Boxes make_boxes(const Ray& ray, float) {
+        Boxes r;
+        r.inv = {fast_reciprocal(guard_direction(ray.direction.x)), fast_reciprocal(guard_direction(ray.direction.y)),
+                 fast_reciprocal(guard_direction(ray.direction.z))};
+        r.lo = {-(ray.origin.x * r.inv.x), -(ray.origin.y * r.inv.y), -(ray.origin.z * r.inv.z)};
+        r.hi = r.lo;
+        return r;
+    }
+    HD static Triangles make_triangles(const Ray&) { return {}; }
+    HD static bool intersect(const Ray& ray, Triangles, Vec3 a, Vec3 b, Vec3 c, TriangleHit& hit) {
+        const auto dot_fma = [](Vec3 p, Vec3 q) { return fma(p.x, q.x, fma(p.y, q.y, p.z * q.z)); };
+        const auto cross_fma = [](Vec3 p, Vec3 q) {
+            return Vec3{fma(p.y, q.z, -(p.z * q.y)), fma(p.z, q.x, -(p.x * q.z)), fma(p.x, q.y, -(p.y * q.x))};
+        };
+        const Vec3 ab = b - a, ac = c - a, p = cross_fma(ray.direction, ac);
+        const float inv = fast_reciprocal(dot_fma(ab, p));
+        const Vec3 from = ray.origin - a, q = cross_fma(from, ab);
+        const float u = dot_fma(from, p) * inv, v = dot_fma(ray.direction, q) * inv, t = dot_fma(ac, q) * inv;
+        if (!(u >= 0 && v >= 0 && u + v <= 1 && t > ray.t_min && t < ray.t_max)) return false;
+        hit = {t, u, v};
+        return true;
+    }
+};
+
+} // namespace pertev
