@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <new>
 
@@ -11,7 +10,6 @@
 #include <fmt/format.h>
 
 namespace pertev {
-
 namespace {
 
 void write(std::FILE* file, const std::string& text) {
@@ -19,45 +17,7 @@ void write(std::FILE* file, const std::string& text) {
     std::fflush(file);
 }
 
-/// Bytes of the UTF-8 character that `text` begins with; 0 when it is none. (RFC 3629, section 4.)
-std::size_t utf8_length(std::string_view text) {
-    const auto at = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-    const unsigned first = at(0);
-    const std::size_t length = first < 0x80   ? 1
-                               : first < 0xc2 ? 0
-                               : first < 0xe0 ? 2
-                               : first < 0xf0 ? 3
-                               : first < 0xf5 ? 4
-                                              : 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((at(i) & 0xc0) != 0x80) return 0;
-    }
-    const bool bad_second = (first == 0xe0 && at(1) < 0xa0) || (first == 0xed && at(1) > 0x9f) ||
-                            (first == 0xf0 && at(1) < 0x90) || (first == 0xf4 && at(1) > 0x8f);
-    return bad_second ? 0 : length;
-}
-
 } // namespace
-
-std::string json_string(std::string_view text) {
-    std::string out = "\"";
-    while (!text.empty()) {
-        const std::size_t length = utf8_length(text);
-        const auto byte = static_cast<unsigned char>(text.front());
-        if (length == 0) {
-            out += "\\ufffd"; // file names may be any bytes
-        } else if (byte < 0x20) {
-            out += fmt::format("\\u{:04x}", byte);
-        } else {
-            if (byte == '"' || byte == '\\') out += '\\';
-            out += text.substr(0, length);
-        }
-        text.remove_prefix(std::max<std::size_t>(length, 1));
-    }
-    return out + '"';
-}
-
-std::string json_number(double number) { return std::isfinite(number) ? fmt::format("{:.9g}", number) : "null"; }
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags) {
     verb.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");

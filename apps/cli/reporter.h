@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
+#include "base/json_text.h"
 #include "base/messages.h"
 
 namespace CLI {
@@ -13,11 +13,6 @@ class App;
 }
 
 namespace pertev {
-
-/// Text as a JSON string, quotes included.
-std::string json_string(std::string_view text);
-/// A number in JSON, to 9 digits; null where it is not finite, which JSON has no word for.
-std::string json_number(double value);
 
 /// -q silences all but errors; --json turns everything into JSON lines on stdout. Every verb has both.
 struct ReportFlags {

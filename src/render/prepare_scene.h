@@ -30,8 +30,6 @@ struct PreparedScene {
     double build_seconds = 0; // trees alone, built or read from the cache
 };
 
-/// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local
-/// space so skewed would cost the boxes of a top level more than the triangles cost memory.
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);
 
 } // namespace pertev

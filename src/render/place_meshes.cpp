@@ -1,0 +1,83 @@
+#include "render/place_meshes.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kMaxCondition = 4096; // 2^12
+
+/// Triangles of a mesh, moved by `world_from_local`.
+void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t instance,
+                   std::span<BvhTriangle> triangles) {
+    parallel_for(triangles.size(), 4096, [&](uint64_t i) {
+        const uint32_t* v = &mesh.indices[3 * i];
+        triangles[i] = {.a = transform_point(world_from_local, mesh.positions[v[0]]),
+                        .primitive = static_cast<uint32_t>(i),
+                        .b = transform_point(world_from_local, mesh.positions[v[1]]),
+                        .instance = instance,
+                        .c = transform_point(world_from_local, mesh.positions[v[2]])};
+    });
+}
+
+} // namespace
+
+MeshPlacement place_meshes(const Scene& scene) {
+    MeshPlacement placement;
+    std::vector<uint32_t> uses(scene.meshes.size());
+    for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+    placement.tree_of_mesh.assign(scene.meshes.size(), kBakedMesh);
+    for (const Instance& instance : scene.instances) {
+        const bool baked = uses[instance.mesh] == 1 || !(condition_number(instance.world_from_local) <= kMaxCondition);
+        placement.is_baked.push_back(baked);
+        if (!baked && placement.tree_of_mesh[instance.mesh] == kBakedMesh) {
+            placement.tree_of_mesh[instance.mesh] = placement.mesh_tree_count++;
+        }
+    }
+    return placement;
+}
+
+std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        if (placement.is_baked[i]) count += scene.meshes[scene.instances[i].mesh].triangle_count();
+    }
+    if (count > kMaxBvhTriangles) {
+        throw Error(ErrorCode::OverLimit, fmt::format("the scene has {} triangles outside shared meshes; at most {} "
+                                                      "fit one tree",
+                                                      count, kMaxBvhTriangles));
+    }
+    std::vector<BvhTriangle> triangles(count);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        if (!placement.is_baked[i]) continue;
+        const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+        add_triangles(mesh, scene.instances[i].world_from_local, static_cast<uint32_t>(i),
+                      std::span(triangles).subspan(first, mesh.triangle_count()));
+        first += mesh.triangle_count();
+    }
+    return triangles;
+}
+
+std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh) {
+    std::vector<BvhTriangle> triangles(mesh.triangle_count());
+    add_triangles(mesh, Transform{}, 0, triangles);
+    return triangles;
+}
+
+std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement,
+                                    std::span<const Bounds3> bounds) {
+    std::vector<PlacedBvh> placed;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        if (placement.is_baked[i]) continue;
+        const Instance& instance = scene.instances[i];
+        const uint32_t tree = placement.tree_of_mesh[instance.mesh];
+        placed.push_back({instance.world_from_local, bounds[tree], tree, static_cast<uint32_t>(i)});
+    }
+    return placed;
+}
+
+} // namespace pertev

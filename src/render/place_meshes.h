@@ -1,0 +1,37 @@
+#pragma once
+
+// Which meshes are baked into world space and which keep a tree of their own: decided here, once, for every structure
+// alike; and the triangles of both kinds, as builders take them.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "accel/bvh/bvh.h"
+#include "accel/bvh/top_level_bvh.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kBakedMesh = 0xffffffffu;
+
+struct MeshPlacement {
+    std::vector<bool> is_baked;         // of each instance
+    std::vector<uint32_t> tree_of_mesh; // number of the mesh's own tree, or kBakedMesh where no instance needs one
+    uint32_t mesh_tree_count = 0;
+};
+
+/// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local
+/// space so skewed would cost the boxes of a top level more than the triangles cost memory.
+MeshPlacement place_meshes(const Scene& scene);
+
+/// The triangles of all baked instances, in world space. Throws Error(OverLimit) for more than one tree can hold.
+std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement);
+/// The triangles of a mesh, in its own space.
+std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh);
+
+/// What the top level is built from; `bounds` are of the mesh trees.
+std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement,
+                                    std::span<const Bounds3> bounds);
+
+} // namespace pertev
