@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
+#include "apps/cli/bench_parts.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
@@ -24,6 +24,7 @@
 #include "image/picture_hash.h"
 #include "image/write_image.h"
 #include "integrators/render_picture.h"
+#include "lab/record_scenes.h"
 #include "scene/defaults.h"
 
 namespace pertev {
@@ -37,13 +38,11 @@ struct BenchFlags {
     ReportFlags report;
 };
 
-double rate(uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds * 1e-6 : 0.0; }
-
 // ---------------------------------------------------------------------------------------------------------------------
 // bench render --job: grey geometry under a constant sky.
 
 /// The file's triangles in a 0.7 grey that scatters to both sides, without vertex normals, under radiance 1 from
-/// everywhere; the camera stands in Crytek's Sponza at the scale of a tenth of the original's centimetres.
+/// everywhere; the camera is the one of rays on the record in Crytek's Sponza.
 Scene make_job_scene(const std::string& file, Messages& messages) {
     ReadOptions options;
     options.geometry_only = true;
@@ -59,13 +58,6 @@ Scene make_job_scene(const std::string& file, Messages& messages) {
     scene.lights.clear();
     scene.environment = Environment{};
     return scene;
-}
-
-Camera job_camera() {
-    Camera camera;
-    camera.world_from_camera = look_at({-110, 18, -2}, {60, 32, -4}, {0, 1, 0});
-    camera.fov_y = 60 * kPi / 180;
-    return camera;
 }
 
 RenderSettings job_settings(const BenchFlags& flags) {
@@ -98,8 +90,9 @@ int bench_job(const BenchFlags& flags) {
 
     RenderSettings warm_up = settings; // clocks, caches, the driver's first launch
     warm_up.samples = 1;
-    render_picture(*queue, prepared, job_camera(), warm_up);
-    const RenderResult result = render_picture(*queue, prepared, job_camera(), settings);
+    const Camera camera = record_camera(*find_record_scene("sponza"));
+    render_picture(*queue, prepared, camera, warm_up);
+    const RenderResult result = render_picture(*queue, prepared, camera, settings);
     const std::string hash = picture_hash(result.picture).hex();
     if (!flags.output.empty()) write_image(flags.output, result.picture);
     if (flags.report.json) {
@@ -110,13 +103,13 @@ int bench_job(const BenchFlags& flags) {
             static_cast<double>(result.rays.total()) / result.render_seconds,
             static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), result.invalid_samples, hash));
     } else {
-        reporter.answer(
-            fmt::format("job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
-                        "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\nmean {:.5f}, picture {}\n",
-                        flags.job, queue->device_name(), settings.width, settings.height, settings.samples,
-                        prepared.triangles, load_s, prepared.build_seconds, result.render_seconds,
-                        samples / result.render_seconds * 1e-6, rate(result.rays.total(), result.render_seconds),
-                        static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), hash));
+        reporter.answer(fmt::format(
+            "job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
+            "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\nmean {:.5f}, picture {}\n",
+            flags.job, queue->device_name(), settings.width, settings.height, settings.samples, prepared.triangles,
+            load_s, prepared.build_seconds, result.render_seconds, samples / result.render_seconds * 1e-6,
+            millions_a_second(result.rays.total(), result.render_seconds),
+            static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), hash));
     }
     return 0;
 }
@@ -189,15 +182,16 @@ SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& fl
     const RenderResult whole = render_picture(queue, prepared, camera, settings);
     figures.first_pixel_s = whole.upload_seconds + whole.first_pixel_seconds;
     figures.render_s = whole.render_seconds;
-    figures.msamples = rate(uint64_t(settings.width) * settings.height * whole.samples, whole.render_seconds);
+    figures.msamples =
+        millions_a_second(uint64_t(settings.width) * settings.height * whole.samples, whole.render_seconds);
 
     StageSeconds stages; // once more, each stage on its own
     settings.stage_seconds = &stages;
     settings.body = PathBody::Wavefront;
     const RenderResult staged = render_picture(queue, prepared, camera, settings);
-    figures.camera_mrays = rate(staged.rays.camera, stages.camera_hits);
-    figures.bounce_mrays = rate(staged.rays.bounce, stages.bounce_hits);
-    figures.shadow_mrays = rate(staged.rays.shadow, stages.shadows);
+    figures.camera_mrays = millions_a_second(staged.rays.camera, stages.camera_hits);
+    figures.bounce_mrays = millions_a_second(staged.rays.bounce, stages.bounce_hits);
+    figures.shadow_mrays = millions_a_second(staged.rays.shadow, stages.shadows);
     return figures;
 }
 
@@ -218,11 +212,10 @@ void print(const SceneFigures& f, Reporter& reporter) {
 
 /// Sponza and Sibenik of the test scenes, where PERTEV_SCENES says they are.
 std::vector<std::string> default_scenes() {
-    const char* root = std::getenv("PERTEV_SCENES");
+    const std::filesystem::path root = public_scenes_folder();
     std::vector<std::string> scenes;
     for (const char* name : {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"}) {
-        const std::filesystem::path path = std::filesystem::path(root != nullptr ? root : "") / name;
-        if (root != nullptr && std::filesystem::exists(path)) scenes.push_back(path.string());
+        if (!root.empty() && std::filesystem::exists(root / name)) scenes.push_back((root / name).string());
     }
     if (scenes.empty()) {
         throw Error(ErrorCode::BadInput,
@@ -288,6 +281,7 @@ void add_bench_command(CLI::App& app, int& status) {
     job.add_option("-o,--output", job_flags->output, "keep the picture")->type_name("FILE");
     add_shared_flags(job, *job_flags);
     job.callback([job_flags, &status] { status = bench_job(*job_flags); });
+    add_bench_rays_command(verb, status);
     verb.callback([&verb, flags, &status] {
         if (verb.get_subcommands().empty()) status = bench_scenes(*flags);
     });

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a kind of device must offer: the few calls that move memory and wait. Two exist, the CPU (queue.cpp) and CUDA
-// (cuda/cuda_backend.cpp); a queue calls through this table.
+// What a kind of device must offer: the few calls that move memory, wait and tell the time. Two exist, the CPU
+// (queue.cpp) and CUDA (cuda/cuda_backend.cpp); a queue calls through this table.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +9,16 @@
 #include <string>
 
 namespace pertev {
+
+/// A moment in a queue's work.
+class TimeMark {
+public:
+    virtual ~TimeMark() = default;
+    /// The moment when all work given so far is done.
+    virtual void record() = 0;
+    /// Waits for both moments, which belong to one queue and have been recorded. Throws Error(DeviceFault).
+    virtual double seconds_since(const TimeMark& earlier) const = 0;
+};
 
 class DeviceBackend {
 public:
@@ -29,6 +39,7 @@ public:
     virtual void wait(const char* stage) = 0;
     /// Throws Error(DeviceFault) when the launch just made was refused.
     virtual void check_launch(const char* stage) = 0;
+    virtual std::unique_ptr<TimeMark> make_time_mark() = 0;
 };
 
 /// Why no CUDA device can be used, or empty when device `index` can: no support compiled in, no driver, no such

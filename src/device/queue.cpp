@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 
@@ -14,6 +15,18 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kAlignment = 128; // a cache line pair; more than any vector load needs
+
+/// The CPU's work is done when its call returns, so the clock on the wall tells.
+class CpuTimeMark final : public TimeMark {
+public:
+    void record() override { time_ = std::chrono::steady_clock::now(); }
+    double seconds_since(const TimeMark& earlier) const override {
+        return std::chrono::duration<double>(time_ - static_cast<const CpuTimeMark&>(earlier).time_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point time_;
+};
 
 class CpuBackend final : public DeviceBackend {
 public:
@@ -35,6 +48,7 @@ public:
     void zero(void* device, std::size_t bytes) override { std::memset(device, 0, bytes); }
     void wait(const char*) override {}
     void check_launch(const char*) override {}
+    std::unique_ptr<TimeMark> make_time_mark() override { return std::make_unique<CpuTimeMark>(); }
 };
 
 double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }

@@ -27,6 +27,9 @@ public:
     void wait() { backend_->wait(stage_); }
     void check_launch() { backend_->check_launch(stage_); }
 
+    /// For device/device_timer.h.
+    std::unique_ptr<TimeMark> make_time_mark() { return backend_->make_time_mark(); }
+
     /// Device memory, never null for bytes > 0. Throws Error(OutOfMemory) that lists the largest buffers.
     void* allocate(std::size_t bytes, const std::string& name);
     void free(void* memory) noexcept;

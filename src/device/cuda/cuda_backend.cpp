@@ -16,6 +16,27 @@ void check(cudaError_t error, const char* stage) {
                 fmt::format("CUDA failed in {}: {} ({})", stage, cudaGetErrorString(error), cudaGetErrorName(error)));
 }
 
+class CudaTimeMark final : public TimeMark {
+public:
+    explicit CudaTimeMark(cudaStream_t stream) : stream_(stream) { check(cudaEventCreate(&event_), "cudaEventCreate"); }
+    ~CudaTimeMark() override { cudaEventDestroy(event_); }
+    CudaTimeMark(const CudaTimeMark&) = delete;
+    CudaTimeMark& operator=(const CudaTimeMark&) = delete;
+
+    void record() override { check(cudaEventRecord(event_, stream_), "cudaEventRecord"); }
+    double seconds_since(const TimeMark& earlier) const override {
+        check(cudaEventSynchronize(event_), "the work before a time mark"); // where a fault of that work shows
+        float milliseconds = 0;
+        check(cudaEventElapsedTime(&milliseconds, static_cast<const CudaTimeMark&>(earlier).event_, event_),
+              "cudaEventElapsedTime");
+        return static_cast<double>(milliseconds) * 1e-3;
+    }
+
+private:
+    cudaStream_t stream_;
+    cudaEvent_t event_ = nullptr;
+};
+
 class CudaBackend final : public DeviceBackend {
 public:
     explicit CudaBackend(int index) {
@@ -59,6 +80,7 @@ public:
     void zero(void* device, std::size_t bytes) override { check(cudaMemsetAsync(device, 0, bytes, stream_), "zero"); }
     void wait(const char* stage) override { check(cudaStreamSynchronize(stream_), stage); }
     void check_launch(const char* stage) override { check(cudaGetLastError(), stage); }
+    std::unique_ptr<TimeMark> make_time_mark() override { return std::make_unique<CudaTimeMark>(stream_); }
 
 private:
     std::string name_;

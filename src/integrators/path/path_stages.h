@@ -6,6 +6,7 @@
 #include "integrators/path/generate_path.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/shade_hit.h"
+#include "render/tiled_pixel.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 
@@ -21,20 +22,6 @@ HD inline Hit find_hit(const SceneView& scene, const PathState& path, uint32_t s
 HD inline bool is_occluded(const SceneView& scene, Vec3 origin, Vec3 direction, float t_max, TriangleId start,
                            TriangleId target, uint32_t key) {
     return trace_any(scene.bvh, Ray{origin, 0.0f, direction, t_max}, AcceptHit{scene, start, target, key});
-}
-
-/// Pixels of a picture in 8 x 4 tiles, row by row: a warp's 32 camera rays stay together. Columns and rows that do not
-/// fill a tile come last.
-HD inline uint32_t tiled_pixel(uint32_t i, uint32_t width, uint32_t height) {
-    const uint32_t tiles_x = width / 8, tiles_y = height / 4, tiled = tiles_x * tiles_y * 32;
-    if (i < tiled) {
-        const uint32_t tile = i / 32, within = i % 32;
-        return (tile / tiles_x * 4 + within / 8) * width + tile % tiles_x * 8 + within % 8;
-    }
-    i -= tiled;
-    const uint32_t right = width - tiles_x * 8, in_right = right * tiles_y * 4;
-    if (i < in_right) return i / right * width + tiles_x * 8 + i % right;
-    return tiles_y * 4 * width + (i - in_right);
 }
 
 struct GeneratePaths {

@@ -1,0 +1,29 @@
+#pragma once
+
+// What the benchmarks under `pertev bench` share.
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+
+namespace CLI {
+class App;
+}
+
+namespace pertev {
+
+/// 0 where no time was taken.
+inline double millions_a_second(uint64_t count, double seconds) {
+    return seconds > 0 ? static_cast<double>(count) / seconds * 1e-6 : 0.0;
+}
+
+/// The folder of public scenes that PERTEV_SCENES names (docs/scenes.md); empty where it is not set.
+inline std::filesystem::path public_scenes_folder() {
+    const char* const folder = std::getenv("PERTEV_SCENES");
+    return folder != nullptr ? folder : "";
+}
+
+/// `bench rays`, a verb of `bench`.
+void add_bench_rays_command(CLI::App& bench, int& status);
+
+} // namespace pertev

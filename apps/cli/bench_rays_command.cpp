@@ -1,0 +1,195 @@
+// pertev bench rays: how many rays a second the walk of pictures traces, on sets of rays that other tracers can be
+// timed on (docs/lab.md). What the record says of the same sets stands beside.
+
+#include <algorithm>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/bench_parts.h"
+#include "apps/cli/choose_device.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/reporter.h"
+#include "apps/cli/scene_options.h"
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "formats/builtin_scenes.h"
+#include "formats/read_scene.h"
+#include "lab/binary_stack_walk.h"
+#include "lab/measure_rays.h"
+#include "lab/ray_sets.h"
+#include "lab/record_scenes.h"
+#include "render/scene_on_device.h"
+
+namespace pertev {
+namespace {
+
+struct RaysFlags {
+    std::vector<std::string> scenes;
+    SceneOptions camera; // --eye, --target and --fov of it
+    uint32_t count = kRecordRays, runs = 0;
+    bool check = false;
+    MachineFlags machine;
+    ReportFlags report;
+};
+
+struct SetFigures {
+    std::string scene, set, device;
+    uint64_t rays = 0;
+    RunTimes times;
+    WorkSummary work;
+    double hit_share = 0;
+    const RecordedSet* record = nullptr; // of another tracer, where there is one
+};
+
+/// A scene of the record by its name, else a built-in scene or a file.
+Scene read_geometry(const std::string& name, Messages& messages) {
+    if (const RecordScene* record = find_record_scene(name)) {
+        return make_record_scene(*record, public_scenes_folder(), messages);
+    }
+    if (builtin_scene(name)) return read_builtin_scene(name, messages);
+    if (!std::filesystem::exists(name)) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--scene {}: neither a file nor sponza, bunny, forest or a built-in scene", name));
+    }
+    ReadOptions options;
+    options.geometry_only = true;
+    return read_scene(name, options, messages);
+}
+
+std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit.t, hit.instance, hit.primitive); }
+
+/// Throws Error(DeviceFault) that names the first ray where the walk of pictures on this device and the binary one on
+/// the host differ.
+void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const PreparedScene& prepared) {
+    Queue cpu = Queue::make_cpu();
+    const SceneOnDevice on_host(cpu, prepared);
+    RaysOnDevice rays(cpu, set);
+    rays.trace<BinaryStackWalk>(on_host.view().bvh);
+    const std::vector<RayHit> wanted = rays.hits();
+    const auto [found, want] = std::ranges::mismatch(hits, wanted);
+    if (found == hits.end()) return;
+    throw Error(ErrorCode::DeviceFault,
+                fmt::format("{}: ray {} of {} hits {}, by the binary walk on the CPU {}", set.name,
+                            found - hits.begin(), hits.size(), describe(*found), describe(*want)));
+}
+
+SetFigures measure(Queue& queue, const SceneBvhView& trees, const RaySet& set, const RaysFlags& flags,
+                   const PreparedScene& prepared) {
+    SetFigures figures{.set = set.name, .device = queue.device_name(), .rays = set.rays.size()};
+    RaysOnDevice rays(queue, set);
+    rays.trace<StackWalk>(trees);
+    const std::vector<RayHit> hits = rays.hits();
+    if (flags.check) check_hits(hits, set, prepared);
+    figures.hit_share = hit_share(hits);
+    figures.work = summarize_work(rays.count_work<BinaryStackWalk>(trees));
+    const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 5);
+    figures.times = rays.time<StackWalk>(trees, queue.is_cuda() ? 3 : 1, runs);
+    return figures;
+}
+
+std::string beside(double value, const char* format, bool is_there) {
+    return is_there ? fmt::format(fmt::runtime(format), value) : std::string("-");
+}
+
+void print(const SetFigures& f, Reporter& reporter) {
+    const RecordedSet none{};
+    const RecordedSet& r = f.record != nullptr ? *f.record : none;
+    const bool has = f.record != nullptr;
+    const double rate = millions_a_second(f.rays, f.times.median);
+    if (reporter.json()) {
+        const std::string record =
+            has ? fmt::format(R"({{"hit_share":{},"nodes":{},"triangles":{},"best_rays_per_second":{:.0f}}})",
+                              r.hit_share, r.nodes, r.triangles, r.best_rays_per_second)
+                : "null";
+        reporter.event(fmt::format(
+            R"({{"event":"rays","scene":{},"set":"{}","device":{},"rays":{},"rays_per_second":{:.0f},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"record":{}}})",
+            json_string(f.scene), f.set, json_string(f.device), f.rays, rate * 1e6, json_number(f.times.median),
+            json_number(f.times.least), json_number(f.times.greatest), f.times.runs, f.hit_share, f.work.nodes,
+            f.work.triangles, f.work.most_nodes, f.work.most_triangles, record));
+        return;
+    }
+    reporter.answer(fmt::format("{:8} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} "
+                                "{:>6}\n",
+                                f.scene, f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest),
+                                millions_a_second(f.rays, f.times.least), f.hit_share, f.work.nodes, f.work.triangles,
+                                f.work.most_nodes, beside(r.best_rays_per_second * 1e-6, "{:.0f}", has),
+                                beside(r.hit_share, "{:.3f}", has), beside(r.nodes, "{:.1f}", has),
+                                beside(r.triangles, "{:.1f}", has)));
+}
+
+void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, Reporter& reporter) {
+    Messages& messages = reporter.messages();
+    Stopwatch watch;
+    const Scene scene = read_geometry(name, messages);
+    const double load_s = watch.seconds();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const SceneOnDevice on_device(queue, prepared);
+    const SceneBvhView& trees = on_device.view().bvh;
+    const FrameSize frame = record_frame(flags.count);
+    const Camera camera = choose_camera(flags.camera, scene, 16.0f / 9.0f, messages);
+    reporter.say_messages();
+    watch.restart();
+    std::vector<RaySet> sets =
+        make_record_ray_sets({scene, camera, frame.width, frame.height, make_ray_tracer(queue, trees)}, flags.count);
+    reporter.say(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",
+                             name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
+                             frame.height));
+    const RecordScene* const record = find_record_scene(name);
+    const bool is_moved = !flags.camera.eye.empty() || !flags.camera.target.empty() || flags.camera.fov_deg > 0;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+        SetFigures figures = measure(queue, trees, sets[i], flags, prepared);
+        figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
+        if (record != nullptr && !is_moved) figures.record = &record->sets[i];
+        print(figures, reporter);
+        sets[i].rays = {}; // a quarter of a gigabyte on the record
+    }
+}
+
+int bench_rays(const RaysFlags& flags) {
+    Reporter reporter(flags.report);
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
+    std::vector<std::string> scenes = flags.scenes;
+    if (scenes.empty()) {
+        for (const RecordScene& scene : record_scenes()) scenes.push_back(scene.name);
+    }
+    reporter.answer(
+        fmt::format("{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in "
+                    "the binary tree,\nnodes of the dearest ray; at the right the record, on an H200\n{:8} "
+                    "{:8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6} {:>6} {:>6}\n",
+                    queue->device_name(), "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
+                    "tri", "most", "best", "hits", "nodes", "tri"));
+    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, reporter);
+    return 0;
+}
+
+} // namespace
+
+void add_bench_rays_command(CLI::App& bench, int& status) {
+    CLI::App& verb = *bench.add_subcommand("rays", "Sets of rays that other tracers can be timed on");
+    const auto flags = std::make_shared<RaysFlags>();
+    verb.add_option("--scene", flags->scenes,
+                    "sponza, bunny, forest or a scene file; may be given\nagain (the first three, the files under "
+                    "PERTEV_SCENES)")
+        ->type_name("NAME|FILE")
+        ->allow_extra_args(false);
+    verb.add_option("--eye", flags->camera.eye, "where the camera is, metres (the scene's own)")->type_name("X,Y,Z");
+    verb.add_option("--target", flags->camera.target, "what it looks at")->type_name("X,Y,Z");
+    verb.add_option("--fov", flags->camera.fov_deg, "full vertical angle of view, degrees")
+        ->type_name("DEG")
+        ->check(number_between(0.01f, 179.0f));
+    verb.add_option("--count", flags->count, "rays of a set; that of the record is four frames of 1920x1080")
+        ->type_name("N")
+        ->check(whole_between(1, 1u << 30))
+        ->capture_default_str();
+    verb.add_option("--runs", flags->runs, "timed, of each set (5 on the CPU, 25 in CUDA)")
+        ->type_name("N")
+        ->check(whole_between(1, 10000));
+    verb.add_flag("--check", flags->check, "compare every hit with the binary walk's on the CPU, bit for bit");
+    add_machine_flags(verb, flags->machine);
+    add_report_flags(verb, flags->report);
+    verb.callback([flags, &status] { status = bench_rays(*flags); });
+}
+
+} // namespace pertev

@@ -1,0 +1,47 @@
+#pragma once
+
+// The three scenes that rays on the record are traced in, with their cameras, and what was measured on them elsewhere.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "base/messages.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// What other tracers' record says of one set of rays, 8,294,400 of them: the share that hit, nodes and triangles a ray
+/// in a binary tree, and the most rays a second that a public tracer reached on an H200. A tracer that makes the same
+/// rays in the same scene has the same hit share.
+struct RecordedSet {
+    const char* name;
+    double hit_share;
+    double nodes, triangles;
+    double best_rays_per_second;
+};
+
+struct RecordScene {
+    const char* name;
+    const char* file; // under the folder of public scenes; null: generated
+    uint32_t triangles;
+    Vec3 eye, target;
+    float fov_y_deg;
+    RecordedSet sets[5]; // in the order in which they are made
+};
+
+inline constexpr uint32_t kRecordRays = 8294400; // four frames of 1920 x 1080
+
+/// sponza, bunny, forest.
+std::span<const RecordScene> record_scenes();
+/// Null where none has this name.
+const RecordScene* find_record_scene(std::string_view name);
+
+Camera record_camera(const RecordScene& scene);
+
+/// Geometry in one mesh, grey, with the camera. `folder` holds the public scenes as docs/scenes.md lists them; the
+/// forest needs none. Throws Error(BadInput) where the file is wanted and not there.
+Scene make_record_scene(const RecordScene& scene, const std::filesystem::path& folder, Messages& messages);
+
+} // namespace pertev
