@@ -13,6 +13,7 @@
 #include <set>
 
 #include "base/parallel_for.h"
+#include "lab/binary_stack_walk.h"
 #include "lab/make_bunny_box.h"
 #include "lab/measure_rays.h"
 #include "lab/record_scenes.h"
@@ -27,16 +28,17 @@ using namespace pertev::test;
 
 namespace {
 
-/// A scene with all that tracing takes, on the CPU.
+/// A scene with all that tracing takes.
 struct Traced {
     Scene scene;
     Messages messages;
     PreparedScene prepared;
-    Queue queue = Queue::make_cpu();
+    Queue queue;
     SceneOnDevice on_device;
 
-    explicit Traced(Scene given)
-        : scene(std::move(given)), prepared(prepare_scene(scene, {}, messages)), on_device(queue, prepared) {}
+    explicit Traced(Scene given, Queue of_device = Queue::make_cpu())
+        : scene(std::move(given)), prepared(prepare_scene(scene, {}, messages)), queue(std::move(of_device)),
+          on_device(queue, prepared) {}
 
     RaySetJob job(uint32_t width, uint32_t height) {
         return {scene, scene.cameras.front(), width, height, make_ray_tracer(queue, on_device.view().bvh)};
@@ -230,7 +232,7 @@ TEST_CASE("second parents continue a set with other numbers") {
 
 TEST_CASE("ray sets are the same for any number of threads") {
     Traced traced(make_room());
-    const uint32_t count = 100000;
+    const uint32_t count = 40000; // more than two of the chunks that are counted at once
     std::vector<RaySet> alone;
     {
         const ThreadCount one(1);
@@ -239,6 +241,27 @@ TEST_CASE("ray sets are the same for any number of threads") {
     for (const int threads : {2, 5}) {
         const ThreadCount several(threads);
         CHECK(same_bits(alone, make_record_ray_sets(traced.job(144, 256), count)));
+    }
+}
+
+TEST_CASE("ray sets, hits and work are the same on the GPU") {
+    // On the CPU twice where no GPU was asked for.
+    Traced here(make_room()), there(make_room(), cuda_requested() ? make_cuda_queue() : Queue::make_cpu());
+    const uint32_t count = cuda_requested() ? 1000000 : 20000;
+    const auto sets = make_record_ray_sets(here.job(256, 144), count);
+    CHECK(same_bits(sets, make_record_ray_sets(there.job(256, 144), count)));
+    for (const RaySet& set : sets) {
+        CAPTURE(set.name);
+        RaysOnDevice on_here(here.queue, set), on_there(there.queue, set);
+        on_here.trace<StackWalk>(here.on_device.view().bvh);
+        on_there.trace<StackWalk>(there.on_device.view().bvh);
+        CHECK(on_here.hits() == on_there.hits());
+        const auto work_here = on_here.count_work<BinaryStackWalk>(here.on_device.view().bvh);
+        const auto work_there = on_there.count_work<BinaryStackWalk>(there.on_device.view().bvh);
+        const WorkSummary a = summarize_work(work_here), b = summarize_work(work_there);
+        CHECK(a.most_nodes == b.most_nodes);
+        CHECK(a.nodes == doctest::Approx(b.nodes));
+        CHECK(on_there.time<StackWalk>(there.on_device.view().bvh, 1, 3).median > 0);
     }
 }
 
@@ -313,7 +336,7 @@ TEST_CASE("as many rays hit Sponza as on the record") {
     const RecordScene& record = *find_record_scene("sponza");
     Traced traced(make_record_scene(record, path->parent_path().parent_path(), messages));
     CHECK(traced.prepared.triangles == record.triangles - 1); // the reader leaves one without area out
-    const uint32_t count = static_cast<uint32_t>(effort(60000, kRecordRays));
+    const uint32_t count = static_cast<uint32_t>(effort(40000, kRecordRays));
     const FrameSize frame = record_frame(count);
     const auto sets = make_record_ray_sets(traced.job(frame.width, frame.height), count);
     for (std::size_t k = 0; k < sets.size(); ++k) {
