@@ -153,7 +153,7 @@ int bench_rays(const RaysFlags& flags) {
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     std::vector<std::string> scenes = flags.scenes;
     if (scenes.empty()) {
-        for (const RecordScene& scene : record_scenes()) scenes.push_back(scene.name);
+        for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
     }
     reporter.answer(
         fmt::format("{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in "
