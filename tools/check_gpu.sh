@@ -40,6 +40,7 @@ for part in "${parts[@]}"; do
             run "$bin/pertev" bench render --job $job --scene "$scenes/crytek-sponza/sponza.obj" --spp 256
         done
         run "$bin/pertev" bench
+        run "$bin/pertev" bench rays --check
         ;;
     *) echo "no such part: $part" && status=1 ;;
     esac

@@ -1,5 +1,5 @@
 // pertev bench rays: how many rays a second the walk of pictures traces, on sets of rays that other tracers can be
-// timed on (docs/lab.md). What the record says of the same sets stands beside.
+// timed on (docs/ray_sets.md). What the record says of the same sets stands beside.
 
 #include <algorithm>
 #include <memory>
@@ -49,7 +49,8 @@ Scene read_geometry(const std::string& name, Messages& messages) {
         return make_record_scene(*record, public_scenes_folder(), messages);
     }
     if (builtin_scene(name)) return read_builtin_scene(name, messages);
-    if (!std::filesystem::exists(name)) {
+    std::error_code no_such_name; // of a name too long for a file, too
+    if (!std::filesystem::exists(name, no_such_name)) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--scene {}: neither a file nor sponza, bunny, forest or a built-in scene", name));
     }
@@ -110,13 +111,13 @@ void print(const SetFigures& f, Reporter& reporter) {
             f.work.triangles, f.work.most_nodes, f.work.most_triangles, record));
         return;
     }
-    reporter.answer(fmt::format("{:8} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} "
-                                "{:>6}\n",
-                                f.scene, f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest),
-                                millions_a_second(f.rays, f.times.least), f.hit_share, f.work.nodes, f.work.triangles,
-                                f.work.most_nodes, beside(r.best_rays_per_second * 1e-6, "{:.0f}", has),
-                                beside(r.hit_share, "{:.3f}", has), beside(r.nodes, "{:.1f}", has),
-                                beside(r.triangles, "{:.1f}", has)));
+    reporter.answer(fmt::format(
+        "{:11} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} "
+        "{:>6}\n",
+        f.scene, f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest),
+        millions_a_second(f.rays, f.times.least), f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes,
+        beside(r.best_rays_per_second * 1e-6, "{:.0f}", has), beside(r.hit_share, "{:.3f}", has),
+        beside(r.nodes, "{:.1f}", has), beside(r.triangles, "{:.1f}", has)));
 }
 
 void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, Reporter& reporter) {
@@ -152,11 +153,11 @@ int bench_rays(const RaysFlags& flags) {
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     std::vector<std::string> scenes = flags.scenes;
     if (scenes.empty()) {
-        for (const RecordScene& scene : record_scenes()) scenes.push_back(scene.name);
+        for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
     }
     reporter.answer(
         fmt::format("{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in "
-                    "the binary tree,\nnodes of the dearest ray; at the right the record, on an H200\n{:8} "
+                    "the binary tree,\nnodes of the dearest ray; at the right the record, on an H200\n{:11} "
                     "{:8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6} {:>6} {:>6}\n",
                     queue->device_name(), "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
                     "tri", "most", "best", "hits", "nodes", "tri"));

@@ -1,9 +1,9 @@
 #pragma once
 
 // Sets of rays that tracers are compared on: camera rays, shadow rays and up to eight diffuse bounces, in the order in
-// which a wavefront would trace them. docs/lab.md defines the record's sets so that any tracer can make them; each ray
-// is a function of the scene, the camera and its number, the same bits on every machine and device and for any number
-// of threads.
+// which a wavefront would trace them. docs/ray_sets.md defines the record's sets so that any tracer can make them; each
+// ray is a function of the scene, the camera and its number, the same bits on every machine and device and for any
+// number of threads.
 
 #include <array>
 #include <cstdint>

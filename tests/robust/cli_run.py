@@ -95,6 +95,11 @@ class CliTest(unittest.TestCase):
         return self.succeed("info", name, "--json").events("info")[0]
 
 
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
 def read_exr(path):
     """{channel: [[value of each column] of each row]} and size of a picture as pertev writes it: lines, ZIP."""
     with open(path, "rb") as file:

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""`pertev bench rays`: what it refuses and how it says so, and that what it measures is what was asked for."""
+
+from cli_run import CliTest, main, write
+
+# A floor of 2 by 2 m at y = 0 around the origin.
+FLOOR = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n"
+
+
+class RaysOnTheRecord(CliTest):
+    def rays(self, *arguments):
+        return self.succeed("bench", "rays", "--device", "cpu", "--runs", "2", "--json", *arguments).events("rays")
+
+    def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
+        for flag in ["--count 0", "--count -1", "--count 1.5", "--count 4294967297", "--count x", "--runs 0", "--fov 0",
+                     "--fov nan", "--eye 1,2", "--target x", "--device gpu", "--threads 0", "--size 10x10", "--foo"]:
+            with self.subTest(flag=flag):
+                self.refuse(2, "bench", "rays", "--scene", "cornell-box", *flag.split(), says=[flag.split()[0]])
+
+    def test_a_scene_that_is_not_there_ends_with_2_and_is_named(self):
+        for name in ["spnza", "nowhere.obj", "", "a" * 300 + ".obj"]:
+            self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", name, says=["--scene " + name])
+        write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", "flat.obj", says=["flat.obj", "no geometry"])
+
+    def test_a_scene_of_the_record_without_its_file_ends_with_2_and_says_where_that_belongs(self):
+        for folder in [None, "nowhere"]:
+            environment = {key: value for key, value in self.environment.items() if key != "PERTEV_SCENES"}
+            if folder:
+                environment["PERTEV_SCENES"] = self.path(folder)
+            for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "stanford/bunny.obj")]:
+                self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", name, env=environment,
+                            says=["PERTEV_SCENES", file])
+
+    def test_five_sets_are_timed_and_checked(self):
+        sets = self.rays("--scene", "cornell-box", "--count", "3000", "--check")
+        self.assertEqual([of["set"] for of in sets], ["primary", "shadow", "diffuse1", "diffuse2", "diffuse3"])
+        for of in sets:
+            self.assertEqual(of["rays"], 3000)
+            self.assertEqual((of["scene"], of["runs"], of["record"]), ("cornell-box", 2, None))
+            self.assertGreater(of["rays_per_second"], 0)
+            self.assertLessEqual(of["least_seconds"], of["median_seconds"])
+            self.assertLessEqual(of["median_seconds"], of["greatest_seconds"])
+            self.assertGreater(of["hit_share"], 0.2)
+            self.assertLessEqual(of["hit_share"], 1)
+            self.assertGreaterEqual(of["most_nodes"], of["nodes"])
+        again = self.rays("--scene", "cornell-box", "--count", "3000", "--threads", "1")
+        for key in ["hit_share", "nodes", "triangles", "most_nodes"]:
+            self.assertEqual([of[key] for of in sets], [of[key] for of in again])
+
+    def test_the_camera_given_is_the_one_used(self):
+        write(self.path("floor.obj"), FLOOR)
+        down = self.rays("--scene", "floor.obj", "--count", "1000", "--eye", "0,1,0.01", "--target", "0,0,0", "--fov", "20")
+        self.assertEqual([of["hit_share"] for of in down][0], 1)
+        self.assertEqual([(of["rays"], of["hit_share"]) for of in down[1:3]], [(1000, 0)] * 2)
+        up = self.rays("--scene", "floor.obj", "--count", "1000", "--eye", "0,1,0.01", "--target", "0,9,0")
+        self.assertEqual([(of["rays"], of["hit_share"]) for of in up], [(1000, 0)] + [(0, 0)] * 4)
+
+    def test_people_get_a_table(self):
+        text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "cornell-box", "--count",
+                            "1000").stdout
+        self.assertRegex(text, r"Mrays/s")
+        self.assertRegex(text, r"(?m)^cornell-box +diffuse3 +1000 +[\d.]+ +[\d.]+ +[\d.]+ +0\.\d+ ")
+
+
+if __name__ == "__main__":
+    main()
