@@ -1,0 +1,36 @@
+#pragma once
+
+// Every builder of the binary hierarchy, by name: what `pertev lab` chooses from. Pictures are made with Binned.
+// All give trees that are functions of the triangles alone, whatever the number of threads, at most kMaxBvhDepth deep.
+// Vertices are finite, |coordinate| <= kMaxCoordinate. Of the settings, max_leaf and the two costs count for all;
+// `bins` for Binned and SpatialSplits, max_depth for Binned alone. Throw Error(OverLimit) for too many triangles.
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "accel/bvh/build_tree.h"
+#include "accel/bvh/bvh.h"
+
+namespace pertev {
+
+enum class BvhBuilder {
+    Binned,      // top down, surface area heuristic at the edges of bins: build_bvh.h
+    Sweep,       // top down, surface area heuristic at every place
+    Median,      // top down, middle of the longest side
+    EqualCounts, // top down, half of the triangles to each side
+};
+inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned, BvhBuilder::Sweep, BvhBuilder::Median,
+                                              BvhBuilder::EqualCounts};
+
+/// As on the command line: "binned", "equal-counts".
+const char* bvh_builder_name(BvhBuilder builder);
+std::optional<BvhBuilder> find_bvh_builder(std::string_view name);
+
+Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+
+Bvh build_sweep_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+Bvh build_median_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+Bvh build_equal_counts_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+
+} // namespace pertev
