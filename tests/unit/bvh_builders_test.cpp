@@ -36,8 +36,11 @@ int largest_leaf(const Bvh& bvh) {
 
 std::string name_of(BvhBuilder builder) { return bvh_builder_name(builder); }
 
-std::optional<std::string> fault_of(BvhBuilder, const Bvh& bvh, const std::vector<BvhTriangle>&) {
-    return find_fault(bvh);
+std::optional<std::string> fault_of(BvhBuilder builder, const Bvh& bvh, const std::vector<BvhTriangle>& mesh) {
+    if (cuts_triangles(builder)) return find_split_fault(bvh, mesh);
+    if (bvh.triangles.size() != mesh.size()) return "not as many triangles as the mesh";
+    const auto fault = find_fault(bvh);
+    return fault ? fault : find_split_fault(bvh, mesh); // that each is one of the mesh's
 }
 
 } // namespace
@@ -113,8 +116,8 @@ TEST_CASE("no builder's tree is deeper than walks go, however long the line") {
         for (const std::vector<BvhTriangle>* triangles : {&line, &doubling}) {
             const Stopwatch time;
             const Bvh bvh = build_bvh(builder, *triangles, {.max_leaf = 1});
-            MESSAGE(name_of(builder), ": ", triangles->size(), " triangles, depth ", bvh.depth, ", ",
-                    time.seconds(), " s");
+            MESSAGE(name_of(builder), ": ", triangles->size(), " triangles, depth ", bvh.depth, ", ", time.seconds(),
+                    " s");
             const auto fault = fault_of(builder, bvh, *triangles); // also holds the depth to kMaxBvhDepth
             CHECK_MESSAGE(!fault, fault.value_or(""));
         }

@@ -40,7 +40,7 @@ public:
         const auto at = [&](std::size_t i) { return leaves_.begin() + static_cast<std::ptrdiff_t>(i); };
         std::nth_element(at(begin), at(middle), at(end), [&](uint32_t a, uint32_t b) {
             const float ca = component(centre(a), axis), cb = component(centre(b), axis);
-            return ca != cb ? ca < cb : tree_.nodes[a].child[0] < tree_.nodes[b].child[0];
+            return ca != cb ? ca < cb : first_triangle(a) < first_triangle(b);
         });
         const uint32_t left = link(begin, middle), right = link(middle, end);
         tree_.nodes[index] = make_inner(tree_, left, right);
@@ -48,6 +48,8 @@ public:
     }
 
 private:
+    uint32_t first_triangle(uint32_t leaf) const { return tree_.references[tree_.nodes[leaf].child[0]]; }
+
     BinaryTree& tree_;
     std::vector<uint32_t>& leaves_;
     const std::vector<uint32_t>& free_;

@@ -10,6 +10,7 @@
 #include "accel/bvh/build_top_down.h"
 #include "accel/bvh/builders.h"
 #include "accel/bvh/halve_references.h"
+#include "accel/bvh/sweep_cut.h"
 
 namespace pertev {
 namespace {
@@ -38,14 +39,17 @@ public:
     }
 
     uint32_t cut(uint32_t begin, uint32_t end) {
-        Cut cuts[3];
-        for_each_axis(end - begin, [&](int axis) { cuts[axis] = find_cheapest_cut(begin, end, axis); });
+        SweepCut cuts[3];
+        for_each_axis(end - begin, [&](int axis) {
+            const BuildReference* sorted = sorted_[axis].data() + begin;
+            const auto box_at = [sorted](uint32_t i) { return Bounds3{sorted[i].lo, sorted[i].hi}; };
+            cuts[axis] = find_sweep_cut(end - begin, box_at, right_area_[axis].data() + begin);
+        });
         int best = 0;
         for (int axis = 1; axis < 3; ++axis) best = cuts[axis].cost < cuts[best].cost ? axis : best;
-        // Where all boxes are one, costs differ by their rounding alone; a chain is what following them would give.
-        if (!(cuts[best].cost < cuts[best].uncut * (1 - 0x1p-20f))) return halve(begin, end);
-        split(begin, end, best, cuts[best].middle);
-        return cuts[best].middle;
+        if (!cuts[best].gains()) return halve(begin, end);
+        split(begin, end, best, begin + cuts[best].left);
+        return begin + cuts[best].left;
     }
 
     uint32_t halve(uint32_t begin, uint32_t end) {
@@ -58,32 +62,6 @@ public:
     const BuildReference& at(uint32_t position) const { return sorted_[0][position]; }
 
 private:
-    struct Cut {
-        float cost = kInfinity; // sum of half area times count over both sides
-        float uncut = 0;        // the same of all
-        uint32_t middle = 0;
-    };
-
-    Cut find_cheapest_cut(uint32_t begin, uint32_t end, int axis) {
-        const std::vector<BuildReference>& sorted = sorted_[axis];
-        std::vector<float>& right_area = right_area_[axis]; // of positions from here to the end
-        Bounds3 box;
-        for (uint32_t i = end; i-- > begin;) {
-            box.extend({sorted[i].lo, sorted[i].hi});
-            right_area[i] = box.half_area();
-        }
-        Cut best;
-        best.uncut = right_area[begin] * static_cast<float>(end - begin);
-        box = {};
-        for (uint32_t i = begin + 1; i < end; ++i) {
-            box.extend({sorted[i - 1].lo, sorted[i - 1].hi});
-            const float cost =
-                box.half_area() * static_cast<float>(i - begin) + right_area[i] * static_cast<float>(end - i);
-            if (cost < best.cost) best.cost = cost, best.middle = i;
-        }
-        return best;
-    }
-
     /// Brings what lies before `middle` along `axis` to the front in the two other orders, which both halves keep.
     void split(uint32_t begin, uint32_t end, int axis, uint32_t middle) {
         const BuildReference first_right = sorted_[axis][middle];
@@ -105,7 +83,7 @@ private:
     }
 
     std::vector<BuildReference> sorted_[3]; // [axis] along it, within each range not yet cut
-    std::vector<float> right_area_[3];
+    std::vector<float> right_area_[3];      // room for find_sweep_cut
 };
 
 } // namespace

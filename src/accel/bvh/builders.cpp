@@ -15,6 +15,10 @@ const char* bvh_builder_name(BvhBuilder builder) {
         return "median";
     case BvhBuilder::EqualCounts:
         return "equal-counts";
+    case BvhBuilder::SpatialSplits:
+        return "spatial-splits";
+    case BvhBuilder::Ploc:
+        return "ploc";
     }
     PERTEV_CHECK(false);
 }
@@ -26,6 +30,8 @@ std::optional<BvhBuilder> find_bvh_builder(std::string_view name) {
     return std::nullopt;
 }
 
+bool cuts_triangles(BvhBuilder builder) { return builder == BvhBuilder::SpatialSplits; }
+
 Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     switch (builder) {
     case BvhBuilder::Binned:
@@ -36,6 +42,10 @@ Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, con
         return build_median_bvh(triangles, settings);
     case BvhBuilder::EqualCounts:
         return build_equal_counts_bvh(triangles, settings);
+    case BvhBuilder::SpatialSplits:
+        return build_spatial_split_bvh(triangles, settings);
+    case BvhBuilder::Ploc:
+        return build_ploc_bvh(triangles, settings);
     }
     PERTEV_CHECK(false);
 }

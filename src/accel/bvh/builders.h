@@ -3,7 +3,7 @@
 // Every builder of the binary hierarchy, by name: what `pertev lab` chooses from. Pictures are made with Binned.
 // All give trees that are functions of the triangles alone, whatever the number of threads, at most kMaxBvhDepth deep.
 // Vertices are finite, |coordinate| <= kMaxCoordinate. Of the settings, max_leaf and the two costs count for all;
-// `bins` for Binned and SpatialSplits, max_depth for Binned alone. Throw Error(OverLimit) for too many triangles.
+// `bins` and max_depth for Binned alone. Throw Error(OverLimit) for too many triangles.
 
 #include <optional>
 #include <string_view>
@@ -15,22 +15,37 @@
 namespace pertev {
 
 enum class BvhBuilder {
-    Binned,      // top down, surface area heuristic at the edges of bins: build_bvh.h
-    Sweep,       // top down, surface area heuristic at every place
-    Median,      // top down, middle of the longest side
-    EqualCounts, // top down, half of the triangles to each side
+    Binned,        // top down, surface area heuristic at the edges of bins: build_bvh.h
+    Sweep,         // top down, surface area heuristic at every place
+    Median,        // top down, middle of the longest side
+    EqualCounts,   // top down, half of the triangles to each side
+    SpatialSplits, // top down, triangles may be cut too: a tree may hold one more than once
+    Ploc,          // bottom up, clusters along a Morton curve
 };
-inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned, BvhBuilder::Sweep, BvhBuilder::Median,
-                                              BvhBuilder::EqualCounts};
+inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned,      BvhBuilder::Sweep,         BvhBuilder::Median,
+                                              BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc};
 
 /// As on the command line: "binned", "equal-counts".
 const char* bvh_builder_name(BvhBuilder builder);
 std::optional<BvhBuilder> find_bvh_builder(std::string_view name);
+
+/// Whether the builder cuts triangles: a tree may then hold one more than once, in boxes that hold but a part of it.
+/// find_split_fault checks such a tree, find_fault all others.
+bool cuts_triangles(BvhBuilder builder);
 
 Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
 Bvh build_sweep_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 Bvh build_median_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 Bvh build_equal_counts_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+Bvh build_ploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+
+struct SpatialSplitSettings {
+    float min_overlap = 1e-5f; // triangles are cut where the halves of the best cut between triangles share more than
+                               // this part of the root's area
+    float max_growth = 1.0f;   // >= 0; at most (1 + this) references a triangle
+};
+Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {},
+                            const SpatialSplitSettings& splits = {});
 
 } // namespace pertev
