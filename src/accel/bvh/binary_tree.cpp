@@ -217,6 +217,10 @@ void limit_depth(BinaryTree& tree, int max_depth) {
     }
 }
 
+float cost_with_leaves(const BinaryTree& tree, const BvhBuildSettings& settings) {
+    return choose_leaves(tree, settings)[tree.root].cost;
+}
+
 Bvh make_bvh(BinaryTree tree, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     PERTEV_CHECK(settings.max_leaf >= 1);
     if (tree.root == kNoLink) return {};

@@ -56,6 +56,9 @@ void check_reference_count(uint64_t count);
 /// max_depth inner nodes. Leaves that are moved keep their boxes. max_depth >= levels_needed(number of leaves).
 void limit_depth(BinaryTree& tree, int max_depth);
 
+/// What make_bvh's tree would cost a ray, in units of the root's area; how much limiting the depth adds is left out.
+float cost_with_leaves(const BinaryTree& tree, const BvhBuildSettings& settings);
+
 /// The tree over `triangles`, which its references name. Subtrees of up to settings.max_leaf triangles become leaves
 /// where that costs no more; a triangle that a leaf would hold twice, it holds once. Of the settings, `bins` and
 /// `max_depth` do not count: the depth is at most kMaxBvhDepth.

@@ -19,6 +19,10 @@ const char* bvh_builder_name(BvhBuilder builder) {
         return "spatial-splits";
     case BvhBuilder::Ploc:
         return "ploc";
+    case BvhBuilder::Insertion:
+        return "insertion";
+    case BvhBuilder::Reinsertion:
+        return "reinsertion";
     }
     PERTEV_CHECK(false);
 }
@@ -46,6 +50,10 @@ Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, con
         return build_spatial_split_bvh(triangles, settings);
     case BvhBuilder::Ploc:
         return build_ploc_bvh(triangles, settings);
+    case BvhBuilder::Insertion:
+        return build_insertion_bvh(triangles, settings);
+    case BvhBuilder::Reinsertion:
+        return optimise_bvh(build_bvh(triangles, settings), settings);
     }
     PERTEV_CHECK(false);
 }

@@ -21,9 +21,12 @@ enum class BvhBuilder {
     EqualCounts,   // top down, half of the triangles to each side
     SpatialSplits, // top down, triangles may be cut too: a tree may hold one more than once
     Ploc,          // bottom up, clusters along a Morton curve
+    Insertion,     // one triangle after the other, each where it adds least
+    Reinsertion,   // Binned, then subtrees are moved to where they add least
 };
 inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned,      BvhBuilder::Sweep,         BvhBuilder::Median,
-                                              BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc};
+                                              BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
+                                              BvhBuilder::Insertion,   BvhBuilder::Reinsertion};
 
 /// As on the command line: "binned", "equal-counts".
 const char* bvh_builder_name(BvhBuilder builder);
@@ -40,6 +43,8 @@ Bvh build_median_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSe
 Bvh build_equal_counts_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 Bvh build_ploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
+Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+
 struct SpatialSplitSettings {
     float min_overlap = 1e-5f; // triangles are cut where the halves of the best cut between triangles share more than
                                // this part of the root's area
@@ -47,5 +52,14 @@ struct SpatialSplitSettings {
 };
 Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {},
                             const SpatialSplitSettings& splits = {});
+
+struct ReinsertionSettings {
+    int passes = 4;         // >= 0
+    float part = 1.0f;      // (0, 1] of the nodes, those with the largest boxes, are tried in a pass
+    float min_gain = 1e-3f; // a pass that lowers the sum of areas by less than this part of it is the last
+};
+/// Any sound tree, made better by moving subtrees; its cost does not rise, unless leaves held more than
+/// settings.max_leaf or its depth has to be limited. A triangle that it holds more than once stays in as many boxes.
+Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings = {}, const ReinsertionSettings& reinsertion = {});
 
 } // namespace pertev
