@@ -214,48 +214,81 @@ TEST_CASE("spatial splits separate what boxes cannot: a grating of long diagonal
     CHECK(!find_split_fault(cut, strips));
 }
 
-TEST_CASE("the parts of a triangle cut in two hold every point of it") {
+namespace {
+
+/// In double, where a point of a triangle is at most some 2^-52 of the coordinates off.
+struct ExactPoint {
+    double at[3];
+
+    bool is_in(const Bounds3& box, double slack) const {
+        for (int k = 0; k < 3; ++k) {
+            if (at[k] < static_cast<double>(component(box.lo, k)) - slack) return false;
+            if (at[k] > static_cast<double>(component(box.hi, k)) + slack) return false;
+        }
+        return true;
+    }
+};
+
+ExactPoint point_of(const BvhTriangle& t, double wa, double wb, double wc) {
+    ExactPoint p;
+    for (int k = 0; k < 3; ++k) {
+        p.at[k] = wa * static_cast<double>(component(t.a, k)) + wb * static_cast<double>(component(t.b, k)) +
+                  wc * static_cast<double>(component(t.c, k));
+    }
+    return p;
+}
+
+BvhTriangle random_triangle(Random& random, bool far, bool sliver) {
+    const float scale = float_of((127 + random.below(80) - 40) << 23);
+    const Vec3 away = far ? scale * random.point(-1000, 1000) : Vec3{};
+    BvhTriangle t;
+    t.a = away + scale * random.point(-1, 1);
+    t.b = away + scale * random.point(-1, 1);
+    t.c = sliver ? t.a + (scale * 1e-4f) * random.point(-1, 1) : away + scale * random.point(-1, 1);
+    return t;
+}
+
+} // namespace
+
+TEST_CASE("the parts of a triangle cut in two hold every point of it, those on the cut in both") {
     Random random(41);
-    uint64_t lost = 0, outside = 0;
+    uint64_t lost = 0, lost_on_cut = 0, outside = 0, cuts = 0, wide = 0;
     for (int i = 0; i < 20000; ++i) {
-        const float scale = float_of((127 + random.below(80) - 40) << 23);
-        const Vec3 away = i % 2 ? Vec3{} : scale * random.point(-1000, 1000);
-        BvhTriangle t;
-        t.a = away + scale * random.point(-1, 1);
-        t.b = away + scale * random.point(-1, 1);
-        t.c = i % 5 == 0 ? t.a + (scale * 1e-4f) * random.point(-1, 1) : away + scale * random.point(-1, 1);
+        const BvhTriangle t = random_triangle(random, i % 2 == 0, i % 5 == 0);
         const Bounds3 box = {min(min(t.a, t.b), t.c), max(max(t.a, t.b), t.c)};
+        const double slack = 0x1p-50 * static_cast<double>(box.max_abs());
         const int axis = i % 3;
         const float plane = lerp(component(box.lo, axis), component(box.hi, axis), i % 7 == 0 ? 0.0f : random.unit());
         const ClippedBoxes parts = clip_triangle(t, box, axis, plane);
         for (const Bounds3& part : {parts.left, parts.right}) {
-            Bounds3 both = box;
-            both.extend(part);
-            outside += both == box ? 0 : 1;
+            if (!part.is_empty() && intersection(part, box) != part) ++outside;
         }
-        for (int k = 0; k < 20; ++k) { // in double: a point is at most some 2^-52 off the triangle
-            double w[3] = {static_cast<double>(random.unit()), static_cast<double>(random.unit()), 0};
-            if (w[0] + w[1] > 1) w[0] = 1 - w[0], w[1] = 1 - w[1];
-            if (k % 4 == 0) w[1] = 1 - w[0]; // on an edge
-            w[2] = 1 - w[0] - w[1];
-            double p[3];
-            const auto in = [&](const Bounds3& part) {
-                for (int j = 0; j < 3; ++j) {
-                    const double slack = 0x1p-50 * static_cast<double>(box.max_abs());
-                    if (p[j] < static_cast<double>(component(part.lo, j)) - slack) return false;
-                    if (p[j] > static_cast<double>(component(part.hi, j)) + slack) return false;
-                }
-                return true;
-            };
-            for (int j = 0; j < 3; ++j) {
-                p[j] = w[0] * static_cast<double>(component(t.a, j)) + w[1] * static_cast<double>(component(t.b, j)) +
-                       w[2] * static_cast<double>(component(t.c, j));
-            }
-            lost += in(parts.left) || in(parts.right) ? 0 : 1;
+        for (int k = 0; k < 20; ++k) {
+            double wa = static_cast<double>(random.unit()), wb = static_cast<double>(random.unit());
+            if (wa + wb > 1) wa = 1 - wa, wb = 1 - wb;
+            const ExactPoint p = point_of(t, wa, wb, 1 - wa - wb);
+            if (!p.is_in(parts.left, slack) && !p.is_in(parts.right, slack)) ++lost;
         }
+        const Vec3 corners[3] = {t.a, t.b, t.c};
+        for (int k = 0; k < 3; ++k) { // where edges meet the plane: rounded to the nearest, every other would be lost
+            const double a = static_cast<double>(component(corners[k], axis));
+            const double b = static_cast<double>(component(corners[(k + 1) % 3], axis));
+            const double w = (static_cast<double>(plane) - a) / (b - a);
+            if (!(w > 0 && w < 1)) continue;
+            double weights[3] = {0, 0, 0};
+            weights[k] = 1 - w, weights[(k + 1) % 3] = w;
+            const ExactPoint p = point_of(t, weights[0], weights[1], weights[2]);
+            ++cuts;
+            if (!p.is_in(parts.left, slack) || !p.is_in(parts.right, slack)) ++lost_on_cut;
+        }
+        const Bounds3 both = intersection(parts.left, parts.right); // the plane's own cut through the triangle
+        if (!both.is_empty() && component(both.size(), axis) > 0) ++wide;
     }
+    CHECK(cuts > 20000);
     CHECK(lost == 0);
+    CHECK(lost_on_cut == 0);
     CHECK(outside == 0);
+    CHECK(wide == 0);
 }
 
 TEST_CASE("reinsertion makes any builder's tree better, and leaves it sound") {
