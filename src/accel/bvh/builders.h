@@ -54,8 +54,8 @@ Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const Bvh
                             const SpatialSplitSettings& splits = {});
 
 struct ReinsertionSettings {
-    int passes = 4;         // >= 0
-    float part = 1.0f;      // (0, 1] of the nodes, those with the largest boxes, are tried in a pass
+    int passes = 8;         // >= 0
+    float part = 0.25f;     // (0, 1] of the nodes, those with the largest boxes, are tried in a pass
     float min_gain = 1e-3f; // a pass that lowers the sum of areas by less than this part of it is the last
 };
 /// Any sound tree, made better by moving subtrees; its cost does not rise, unless leaves held more than
