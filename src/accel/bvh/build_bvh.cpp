@@ -9,7 +9,7 @@ constexpr uint64_t kGrain = 1 << 14;
 
 } // namespace
 
-BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
+std::vector<BuildReference> references_of(const std::vector<BvhTriangle>& triangles) {
     std::vector<BuildReference> references(triangles.size());
     parallel_for(triangles.size(), kGrain, [&](uint64_t i) {
         const BvhTriangle& t = triangles[i];
@@ -17,7 +17,11 @@ BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const B
         const Vec3 zero;
         references[i] = {min(min(t.a, t.b), t.c) + zero, static_cast<uint32_t>(i), max(max(t.a, t.b), t.c) + zero};
     });
-    return build_tree(std::move(references), settings);
+    return references;
+}
+
+BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
+    return build_tree(references_of(triangles), settings);
 }
 
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles) {

@@ -18,4 +18,7 @@ BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const B
 /// tree.order is a permutation of the triangles' positions.
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles);
 
+/// The box of each triangle, ids by position. No coordinate is -0.
+std::vector<BuildReference> references_of(const std::vector<BvhTriangle>& triangles);
+
 } // namespace pertev

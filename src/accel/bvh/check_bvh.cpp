@@ -1,6 +1,8 @@
 #include "accel/bvh/check_bvh.h"
 
-#include <vector>
+#include <algorithm>
+#include <span>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -17,9 +19,21 @@ bool holds(const Bounds3& box, const Bounds3& inner) {
     return inner.is_empty() || (holds(box, inner.lo) && holds(box, inner.hi));
 }
 
+enum class Boxes {
+    Any,     // not looked at
+    Nested,  // each in its parent's
+    Holding, // and triangles in their leaf's
+};
+
+/// A triangle in a leaf.
+struct Piece {
+    const BvhTriangle* triangle;
+    Bounds3 leaf_box;
+};
+
 class Checker {
 public:
-    Checker(const Bvh& bvh, bool boxes) : bvh_(bvh), boxes_(boxes) {}
+    Checker(const Bvh& bvh, Boxes boxes) : bvh_(bvh), boxes_(boxes) {}
 
     std::optional<std::string> run() {
         if (bvh_.root == kNoLink) {
@@ -45,7 +59,8 @@ public:
             if (at.depth >= kMaxBvhDepth) return fmt::format("node {} is deeper than {}", at.link, kMaxBvhDepth);
             for (int k = 0; k < 2; ++k) {
                 const Bounds3 box = child_bounds(bvh_.nodes[at.link], k);
-                if (boxes_ && !holds(at.box, box)) return fmt::format("node {} has child {} outside it", at.link, k);
+                if (boxes_ != Boxes::Any && !holds(at.box, box))
+                    return fmt::format("node {} has child {} outside it", at.link, k);
                 pending.push_back({bvh_.nodes[at.link].child[k], at.depth + 1, box});
             }
         }
@@ -56,6 +71,9 @@ public:
         if (depth != bvh_.depth) return fmt::format("depth {}, stated {}", depth, bvh_.depth);
         return std::nullopt;
     }
+
+    /// Every triangle of every leaf, once the tree has been found sound.
+    std::vector<Piece> take_pieces() { return std::move(pieces_); }
 
 private:
     struct Pending {
@@ -72,7 +90,8 @@ private:
             triangle_seen_[i] = true;
             ++triangles_;
             const BvhTriangle& t = bvh_.triangles[i];
-            if (boxes_ && !(holds(at.box, t.a) && holds(at.box, t.b) && holds(at.box, t.c))) {
+            if (boxes_ == Boxes::Nested) pieces_.push_back({&t, at.box});
+            if (boxes_ == Boxes::Holding && !(holds(at.box, t.a) && holds(at.box, t.b) && holds(at.box, t.c))) {
                 return fail(fmt::format("triangle {} is outside its leaf", i));
             }
             if (t.flags & kLastInLeaf) return true;
@@ -85,16 +104,88 @@ private:
     }
 
     const Bvh& bvh_;
-    const bool boxes_;
+    const Boxes boxes_;
     std::vector<bool> node_seen_, triangle_seen_;
     std::size_t nodes_ = 0, triangles_ = 0;
+    std::vector<Piece> pieces_;
     std::string fault_;
 };
 
+/// Orders triangles so that copies, whose flags may differ, are neighbours.
+auto identity_of(const BvhTriangle& t) {
+    return std::tuple(t.instance, t.primitive, t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z);
+}
+
+/// Whether the point with weights (i, k, n - i - k) / n of the corners lies in one of the pieces' boxes.
+bool covers(std::span<const Piece> pieces, const BvhTriangle& t, int i, int k, int n, double slack) {
+    const double wa = static_cast<double>(i) / n, wb = static_cast<double>(k) / n,
+                 wc = static_cast<double>(n - i - k) / n;
+    double p[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        p[axis] = wa * static_cast<double>(component(t.a, axis)) + wb * static_cast<double>(component(t.b, axis)) +
+                  wc * static_cast<double>(component(t.c, axis));
+    }
+    return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (p[axis] < static_cast<double>(component(piece.leaf_box.lo, axis)) - slack ||
+                p[axis] > static_cast<double>(component(piece.leaf_box.hi, axis)) + slack) {
+                return false;
+            }
+        }
+        return true;
+    });
+}
+
+bool covers(std::span<const Piece> pieces, const BvhTriangle& t) {
+    const Bounds3 box = {min(min(t.a, t.b), t.c), max(max(t.a, t.b), t.c)};
+    const double slack = 0x1p-50 * static_cast<double>(box.max_abs());
+    const int n = static_cast<int>(std::min<std::size_t>(4 + 4 * pieces.size(), 60));
+    for (int i = 0; i <= n; ++i) {
+        for (int k = 0; k <= n - i; ++k) {
+            if (!covers(pieces, t, i, k, n, slack)) return false;
+        }
+    }
+    return true;
+}
+
 } // namespace
 
-std::optional<std::string> find_broken_link(const Bvh& bvh) { return Checker(bvh, false).run(); }
+std::optional<std::string> find_broken_link(const Bvh& bvh) { return Checker(bvh, Boxes::Any).run(); }
 
-std::optional<std::string> find_fault(const Bvh& bvh) { return Checker(bvh, true).run(); }
+std::optional<std::string> find_fault(const Bvh& bvh) { return Checker(bvh, Boxes::Holding).run(); }
+
+std::optional<std::string> find_split_fault(const Bvh& bvh, const std::vector<BvhTriangle>& mesh) {
+    Checker checker(bvh, Boxes::Nested);
+    if (auto fault = checker.run()) return fault;
+    std::vector<Piece> pieces = checker.take_pieces();
+    std::sort(pieces.begin(), pieces.end(),
+              [](const Piece& a, const Piece& b) { return identity_of(*a.triangle) < identity_of(*b.triangle); });
+    std::vector<const BvhTriangle*> wanted;
+    for (const BvhTriangle& t : mesh) wanted.push_back(&t);
+    std::sort(wanted.begin(), wanted.end(),
+              [](const BvhTriangle* a, const BvhTriangle* b) { return identity_of(*a) < identity_of(*b); });
+    auto first = pieces.cbegin();
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const auto identity = identity_of(*wanted[i]);
+        if (i > 0 && identity == identity_of(*wanted[i - 1])) continue; // the mesh holds it twice
+        const auto last = std::find_if(first, pieces.cend(),
+                                       [&](const Piece& piece) { return identity_of(*piece.triangle) != identity; });
+        const BvhTriangle& t = *wanted[i];
+        if (first == last) {
+            return fmt::format("primitive {} of instance {} is left out, or one is that is not the mesh's", t.primitive,
+                               t.instance);
+        }
+        if (!covers({first, last}, t)) {
+            return fmt::format("primitive {} of instance {} is not covered by its {} leaves", t.primitive, t.instance,
+                               last - first);
+        }
+        first = last;
+    }
+    if (first != pieces.cend()) {
+        return fmt::format("primitive {} of instance {} is not the mesh's", first->triangle->primitive,
+                           first->triangle->instance);
+    }
+    return std::nullopt;
+}
 
 } // namespace pertev

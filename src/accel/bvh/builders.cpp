@@ -1,0 +1,61 @@
+#include "accel/bvh/builders.h"
+
+#include "accel/bvh/build_bvh.h"
+#include "base/error.h"
+
+namespace pertev {
+
+const char* bvh_builder_name(BvhBuilder builder) {
+    switch (builder) {
+    case BvhBuilder::Binned:
+        return "binned";
+    case BvhBuilder::Sweep:
+        return "sweep";
+    case BvhBuilder::Median:
+        return "median";
+    case BvhBuilder::EqualCounts:
+        return "equal-counts";
+    case BvhBuilder::SpatialSplits:
+        return "spatial-splits";
+    case BvhBuilder::Ploc:
+        return "ploc";
+    case BvhBuilder::Insertion:
+        return "insertion";
+    case BvhBuilder::Reinsertion:
+        return "reinsertion";
+    }
+    PERTEV_CHECK(false);
+}
+
+std::optional<BvhBuilder> find_bvh_builder(std::string_view name) {
+    for (const BvhBuilder builder : kBvhBuilders) {
+        if (name == bvh_builder_name(builder)) return builder;
+    }
+    return std::nullopt;
+}
+
+bool cuts_triangles(BvhBuilder builder) { return builder == BvhBuilder::SpatialSplits; }
+
+Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
+    switch (builder) {
+    case BvhBuilder::Binned:
+        return build_bvh(triangles, settings);
+    case BvhBuilder::Sweep:
+        return build_sweep_bvh(triangles, settings);
+    case BvhBuilder::Median:
+        return build_median_bvh(triangles, settings);
+    case BvhBuilder::EqualCounts:
+        return build_equal_counts_bvh(triangles, settings);
+    case BvhBuilder::SpatialSplits:
+        return build_spatial_split_bvh(triangles, settings);
+    case BvhBuilder::Ploc:
+        return build_ploc_bvh(triangles, settings);
+    case BvhBuilder::Insertion:
+        return build_insertion_bvh(triangles, settings);
+    case BvhBuilder::Reinsertion:
+        return optimise_bvh(build_bvh(triangles, settings), settings);
+    }
+    PERTEV_CHECK(false);
+}
+
+} // namespace pertev
