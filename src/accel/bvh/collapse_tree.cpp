@@ -71,16 +71,16 @@ void CollapsedTree::add_subtrees(const Bvh& bvh) {
     }
 }
 
-/// Which subtrees could be one leaf: few triangles, all in one run.
+/// Which subtrees could be one leaf: few triangles, all in one run. The builder may have swapped children.
 void CollapsedTree::join_runs() {
     const auto most = static_cast<uint32_t>(settings_.max_leaf);
     for (std::size_t i = subtrees_.size(); i-- > 0;) {
         Subtree& subtree = subtrees_[i];
         if (subtree.right == 0) continue;
         const Subtree &left = subtrees_[i + 1], &right = subtrees_[subtree.right];
-        const bool joined = left.count != 0 && right.count != 0 && left.first + left.count == right.first &&
-                            left.count + right.count <= most;
-        subtree.first = joined ? left.first : 0;
+        const bool adjoin = left.first + left.count == right.first || right.first + right.count == left.first;
+        const bool joined = left.count != 0 && right.count != 0 && adjoin && left.count + right.count <= most;
+        subtree.first = joined ? min(left.first, right.first) : 0;
         subtree.count = joined ? left.count + right.count : 0;
     }
 }
@@ -153,7 +153,7 @@ void CollapsedTree::expand(uint32_t subtree, int roots, uint32_t (&children)[kMa
 
 int CollapsedTree::children_of(uint32_t subtree, uint32_t (&children)[kMaxWidth]) const {
     int count = 0;
-    if (is_leaf(subtree)) { // the root alone is asked for as a leaf
+    if (subtrees_[subtree].right == 0) { // only of a tree that is one leaf; a root is a node even where that costs more
         children[count++] = subtree;
         return count;
     }
