@@ -62,7 +62,7 @@ TEST_CASE("walks of wide and compressed trees give the hits of testing every tri
     for (const NastyMesh& c : nasty_meshes(static_cast<uint32_t>(effort(3000, 1'000'000)))) {
         CAPTURE(c.name);
         const bool million = c.triangles.size() > 100'000; // brute force takes its time
-        const std::vector<Ray> rays = nasty_rays(million ? 200 : static_cast<uint32_t>(effort(1000, 20'000)), c, 91);
+        const std::vector<Ray> rays = nasty_rays(million ? 40 : static_cast<uint32_t>(effort(1000, 10'000)), c, 91);
         const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
                                    hits_by_brute_force(c.triangles, rays, AcceptSome{})};
         const Bvh bvh = build_bvh(c.triangles);
