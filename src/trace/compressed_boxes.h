@@ -20,7 +20,7 @@
 // Least and greatest of three are taken of the bits as integers, which the device does in one instruction. For numbers
 // that are not negative that is the same; among negative ones the order is reversed, so an entry may come out too small
 // and an exit too large: a box is then entered in vain, never missed.
-// The node is that of Ylitie et al. 2017 (accel/bvh/compressed_bvh.h); the arithmetic above was worked out for this file.
+// The node: accel/bvh/compressed_bvh.h. The arithmetic was worked out for this file.
 
 #include <cstdint>
 
