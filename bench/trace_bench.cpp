@@ -133,7 +133,7 @@ int main(int argc, char** argv) {
                     static_cast<double>(triangles.size()));
     const EmbreeScene embree(mesh);
     const float eps = 2e-5f * length(bvh.bounds.size());
-    std::vector<WideBvhNode> wide_nodes;
+    std::vector<WideBvhNode<8>> wide_nodes;
     const double widen_s = fastest(3, [&] { wide_nodes = make_wide_nodes(bvh); });
     std::printf("wide tree: made in %.1f ms, %zu nodes\n", widen_s * 1e3, wide_nodes.size());
     for (const bool wide : {false, true}) {

@@ -29,7 +29,7 @@ BvhView SceneOnDevice::upload(Queue& queue, const Bvh& bvh, const std::string& n
     view.nodes = keep(queue, std::span(bvh.nodes), name + " nodes");
     view.triangles = keep(queue, std::span(bvh.triangles), name + " triangles");
     if (!queue.is_cuda()) {
-        const std::vector<WideBvhNode> wide = make_wide_nodes(bvh);
+        const std::vector<WideBvhNode<8>> wide = make_wide_nodes(bvh);
         view.wide = keep(queue, std::span(wide), name + " wide nodes");
     }
     return view;

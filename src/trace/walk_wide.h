@@ -9,9 +9,9 @@
 
 #include "accel/bvh/bvh.h"
 #include "accel/bvh/wide_bvh.h"
-#include "base/limits.h"
 #include "trace/intersect_4_triangles.h"
 #include "trace/ray_boxes.h"
+#include "trace/walk_options.h"
 
 namespace pertev {
 
@@ -35,8 +35,8 @@ inline WideRay make_wide_ray(const RayBoxes& boxes) {
 }
 
 /// Bit k: child k may hold a hit with t_min < t <= t_limit; its entry parameter goes to entries[k].
-inline unsigned enters_children(const WideRay& ray, const WideBvhNode& node, __m256 t_min, __m256 t_limit,
-                                float (&entries)[kWideChildren]) {
+inline unsigned enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node, __m256 t_min,
+                                __m256 t_limit, float (&entries)[kWideChildren]) {
     const auto near = [&](int axis) {
         return _mm256_fmadd_ps(_mm256_load_ps(node.planes[ray.near_plane[axis]]), ray.inv[axis], ray.near[axis]);
     };
@@ -49,35 +49,80 @@ inline unsigned enters_children(const WideRay& ray, const WideBvhNode& node, __m
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)));
 }
 
-/// True when the visitor ended it. `bvh.wide` is there and the root is an inner node.
-template <class Visitor, class Counter>
-inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
+/// Leaves of up to four triangles at once, or one by one where hits need not be exact. True when the visitor ended it.
+template <WalkOptions kOptions>
+struct LeafOfFour {
+    const Ray& ray;
+    const typename TestsOf<kOptions>::Triangles prepared;
+    const RayShear4 shear4;
+
+    explicit LeafOfFour(const Ray& r)
+        : ray(r), prepared(TestsOf<kOptions>::make_triangles(r)), shear4(make_ray_shear_4(r.origin, shear_of(r))) {}
+
+    template <class Visitor>
+    bool test(const BvhTriangle* first, uint32_t count, uint32_t instance, Visitor& visitor) const {
+        const auto visit = [&](const BvhTriangle& t, const TriangleHit& hit) {
+            return visitor.visit(instance == kNoHit ? t.instance : instance, t.primitive, hit);
+        };
+        if constexpr (kOptions.exact) {
+            TriangleHit4 hits;
+            unsigned hit = intersect_4_triangles(ray.origin, prepared, shear4, ray.t_min, ray.t_max, visitor.limit(),
+                                                 first, count, hits);
+            for (; hit != 0; hit &= hit - 1) {
+                const int k = __builtin_ctz(hit);
+                if (visit(first[k], {hits.t[k], hits.u[k], hits.v[k]})) return true;
+            }
+        } else {
+            for (uint32_t k = 0; k < count; ++k) {
+                TriangleHit hit;
+                const BvhTriangle& t = first[k];
+                if (FastTests::intersect(ray, prepared, t.a, t.b, t.c, hit) && visit(t, hit)) return true;
+            }
+        }
+        return false;
+    }
+
+private:
+    RayShear shear_of(const Ray& r) const {
+        if constexpr (kOptions.exact) {
+            return prepared;
+        } else {
+            return make_ray_shear(r.direction); // not used
+        }
+    }
+};
+
+/// True when the visitor ended it. There is a node.
+template <WalkOptions kOptions, class Visitor, class Counter>
+inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
+                      const Counter& counter) {
     struct Entry {
         float entry;
         uint32_t link, count;
     };
-    Entry stack[kMaxBvhDepth * (kWideChildren - 1) + 1];
+    constexpr bool kNearFirst = kOptions.near_first && Visitor::kNearestFirst;
+    Entry stack[kWideStackSize<kWideChildren>];
     int size = 0;
-    const WideRay wide = make_wide_ray(make_ray_boxes(ray.origin, ray.direction, bvh.bounds_max_abs));
-    const RayShear shear = make_ray_shear(ray.direction);
-    const RayShear4 shear4 = make_ray_shear_4(ray.origin, shear);
+    const WideRay wide = make_wide_ray(TestsOf<kOptions>::make_boxes(ray, bvh.bounds_max_abs));
+    const LeafOfFour<kOptions> leaf(ray);
     const __m256 t_min = _mm256_set1_ps(ray.t_min);
     Entry at = {ray.t_min, 0, 0};
     for (;;) {
         if (!(at.link & kLeafBit)) {
-            const WideBvhNode& node = bvh.wide[at.link];
+            const WideBvhNode<kWideChildren>& node = bvh.nodes[at.link];
             counter.add_node(&node);
             alignas(32) float entries[kWideChildren];
-            unsigned entered = enters_children(wide, node, t_min, _mm256_set1_ps(visitor.limit()), entries);
+            const __m256 t_limit = _mm256_set1_ps(skip_beyond<kOptions>(visitor, ray));
+            unsigned entered = enters_children(wide, node, t_min, t_limit, entries);
             if (entered != 0) {
                 const int base = size;
                 while (entered != 0) {
                     // The last one pushed is entered first: the nearest; else the one that the builder put first.
-                    const int k = Visitor::kNearestFirst ? __builtin_ctz(entered) : 31 - __builtin_clz(entered);
+                    const int k = kNearFirst ? __builtin_ctz(entered) : 31 - __builtin_clz(entered);
                     entered &= ~(1u << k);
                     const Entry next = {entries[k], node.child[k], node.count[k]};
                     int place = size++;
-                    if constexpr (Visitor::kNearestFirst) {
+                    if constexpr (kNearFirst) {
                         for (; place > base && stack[place - 1].entry < next.entry; --place)
                             stack[place] = stack[place - 1];
                     }
@@ -91,23 +136,32 @@ inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Vis
                 const BvhTriangle* first = bvh.triangles + (at.link & ~kLeafBit) + i;
                 const uint32_t count = min(at.count - i, 4u);
                 for (uint32_t k = 0; k < count; ++k) counter.add_triangle(first + k);
-                TriangleHit4 hits;
-                unsigned hit = intersect_4_triangles(ray.origin, shear, shear4, ray.t_min, ray.t_max, visitor.limit(),
-                                                     first, count, hits);
-                for (; hit != 0; hit &= hit - 1) {
-                    const int k = __builtin_ctz(hit);
-                    if (visitor.visit(instance == kNoHit ? first[k].instance : instance, first[k].primitive,
-                                      {hits.t[k], hits.u[k], hits.v[k]})) {
-                        return true;
-                    }
-                }
+                if (leaf.test(first, count, instance, visitor)) return true;
             }
         }
         do {
             if (size == 0) return false;
             at = stack[--size];
-        } while (!(at.entry <= visitor.limit()));
+        } while (!(at.entry <= skip_beyond<kOptions>(visitor, ray)));
     }
 }
+
+/// The one that pictures are made with. `bvh.wide` is there and the root is an inner node.
+template <class Visitor, class Counter>
+inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
+    return walk_wide<WalkOptions{}>(WideBvhView<kWideChildren>{bvh.wide, bvh.triangles, bvh.bounds_max_abs}, ray,
+                                    instance, visitor, counter);
+}
+
+/// It as a walk of the laboratory; host only.
+template <WalkOptions kOptions>
+struct Wide8SimdWalk {
+    using Tree = WideBvhView<kWideChildren>;
+
+    template <class Visitor, class Counter>
+    static bool walk(const Tree& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
+        return bvh.nodes != nullptr && walk_wide<kOptions>(bvh, ray, instance, visitor, counter);
+    }
+};
 
 } // namespace pertev

@@ -35,7 +35,7 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
         for (const BvhBuildSettings& settings : kSettings) {
             CAPTURE(settings.bins);
             const Bvh bvh = build_bvh(c.triangles, settings);
-            const std::vector<WideBvhNode> wide_nodes = make_wide_nodes(bvh);
+            const std::vector<WideBvhNode<8>> wide_nodes = make_wide_nodes(bvh);
             for (const bool wide : {false, true}) {
                 CAPTURE(wide);
                 SceneBvhView scene;
@@ -56,7 +56,7 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
     std::vector<BvhView> views;
     for (const auto& mesh : meshes) trees.push_back(build_bvh(mesh));
     for (const Bvh& tree : trees) views.push_back(view_of(tree));
-    const std::vector<WideBvhNode> wide_torus = make_wide_nodes(trees[0]), wide_soup = make_wide_nodes(trees[2]);
+    const std::vector<WideBvhNode<8>> wide_torus = make_wide_nodes(trees[0]), wide_soup = make_wide_nodes(trees[2]);
     views[0].wide = wide_torus.data();
     views[2].wide = wide_soup.data();
 

@@ -31,7 +31,7 @@ float edge_distance(float u, float v) { return min(min(u, v), 1 - u - v); }
 Tally compare(const TriangleMesh& mesh, bool wide, uint64_t count) {
     const EmbreeScene embree(mesh);
     const Bvh bvh = build_bvh(triangles_of(mesh));
-    const std::vector<WideBvhNode> wide_nodes = make_wide_nodes(bvh);
+    const std::vector<WideBvhNode<8>> wide_nodes = make_wide_nodes(bvh);
     SceneBvhView scene;
     scene.baked = view_of(bvh);
     if (wide) scene.baked.wide = wide_nodes.data();

@@ -89,7 +89,7 @@ TEST_CASE("no ray leaves a closed sphere") {
         // At 150 km a float is 1/64 m: smaller faces would fold over each other.
         const TriangleMesh sphere = make_sphere(away_m > 1e4f ? 2 : 5, centre, 1);
         const Bvh bvh = build_bvh(triangles_of(sphere));
-        const std::vector<WideBvhNode> wide_nodes = make_wide_nodes(bvh);
+        const std::vector<WideBvhNode<8>> wide_nodes = make_wide_nodes(bvh);
         SceneBvhView scene;
         scene.baked = view_of(bvh);
         for (const bool wide : {false, true}) {

@@ -18,7 +18,7 @@ using namespace pertev::test;
 TEST_CASE("a box whose entry equals the limit is entered, one ulp less and it is not") {
     Random random(6);
     const Bvh bvh = build_bvh(triangles_of(make_torus(16, 12)));
-    const std::vector<WideBvhNode> wide = make_wide_nodes(bvh);
+    const std::vector<WideBvhNode<8>> wide = make_wide_nodes(bvh);
     uint64_t tried = 0, wide_tried = 0, wrong = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec3 origin = random.point(-4, 4), direction = random.point(-1, 1) - origin;
@@ -31,7 +31,7 @@ TEST_CASE("a box whose entry equals the limit is entered, one ulp less and it is
             wrong += enters_child(boxes, node, i % 2, 0, std::nextafterf(entry, 0), again) ? 1 : 0;
         }
         const WideRay wide_ray = make_wide_ray(boxes);
-        const WideBvhNode& wide_node = wide[random.below(static_cast<uint32_t>(wide.size()))];
+        const WideBvhNode<8>& wide_node = wide[random.below(static_cast<uint32_t>(wide.size()))];
         alignas(32) float entries[kWideChildren], unused[kWideChildren];
         const __m256 zero = _mm256_setzero_ps();
         const unsigned entered = enters_children(wide_ray, wide_node, zero, _mm256_set1_ps(kInfinity), entries);

@@ -48,6 +48,7 @@ inline Bounds3 child_bounds(const BvhNode& node, int k) {
     return {{node.x[k], node.y[k], node.z[k]}, {node.x[k + 2], node.y[k + 2], node.z[k + 2]}};
 }
 
+template <int kWidth>
 struct WideBvhNode; // wide_bvh.h
 
 struct Bvh {
@@ -64,8 +65,8 @@ struct BvhView {
     const BvhNode* nodes = nullptr;
     const BvhTriangle* triangles = nullptr;
     uint32_t root = kNoLink;
-    float bounds_max_abs = 0;          // largest |coordinate| of the bounds
-    const WideBvhNode* wide = nullptr; // the host walks these in place of nodes where they are given
+    float bounds_max_abs = 0;             // largest |coordinate| of the bounds
+    const WideBvhNode<8>* wide = nullptr; // the host walks these in place of nodes where they are given
 };
 
 inline BvhView view_of(const Bvh& bvh) {

@@ -1,88 +1,218 @@
 #include "accel/bvh/wide_bvh.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
 
 namespace pertev {
 namespace {
 
-struct Child {
-    uint32_t link;
-    Bounds3 box;
-    float area;
-};
+using Subtree = CollapsedTree::Subtree;
 
-class Widener {
-public:
-    explicit Widener(const Bvh& bvh) : bvh_(bvh) {}
+template <int kWidth>
+void set_child(WideBvhNode<kWidth>& node, int k, const Bounds3& box, uint32_t link, uint32_t count) {
+    const float planes[6] = {box.lo.x, box.hi.x, box.lo.y, box.hi.y, box.lo.z, box.hi.z};
+    for (int p = 0; p < 6; ++p) node.planes[p][k] = planes[p];
+    node.child[k] = link;
+    node.count[k] = count;
+}
 
-    std::vector<WideBvhNode> run() {
-        if (bvh_.root & kLeafBit) return {};
-        wide_.reserve(bvh_.nodes.size() / 4 + 1);
-        struct Pending {
-            uint32_t link, parent;
-            int k;
-        };
-        std::vector<Pending> pending = {{bvh_.root, kNoLink, 0}};
-        while (!pending.empty()) {
-            const Pending at = pending.back();
-            pending.pop_back();
-            const auto index = static_cast<uint32_t>(wide_.size());
-            if (at.parent != kNoLink) wide_[at.parent].child[at.k] = index;
-            const WideBvhNode& node = wide_.emplace_back(make_node(at.link));
-            for (int k = kWideChildren - 1; k >= 0; --k) {
-                if (!(node.child[k] & kLeafBit)) pending.push_back({node.child[k], index, k});
+template <int kWidth>
+Bounds3 child_bounds(const WideBvhNode<kWidth>& node, int k) {
+    return {{node.planes[0][k], node.planes[2][k], node.planes[4][k]},
+            {node.planes[1][k], node.planes[3][k], node.planes[5][k]}};
+}
+
+/// Inner children still name subtrees.
+template <int kWidth>
+WideBvhNode<kWidth> make_node(const CollapsedTree& tree, uint32_t subtree) {
+    uint32_t children[kMaxWidth];
+    const int count = tree.children_of(subtree, children);
+    WideBvhNode<kWidth> node;
+    for (int k = 0; k < kWidth; ++k) {
+        if (k >= count) {
+            set_child(node, k, Bounds3{}, kNoLink, 0);
+            continue;
+        }
+        const Subtree& child = tree.subtrees()[children[k]];
+        const bool leaf = tree.is_leaf(children[k]);
+        set_child(node, k, child.box, leaf ? kLeafBit | child.first : children[k], leaf ? child.count : 0);
+    }
+    return node;
+}
+
+/// Nodes, depth and cost; no triangles yet.
+template <int kWidth>
+WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings) {
+    const CollapsedTree tree(bvh, settings, kWidth);
+    WideBvh<kWidth> wide;
+    wide.bounds = bvh.bounds;
+    if (tree.subtrees().empty()) return wide;
+    struct Pending {
+        uint32_t subtree, parent;
+        int k, depth;
+    };
+    double cost = 0;
+    std::vector<Pending> pending = {{0, kNoLink, 0, 1}};
+    while (!pending.empty()) {
+        const Pending at = pending.back();
+        pending.pop_back();
+        const auto index = static_cast<uint32_t>(wide.nodes.size());
+        if (at.parent != kNoLink) wide.nodes[at.parent].child[at.k] = index;
+        const WideBvhNode<kWidth>& node = wide.nodes.emplace_back(make_node<kWidth>(tree, at.subtree));
+        wide.depth = max(wide.depth, at.depth);
+        cost += static_cast<double>(tree.subtrees()[at.subtree].box.half_area() * settings.node_cost);
+        for (int k = kWidth - 1; k >= 0; --k) {
+            if (node.child[k] == kNoLink) continue;
+            if (node.child[k] & kLeafBit) {
+                const float step_cost = CollapsedTree::leaf_cost(settings, node.count[k]);
+                cost += static_cast<double>(child_bounds(node, k).half_area() * step_cost);
+            } else {
+                pending.push_back({node.child[k], index, k, at.depth + 1});
             }
         }
-        return std::move(wide_);
+    }
+    if (wide.depth > kMaxBvhDepth) {
+        throw Error(ErrorCode::OverLimit, fmt::format("a tree of {} children a node is {} levels deep, {} are allowed",
+                                                      kWidth, wide.depth, kMaxBvhDepth));
+    }
+    const float area = bvh.bounds.half_area();
+    wide.sah_cost = area > 0 ? static_cast<float>(cost / static_cast<double>(area)) : 0;
+    return wide;
+}
+
+bool holds(const Bounds3& box, Vec3 p) {
+    return box.lo.x <= p.x && p.x <= box.hi.x && box.lo.y <= p.y && p.y <= box.hi.y && box.lo.z <= p.z &&
+           p.z <= box.hi.z;
+}
+bool holds(const Bounds3& box, const Bounds3& inner) { return holds(box, inner.lo) && holds(box, inner.hi); }
+
+Bounds3 bounds_of(const BvhTriangle& t) {
+    Bounds3 box;
+    box.extend(t.a);
+    box.extend(t.b);
+    box.extend(t.c);
+    return box;
+}
+
+bool meet(const Bounds3& a, const Bounds3& b) { return !Bounds3{max(a.lo, b.lo), min(a.hi, b.hi)}.is_empty(); }
+
+template <int kWidth>
+class Checker {
+public:
+    Checker(const WideBvh<kWidth>& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
+
+    std::string run() {
+        node_seen_.resize(bvh_.nodes.size());
+        triangle_seen_.resize(bvh_.triangles.size());
+        std::vector<Pending> pending;
+        if (!bvh_.nodes.empty()) pending.push_back({0, 1, bvh_.bounds});
+        std::size_t nodes = 0;
+        int depth = 0;
+        for (; !pending.empty(); ++nodes) {
+            const Pending at = pending.back();
+            pending.pop_back();
+            if (at.node >= bvh_.nodes.size()) return fmt::format("a link to node {} of {}", at.node, node_seen_.size());
+            if (node_seen_[at.node]) return fmt::format("node {} is reached twice", at.node);
+            node_seen_[at.node] = true;
+            depth = max(depth, at.depth);
+            std::string fault = check_children(at, pending);
+            if (!fault.empty()) return fmt::format("node {}: {}", at.node, fault);
+        }
+        if (nodes != bvh_.nodes.size()) return fmt::format("{} of {} nodes are reached", nodes, bvh_.nodes.size());
+        if (triangles_ != bvh_.triangles.size()) {
+            return fmt::format("{} of {} triangles are reached", triangles_, bvh_.triangles.size());
+        }
+        if (depth != bvh_.depth || depth > kMaxBvhDepth) return fmt::format("depth {}, stated {}", depth, bvh_.depth);
+        return {};
     }
 
 private:
-    Child child_of(uint32_t node, int k) const {
-        const Bounds3 box = child_bounds(bvh_.nodes[node], k);
-        return {bvh_.nodes[node].child[k], box, box.half_area()};
-    }
+    struct Pending {
+        uint32_t node;
+        int depth;
+        Bounds3 box;
+    };
 
-    uint32_t leaf_size(uint32_t link) const {
-        uint32_t count = 1;
-        for (uint32_t i = link & ~kLeafBit; !(bvh_.triangles[i].flags & kLastInLeaf); ++i) ++count;
-        return count;
-    }
-
-    /// Inner children still name binary nodes.
-    WideBvhNode make_node(uint32_t root) const {
-        Child children[kWideChildren] = {child_of(root, 0), child_of(root, 1)};
-        int count = 2;
-        while (count < kWideChildren) {
-            int largest = -1;
-            for (int k = 0; k < count; ++k) {
-                if (children[k].link & kLeafBit) continue;
-                if (largest < 0 || children[k].area > children[largest].area) largest = k;
+    std::string check_children(const Pending& at, std::vector<Pending>& pending) {
+        const WideBvhNode<kWidth>& node = bvh_.nodes[at.node];
+        bool ended = false;
+        for (int k = 0; k < kWidth; ++k) {
+            const Bounds3 box = child_bounds(node, k);
+            if (node.child[k] == kNoLink) {
+                if (!box.is_empty()) return fmt::format("place {} is empty but has a box", k);
+                ended = true;
+                continue;
             }
-            if (largest < 0) break;
-            const uint32_t opened = children[largest].link;
-            // In the binary tree's order, which searches for any hit rely on.
-            std::move_backward(children + largest + 1, children + count, children + count + 1);
-            children[largest] = child_of(opened, 0);
-            children[largest + 1] = child_of(opened, 1);
-            ++count;
+            if (ended) return fmt::format("child {} stands after an empty place", k);
+            if (!holds(at.box, box)) return fmt::format("child {} is outside it", k);
+            if (!(node.child[k] & kLeafBit)) {
+                pending.push_back({node.child[k], at.depth + 1, box});
+                continue;
+            }
+            std::string fault = check_leaf(node.child[k] & ~kLeafBit, node.count[k], box);
+            if (!fault.empty()) return fault;
         }
-        WideBvhNode node;
-        for (int k = 0; k < kWideChildren; ++k) {
-            const Bounds3 box = k < count ? children[k].box : Bounds3{};
-            const float planes[6] = {box.lo.x, box.hi.x, box.lo.y, box.hi.y, box.lo.z, box.hi.z};
-            for (int p = 0; p < 6; ++p) node.planes[p][k] = planes[p];
-            node.child[k] = k < count ? children[k].link : kNoLink;
-            node.count[k] = k < count && (children[k].link & kLeafBit) ? leaf_size(children[k].link) : 0;
-        }
-        return node;
+        return {};
     }
 
-    const Bvh& bvh_;
-    std::vector<WideBvhNode> wide_;
+    std::string check_leaf(uint64_t first, uint64_t count, const Bounds3& box) {
+        if (count == 0) return "a leaf without triangles";
+        if (first + count > bvh_.triangles.size()) return fmt::format("a leaf runs past triangle {}", first);
+        for (uint64_t i = first; i < first + count; ++i) {
+            if (triangle_seen_[i]) return fmt::format("triangle {} is reached twice", i);
+            triangle_seen_[i] = true;
+            const BvhTriangle& t = bvh_.triangles[i];
+            const Bounds3 of_triangle = bounds_of(t);
+            if (clipped_ ? !meet(box, of_triangle) : !holds(box, of_triangle)) {
+                return fmt::format("triangle {} is outside its leaf", i);
+            }
+            if (((t.flags & kLastInLeaf) != 0) != (i + 1 == first + count)) {
+                return fmt::format("triangle {} says wrongly whether its leaf ends", i);
+            }
+        }
+        triangles_ += count;
+        return {};
+    }
+
+    const WideBvh<kWidth>& bvh_;
+    const bool clipped_;
+    std::vector<bool> node_seen_, triangle_seen_;
+    uint64_t triangles_ = 0;
 };
 
 } // namespace
 
-std::vector<WideBvhNode> make_wide_nodes(const Bvh& bvh) { return Widener(bvh).run(); }
+template <int kWidth>
+WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings) {
+    WideBvh<kWidth> wide = assemble<kWidth>(bvh, settings);
+    wide.triangles = bvh.triangles;
+    for (BvhTriangle& t : wide.triangles) t.flags &= ~kLastInLeaf;
+    for (const WideBvhNode<kWidth>& node : wide.nodes) {
+        for (int k = 0; k < kWidth; ++k) {
+            if (node.count[k] != 0)
+                wide.triangles[(node.child[k] & ~kLeafBit) + node.count[k] - 1].flags |= kLastInLeaf;
+        }
+    }
+    return wide;
+}
+
+template <int kWidth>
+std::optional<std::string> find_fault(const WideBvh<kWidth>& bvh, bool clipped) {
+    std::string fault = Checker<kWidth>(bvh, clipped).run();
+    return fault.empty() ? std::nullopt : std::optional(std::move(fault));
+}
+
+template WideBvh<4> make_wide_bvh(const Bvh&, const CollapseSettings&);
+template WideBvh<8> make_wide_bvh(const Bvh&, const CollapseSettings&);
+template std::optional<std::string> find_fault(const WideBvh<4>&, bool);
+template std::optional<std::string> find_fault(const WideBvh<8>&, bool);
+
+std::vector<WideBvhNode<kWideChildren>> make_wide_nodes(const Bvh& bvh) {
+    if (bvh.root & kLeafBit) return {};
+    // Four triangles are tested at once, for about twice what the eight boxes of a node cost.
+    return assemble<kWideChildren>(bvh, {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 2}).nodes;
+}
 
 } // namespace pertev

@@ -1,0 +1,291 @@
+#include "accel/bvh/compressed_bvh.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace pertev {
+namespace {
+
+Bounds3 child_box(const WideBvhNode<8>& node, int k) {
+    return {{node.planes[0][k], node.planes[2][k], node.planes[4][k]},
+            {node.planes[1][k], node.planes[3][k], node.planes[5][k]}};
+}
+
+/// a - b without error: value + rest.
+struct Difference {
+    double value, rest;
+};
+
+Difference difference(float a, float b) {
+    const double x = static_cast<double>(a), y = static_cast<double>(b);
+    const double value = x - y, back = value - x;
+    return {value, (x - (value - back)) - (y + back)};
+}
+
+/// Largest whole number of quanta from `origin` that does not pass x; x >= origin.
+int quanta_below(float x, float origin, double quantum) {
+    const Difference d = difference(x, origin);
+    const double quotient = d.value / quantum; // a power of two: exact
+    const int q = static_cast<int>(quotient);
+    return static_cast<double>(q) == quotient && d.rest < 0 ? q - 1 : q;
+}
+
+/// Least whole number that is not short of it.
+int quanta_above(float x, float origin, double quantum) {
+    const Difference d = difference(x, origin);
+    const double quotient = d.value / quantum;
+    const int q = static_cast<int>(quotient);
+    return static_cast<double>(q) < quotient || (static_cast<double>(q) == quotient && d.rest > 0) ? q + 1 : q;
+}
+
+double quantum_of(uint32_t exponent) { return static_cast<double>(float_of(exponent << 23)); }
+
+/// The least exponent whose grid of 255 quanta reaches from lo to hi.
+uint32_t choose_exponent(float lo, float hi) {
+    const uint32_t of_extent = bits_of(hi - lo) >> 23; // 255 quanta of 2^-8 of this reach, or those of twice that do
+    uint32_t exponent = max(of_extent, kMinQuantumExponent + 9) - 9;
+    while (quanta_above(hi, lo, quantum_of(exponent)) > 255) ++exponent;
+    return exponent;
+}
+
+void set_byte(uint32_t (&words)[2], int slot, int value) {
+    const int shift = 8 * (slot % 4);
+    words[slot / 4] = (words[slot / 4] & ~(0xffu << shift)) | static_cast<uint32_t>(value) << shift;
+}
+
+int byte_of(const uint32_t (&words)[2], int slot) { return static_cast<int>(words[slot / 4] >> 8 * (slot % 4) & 0xff); }
+
+} // namespace
+
+void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]) {
+    Bounds3 all;
+    for (const Bounds3& box : slots) all.extend(box);
+    PERTEV_CHECK(!all.is_empty());
+    node.exponents_and_inner &= 0xff000000u;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float origin = component(all.lo, axis);
+        const uint32_t exponent = choose_exponent(origin, component(all.hi, axis));
+        PERTEV_CHECK(exponent <= kMaxQuantumExponent);
+        node.origin[axis] = origin;
+        node.exponents_and_inner |= exponent << (8 * axis);
+        for (int s = 0; s < 8; ++s) {
+            const bool empty = slots[s].is_empty();
+            const double step = quantum_of(exponent);
+            set_byte(node.planes[2 * axis], s, empty ? 255 : quanta_below(component(slots[s].lo, axis), origin, step));
+            set_byte(node.planes[2 * axis + 1], s,
+                     empty ? 0 : quanta_above(component(slots[s].hi, axis), origin, step));
+        }
+    }
+}
+
+bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double step = static_cast<double>(quantum(node, axis));
+        const double lower = byte_of(node.planes[2 * axis], slot) * step;
+        const double upper = byte_of(node.planes[2 * axis + 1], slot) * step;
+        const Difference lo = difference(component(box.lo, axis), node.origin[axis]);
+        const Difference hi = difference(component(box.hi, axis), node.origin[axis]);
+        if (lower > lo.value || (lower == lo.value && lo.rest < 0)) return false;
+        if (upper < hi.value || (upper == hi.value && hi.rest > 0)) return false;
+    }
+    return true;
+}
+
+void assign_slots(const WideBvhNode<8>& node, int (&child_of_slot)[8]) {
+    Bounds3 all;
+    int count = 0;
+    for (; count < 8 && node.child[count] != kNoLink; ++count) all.extend(child_box(node, count));
+    float costs[8][8] = {}; // child, slot
+    for (int k = 0; k < count; ++k) {
+        const Vec3 from = child_box(node, k).centre() - all.centre();
+        for (int s = 0; s < 8; ++s) {
+            costs[k][s] = (s & 1 ? -from.x : from.x) + (s & 2 ? -from.y : from.y) + (s & 4 ? -from.z : from.z);
+        }
+    }
+    // Of all assignments the one of least cost: least[set] is that of the first |set| children in these slots.
+    float least[256];
+    uint8_t last[256] = {};
+    std::fill(least, least + 256, kInfinity);
+    least[0] = 0;
+    for (uint32_t set = 0; set < 256; ++set) {
+        const int child = __builtin_popcount(set);
+        for (int s = 0; s < 8 && child < count; ++s) {
+            const uint32_t with = set | 1u << s;
+            if (with == set || !(least[set] + costs[child][s] < least[with])) continue;
+            least[with] = least[set] + costs[child][s];
+            last[with] = static_cast<uint8_t>(s);
+        }
+    }
+    uint32_t best = 0;
+    for (uint32_t set = 0; set < 256; ++set) {
+        if (__builtin_popcount(set) == count && (best == 0 || least[set] < least[best])) best = set;
+    }
+    std::fill(child_of_slot, child_of_slot + 8, -1);
+    for (int k = count - 1; k >= 0; --k) {
+        child_of_slot[last[best]] = k;
+        best &= ~(1u << last[best]);
+    }
+}
+
+CompressedBvhView view_of(const CompressedBvh& bvh) {
+    if (bvh.nodes.empty()) return {};
+    return {bvh.nodes.data(), bvh.triangles.data(), bvh.bounds.max_abs()};
+}
+
+CompressedBvh compress(const WideBvh<8>& wide) {
+    CompressedBvh result;
+    result.bounds = wide.bounds;
+    result.depth = wide.depth;
+    result.sah_cost = wide.sah_cost;
+    if (wide.nodes.empty()) return result;
+    result.triangles.reserve(wide.triangles.size());
+    result.nodes.reserve(wide.nodes.size());
+    result.nodes.resize(1);
+    struct Pending {
+        uint32_t wide, compressed;
+    };
+    std::vector<Pending> pending = {{0, 0}};
+    while (!pending.empty()) {
+        const Pending at = pending.back();
+        pending.pop_back();
+        const WideBvhNode<8>& from = wide.nodes[at.wide];
+        CompressedBvhNode node{};
+        node.child_base = static_cast<uint32_t>(result.nodes.size());
+        node.triangle_base = static_cast<uint32_t>(result.triangles.size());
+        int child_of_slot[8];
+        assign_slots(from, child_of_slot);
+        Bounds3 boxes[8];
+        for (int s = 0; s < 8; ++s) {
+            const int k = child_of_slot[s];
+            if (k < 0) continue;
+            boxes[s] = child_box(from, k);
+            if (!(from.child[k] & kLeafBit)) {
+                node.exponents_and_inner |= 1u << (24 + s);
+                pending.push_back({from.child[k], static_cast<uint32_t>(result.nodes.size())});
+                result.nodes.emplace_back();
+                continue;
+            }
+            PERTEV_CHECK(from.count[k] >= 1 && from.count[k] <= kCompressedLeaf);
+            node.triangles |= ((1u << from.count[k]) - 1) << 3 * s;
+            const auto first = wide.triangles.begin() + (from.child[k] & ~kLeafBit);
+            result.triangles.insert(result.triangles.end(), first, first + from.count[k]);
+        }
+        set_boxes(node, boxes);
+        result.nodes[at.compressed] = node;
+    }
+    return result;
+}
+
+CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings) {
+    PERTEV_CHECK(settings.max_leaf <= kCompressedLeaf);
+    return compress(make_wide_bvh<8>(bvh, settings));
+}
+
+namespace {
+
+class Checker {
+public:
+    Checker(const CompressedBvh& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
+
+    std::string run() {
+        node_seen_.resize(bvh_.nodes.size());
+        triangle_seen_.resize(bvh_.triangles.size());
+        if (!bvh_.nodes.empty()) ways_.push_back({0, -1, 0, 1});
+        int depth = 0;
+        for (std::size_t at = 0; at < ways_.size(); ++at) {
+            const uint32_t node = ways_[at].node;
+            if (node >= bvh_.nodes.size()) return fmt::format("a link to node {} of {}", node, bvh_.nodes.size());
+            if (node_seen_[node]) return fmt::format("node {} is reached twice", node);
+            node_seen_[node] = true;
+            depth = max(depth, ways_[at].depth);
+            std::string fault = check_node(static_cast<int>(at));
+            if (!fault.empty()) return fmt::format("node {}: {}", node, fault);
+        }
+        if (ways_.size() != bvh_.nodes.size()) return fmt::format("only {} nodes are reached", ways_.size());
+        if (triangles_ != bvh_.triangles.size()) return fmt::format("only {} triangles are reached", triangles_);
+        if (depth != bvh_.depth || depth > kMaxBvhDepth) return fmt::format("depth {}, stated {}", depth, bvh_.depth);
+        return {};
+    }
+
+private:
+    /// A node, and the way down to it: entry `parent` of these, and its slot there.
+    struct Way {
+        uint32_t node;
+        int parent, slot, depth;
+    };
+
+    std::string check_node(int at) {
+        const CompressedBvhNode node = bvh_.nodes[ways_[static_cast<std::size_t>(at)].node];
+        for (int axis = 0; axis < 3; ++axis) {
+            const uint32_t exponent = node.exponents_and_inner >> 8 * axis & 0xff;
+            if (exponent < kMinQuantumExponent || exponent > kMaxQuantumExponent) return "its grid is out of range";
+        }
+        uint32_t child = node.child_base;
+        uint64_t triangle = node.triangle_base;
+        for (int slot = 0; slot < 8; ++slot) {
+            const uint32_t run = node.triangles >> 3 * slot & 7;
+            if (run != 0 && run != 1 && run != 3 && run != 7) return fmt::format("slot {} counts wrongly", slot);
+            if (inner_slots(node) >> slot & 1) {
+                if (run != 0) return fmt::format("slot {} is a leaf and a node", slot);
+                ways_.push_back({child++, at, slot, ways_[static_cast<std::size_t>(at)].depth + 1});
+            }
+            for (uint32_t left = run; left != 0; left >>= 1) {
+                std::string fault = check_triangle(triangle++, at, slot);
+                if (!fault.empty()) return fault;
+            }
+        }
+        return {};
+    }
+
+    std::string check_triangle(uint64_t index, int at, int slot) {
+        if (index >= bvh_.triangles.size()) return fmt::format("a leaf runs past triangle {}", index);
+        if (triangle_seen_[index]) return fmt::format("triangle {} is reached twice", index);
+        triangle_seen_[index] = true;
+        ++triangles_;
+        const BvhTriangle& t = bvh_.triangles[index];
+        Bounds3 box;
+        box.extend(t.a);
+        box.extend(t.b);
+        box.extend(t.c);
+        while (at >= 0) {
+            const Way& way = ways_[static_cast<std::size_t>(at)];
+            const CompressedBvhNode& node = bvh_.nodes[way.node];
+            if (clipped_ ? !may_meet(node, slot, box) : !holds(node, slot, box)) {
+                return fmt::format("triangle {} is outside slot {} of node {}", index, slot, way.node);
+            }
+            slot = way.slot;
+            at = way.parent;
+        }
+        return {};
+    }
+
+    /// In double, which is enough to tell a box that lies elsewhere.
+    static bool may_meet(const CompressedBvhNode& node, int slot, const Bounds3& box) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const double origin = static_cast<double>(node.origin[axis]),
+                         step = static_cast<double>(quantum(node, axis));
+            if (origin + byte_of(node.planes[2 * axis], slot) * step > static_cast<double>(component(box.hi, axis)) ||
+                origin + byte_of(node.planes[2 * axis + 1], slot) * step < static_cast<double>(component(box.lo, axis)))
+                return false;
+        }
+        return true;
+    }
+
+    const CompressedBvh& bvh_;
+    const bool clipped_;
+    std::vector<Way> ways_;
+    std::vector<bool> node_seen_, triangle_seen_;
+    uint64_t triangles_ = 0;
+};
+
+} // namespace
+
+std::optional<std::string> find_fault(const CompressedBvh& bvh, bool clipped) {
+    std::string fault = Checker(bvh, clipped).run();
+    return fault.empty() ? std::nullopt : std::optional(std::move(fault));
+}
+
+} // namespace pertev

@@ -1,0 +1,198 @@
+// Wide and compressed trees give the hits of testing every triangle, bit for bit: every walk, with and without
+// redundant traversal avoidance, children in either order, whatever the mesh, and through instances.
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "accel/bvh/build_bvh.h"
+#include "accel/bvh/compressed_bvh.h"
+#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/wide_bvh.h"
+#include "tests/support/check_walk.h"
+#include "tests/support/options.h"
+#include "trace/walk_compressed.h"
+#include "trace/walk_wide.h"
+#include "trace/walk_wide_scalar.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr WalkOptions kBoth = {}, kNoRta = {.rta = false}, kBuildersOrder = {.near_first = false},
+                      kNeither = {.rta = false, .near_first = false};
+
+/// Calls check.operator()<Walk>() for a walk with every choice that must not change hits.
+template <template <WalkOptions> class Walk>
+void with_all_options(auto&& check) {
+    check.template operator()<Walk<kBoth>>();
+    check.template operator()<Walk<kNoRta>>();
+    check.template operator()<Walk<kBuildersOrder>>();
+    check.template operator()<Walk<kNeither>>();
+}
+
+/// All trees over one set of triangles.
+struct Trees {
+    WideBvh<4> wide4;
+    WideBvh<8> wide8;
+    CompressedBvh compressed;
+
+    explicit Trees(const Bvh& bvh, const CollapseSettings& settings = {})
+        : wide4(make_wide_bvh<4>(bvh, settings)), wide8(make_wide_bvh<8>(bvh, settings)),
+          compressed(make_compressed_bvh(bvh)) {}
+};
+
+struct Expected {
+    const std::vector<Ray>& rays;
+    std::vector<Hit> all, some;
+};
+
+template <template <WalkOptions> class Walk, class Tree>
+void check_tree(const Tree& tree, const Expected& expected) {
+    with_all_options<Walk>([&]<class OneWalk>() {
+        check_walk<OneWalk>(scene_of(tree), expected.rays, expected.all, AcceptAll{});
+        check_walk<OneWalk>(scene_of(tree), expected.rays, expected.some, AcceptSome{});
+    });
+}
+
+} // namespace
+
+TEST_CASE("walks of wide and compressed trees give the hits of testing every triangle, bit for bit") {
+    for (const NastyMesh& c : nasty_meshes(static_cast<uint32_t>(effort(3000, 1'000'000)))) {
+        CAPTURE(c.name);
+        const bool million = c.triangles.size() > 100'000; // brute force takes its time
+        const std::vector<Ray> rays = nasty_rays(million ? 40 : static_cast<uint32_t>(effort(1000, 10'000)), c, 91);
+        const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
+                                   hits_by_brute_force(c.triangles, rays, AcceptSome{})};
+        const Bvh bvh = build_bvh(c.triangles);
+        const Trees trees(bvh);
+        check_tree<Wide4Walk>(view_of(trees.wide4), expected);
+        check_tree<Wide8Walk>(view_of(trees.wide8), expected);
+        check_tree<Wide8SimdWalk>(view_of(trees.wide8), expected);
+        check_tree<CompressedWalk>(view_of(trees.compressed), expected);
+    }
+}
+
+TEST_CASE("leaf sizes and costs of a collapse do not change hits") {
+    const NastyMesh mesh = nasty_meshes()[3];
+    const std::vector<Ray> rays = nasty_rays(1500, mesh, 12);
+    const Expected expected = {rays, hits_by_brute_force(mesh.triangles, rays, AcceptAll{}),
+                               hits_by_brute_force(mesh.triangles, rays, AcceptSome{})};
+    for (const int build_leaf : {1, 30}) {
+        const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = build_leaf, .leaf_cost = 0.1f});
+        for (const int max_leaf : {1, 2, 7, 100}) {
+            for (const float triangle_cost : {0.0f, 0.3f, 5.0f}) {
+                CAPTURE(build_leaf);
+                CAPTURE(max_leaf);
+                CAPTURE(triangle_cost);
+                const Trees trees(bvh, {.max_leaf = max_leaf, .triangle_cost = triangle_cost});
+                check_walk<Wide4Walk<kBoth>>(scene_of(view_of(trees.wide4)), rays, expected.all, AcceptAll{});
+                check_walk<Wide8Walk<kBoth>>(scene_of(view_of(trees.wide8)), rays, expected.some, AcceptSome{});
+                check_walk<Wide8SimdWalk<kBoth>>(scene_of(view_of(trees.wide8)), rays, expected.all, AcceptAll{});
+            }
+        }
+        const Trees trees(bvh);
+        check_tree<CompressedWalk>(view_of(trees.compressed), expected);
+    }
+}
+
+namespace {
+
+struct PlacedMeshes {
+    std::vector<std::vector<BvhTriangle>> meshes;
+    std::vector<PlacedBvh> placed;
+
+    PlacedMeshes(std::vector<std::vector<BvhTriangle>> m, const std::vector<Trees>& trees) : meshes(std::move(m)) {
+        Random random(8);
+        for (uint32_t i = 0; i < 40; ++i) {
+            const uint32_t mesh = i % static_cast<uint32_t>(meshes.size());
+            const Vec3 axis = random.direction();
+            const float w = random.within(-1, 1), s = sqrt(1 - w * w);
+            Transform place = make_rotation(s * axis.x, s * axis.y, s * axis.z, w);
+            if (i % 5 == 0) place = Transform{}; // identity: exact, and ties with its neighbours
+            if (i % 3 == 0) place = compose(place, make_scale({0.5f, random.within(0.01f, 4), -1}));
+            if (i % 7 == 0) place = compose(place, make_scale({1e4f, 1e4f, 1e4f}));
+            place = compose(make_translation(i % 5 == 0 ? Vec3{} : random.point(-3, 3)), place);
+            placed.push_back({place, trees[mesh].wide8.bounds, mesh, i * 3 + 1});
+        }
+    }
+
+    Hit nearest(const Ray& ray) const {
+        Hit best;
+        for (const PlacedBvh& p : placed) {
+            const Ray local = transform_ray(inverse(p.world_from_local), ray);
+            trace_by_brute_force(meshes[p.mesh_bvh], local, p.instance, AcceptSome{}, best);
+        }
+        return best;
+    }
+};
+
+template <template <WalkOptions> class Walk, class Tree>
+void check_instances(const TopLevelBvh& top, const std::vector<Trees>& trees, Tree Trees::*which,
+                     const std::vector<Ray>& rays, const std::vector<Hit>& expected) {
+    std::vector<decltype(view_of(trees[0].*which))> views;
+    for (const Trees& t : trees) views.push_back(view_of(t.*which));
+    const SceneTrees<typename decltype(views)::value_type> scene = {
+        {}, top.nodes.data(), top.instances.data(), views.data(), top.root, top.reach, top.growth};
+    with_all_options<Walk>([&]<class OneWalk>() { check_walk<OneWalk>(scene, rays, expected, AcceptSome{}); });
+}
+
+} // namespace
+
+TEST_CASE("wide and compressed trees of instances give the hits of testing every triangle, bit for bit") {
+    const std::vector<std::vector<BvhTriangle>> meshes = {triangles_of(make_torus(16, 12)), make_soup(300, 0),
+                                                          triangles_of(make_sphere(0, {}, 1)), make_soup(2, 0)};
+    std::vector<Trees> trees;
+    for (const auto& mesh : meshes) trees.emplace_back(build_bvh(mesh));
+    const PlacedMeshes placed(meshes, trees);
+    const TopLevelBvh top = build_top_level_bvh(placed.placed);
+    const std::vector<Ray> rays = nasty_rays(1500, {"torus", meshes[0], {}, 1}, 29);
+    std::vector<Hit> expected;
+    uint64_t hits = 0;
+    for (const Ray& ray : rays) {
+        expected.push_back(placed.nearest(ray));
+        hits += expected.back().instance != kNoHit ? 1 : 0;
+    }
+    CHECK(hits > rays.size() / 5);
+    check_instances<Wide4Walk>(top, trees, &Trees::wide4, rays, expected);
+    check_instances<Wide8Walk>(top, trees, &Trees::wide8, rays, expected);
+    check_instances<Wide8SimdWalk>(top, trees, &Trees::wide8, rays, expected);
+    check_instances<CompressedWalk>(top, trees, &Trees::compressed, rays, expected);
+}
+
+namespace {
+
+constexpr WalkOptions kFast = {.exact = false};
+
+template <class Walk>
+void check_nearly_equal(const typename Walk::Tree& tree, const std::vector<Ray>& rays,
+                        const std::vector<Hit>& expected) {
+    uint64_t equal = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        Hit hit;
+        trace_closest<Walk>(scene_of(tree), rays[i], AcceptAll{}, hit);
+        equal += hit.instance == expected[i].instance &&
+                 (hit.instance == kNoHit || hit.primitive == expected[i].primitive) &&
+                 trace_any<Walk>(scene_of(tree), rays[i], AcceptAll{}) == (hit.instance != kNoHit);
+    }
+    CHECK(static_cast<double>(equal) > 0.99 * static_cast<double>(rays.size()));
+}
+
+} // namespace
+
+TEST_CASE("with the fast tests of the laboratory nearly all hits are the same") {
+    const std::vector<BvhTriangle> torus = triangles_of(make_torus(40, 24));
+    Random random(4);
+    std::vector<Ray> rays(20'000);
+    for (Ray& ray : rays) {
+        ray.origin = random.point(-4, 4);
+        ray.direction = random.point(-1, 1) - ray.origin;
+    }
+    const std::vector<Hit> expected = hits_by_brute_force(torus, rays, AcceptAll{});
+    const Trees trees(build_bvh(torus));
+    check_nearly_equal<Wide4Walk<kFast>>(view_of(trees.wide4), rays, expected);
+    check_nearly_equal<Wide8Walk<kFast>>(view_of(trees.wide8), rays, expected);
+    check_nearly_equal<Wide8SimdWalk<kFast>>(view_of(trees.wide8), rays, expected);
+    check_nearly_equal<CompressedWalk<kFast>>(view_of(trees.compressed), rays, expected);
+}
