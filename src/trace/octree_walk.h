@@ -36,7 +36,8 @@ struct OctreeWalk {
         if (tree.nodes == nullptr) return false;
         const typename Tests::Boxes boxes = Tests::make_boxes(ray, tree.bounds.max_abs());
         const typename Tests::Triangles prepared = Tests::make_triangles(ray);
-        const uint32_t backwards = (boxes.inv.x < 0 ? 1u : 0u) | (boxes.inv.y < 0 ? 2u : 0u) | (boxes.inv.z < 0 ? 4u : 0u);
+        const uint32_t backwards =
+            (boxes.inv.x < 0 ? 1u : 0u) | (boxes.inv.y < 0 ? 2u : 0u) | (boxes.inv.z < 0 ? 4u : 0u);
         const uint32_t signs = kOptions.near_first ? backwards : 0;
         Level stack[kMaxOctreeDepth];
         int size = 0;
@@ -59,8 +60,8 @@ struct OctreeWalk {
             }
             for (;;) { // cell is that of the topmost level
                 Level& top = stack[size - 1];
-                const uint32_t k = next_child(top, boxes, cell.centre(tree.corner), signs,
-                                              skip_beyond<kOptions>(visitor, ray), span);
+                const uint32_t k =
+                    next_child(top, boxes, cell.centre(tree.corner), signs, skip_beyond<kOptions>(visitor, ray), span);
                 if (k < 8) {
                     at = top.node.child(k);
                     cell = cell.child(k);

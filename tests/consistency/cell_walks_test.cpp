@@ -25,7 +25,8 @@ const KdTreeSettings kKdSettings[] = {{},
                                       {.split = KdSplit::SpatialMedian, .max_depth = 7, .max_leaf = 6},
                                       {.max_references = 64, .node_cost = 0.01f, .empty_bonus = 0.9f}};
 
-const OctreeSettings kOctreeSettings[] = {{}, {.max_leaf = 1}, {.max_depth = 3, .max_leaf = 2}, {.max_depth = 20, .max_leaf = 1, .max_references = 100}};
+const OctreeSettings kOctreeSettings[] = {
+    {}, {.max_leaf = 1}, {.max_depth = 3, .max_leaf = 2}, {.max_depth = 20, .max_leaf = 1, .max_references = 100}};
 
 template <template <WalkOptions> class Walk, class Tree>
 void check_all_options(const SceneTrees<Tree>& scene, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
@@ -41,7 +42,7 @@ void check_all_options(const SceneTrees<Tree>& scene, const std::vector<Ray>& ra
 TEST_CASE("a kd-tree of any build setting gives the hits of testing every triangle, bit for bit") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(800, 20000)), c, 41);
+        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(600, 20000)), c, 41);
         const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(c.triangles, rays, AcceptSome{});
         for (const KdTreeSettings& settings : kKdSettings) {
@@ -57,7 +58,7 @@ TEST_CASE("a kd-tree of any build setting gives the hits of testing every triang
 TEST_CASE("an octree of any build setting gives the hits of testing every triangle, bit for bit") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(800, 20000)), c, 43);
+        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(600, 20000)), c, 43);
         const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(c.triangles, rays, AcceptSome{});
         for (const OctreeSettings& settings : kOctreeSettings) {
@@ -74,8 +75,8 @@ namespace {
 
 /// Meshes in places that turn, stretch and mirror them, and what testing every triangle of it gives.
 struct PlacedMeshes {
-    std::vector<BvhTriangle> meshes[4] = {triangles_of(make_torus(16, 12)), make_soup(300, 0), make_soup(200, 1000.0f),
-                                          {}};
+    std::vector<BvhTriangle> meshes[4] = {
+        triangles_of(make_torus(16, 12)), make_soup(300, 0), make_soup(200, 1000.0f), {}};
     std::vector<BvhTriangle> baked = triangles_of(make_torus(20, 16), 7);
     std::vector<PlacedBvh> placed;
     std::vector<Ray> rays;
@@ -116,8 +117,8 @@ struct PlacedMeshes {
         for (const Tree& tree : trees) views.push_back(view_of(tree));
         const Tree baked_tree = build(baked);
         const TopLevelBvh top = build_top_level_bvh(placed);
-        const SceneTrees<View> scene = {view_of(baked_tree), top.nodes.data(), top.instances.data(), views.data(),
-                                        top.root,            top.reach,        top.growth};
+        const SceneTrees<View> scene = {
+            view_of(baked_tree), top.nodes.data(), top.instances.data(), views.data(), top.root, top.reach, top.growth};
         check_all_options<Walk>(scene, rays, expected, AcceptSome{});
     }
 };

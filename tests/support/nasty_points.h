@@ -1,7 +1,7 @@
 #pragma once
 
-// Sets of points that break searches: ties, duplicates, planes, lattices, all in one place, none. And the plainest search
-// there is.
+// Sets of points that break searches: ties, duplicates, planes, lattices, all in one place, none. And the plainest
+// search there is.
 
 #include <algorithm>
 #include <cstdint>
@@ -20,10 +20,17 @@ struct NastyPoints {
 };
 
 inline std::vector<NastyPoints> nasty_points(uint32_t count) {
-    std::vector<NastyPoints> sets = {{"none", {}},      {"one", {{0.25f, 0.5f, -1}}}, {"two alike", {{0, 1, 0}, {0, 1, 0}}},
-                                     {"all equal", {}}, {"anywhere", {}},             {"lattice", {}},
-                                     {"in a plane", {}}, {"in a line", {}},           {"huge", {}, 0x1p40f},
-                                     {"tiny", {}, 0x1p-130f}, {"clusters", {}}};
+    std::vector<NastyPoints> sets = {{"none", {}},
+                                     {"one", {{0.25f, 0.5f, -1}}},
+                                     {"two alike", {{0, 1, 0}, {0, 1, 0}}},
+                                     {"all equal", {}},
+                                     {"anywhere", {}},
+                                     {"lattice", {}},
+                                     {"in a plane", {}},
+                                     {"in a line", {}},
+                                     {"huge", {}, 0x1p40f},
+                                     {"tiny", {}, 0x1p-130f},
+                                     {"clusters", {}}};
     Random random(3);
     std::vector<Vec3> centres;
     for (int i = 0; i < 12; ++i) centres.push_back(random.point(-1, 1));

@@ -59,7 +59,7 @@ TEST_CASE("a kd-tree does not depend on the number of threads") {
         const KdTree four = build_kd_tree(mesh, {.split = split});
         set_thread_count(0);
         CHECK(same(one, four));
-        CHECK(one.nodes.size() > mesh.size() / 4);
+        CHECK(one.nodes.size() > 1000);
     }
 }
 
@@ -78,8 +78,8 @@ TEST_CASE("clipping to the cells of a grid keeps every point of a triangle, and 
         const float scale = i % 3 == 0 ? 1.0f : (i % 3 == 1 ? 0x1p38f : 0x1p-30f);
         BvhTriangle t;
         t.a = scale * random.point(-1, 1), t.b = scale * random.point(-1, 1), t.c = scale * random.point(-1, 1);
-        if (i % 4 == 0) t.c.x = t.b.x = t.a.x;                        // in a plane
-        if (i % 8 == 0) t.a.x = t.b.x = t.c.x = 0.5f * scale;         // in the plane between two cells
+        if (i % 4 == 0) t.c.x = t.b.x = t.a.x;                             // in a plane
+        if (i % 8 == 0) t.a.x = t.b.x = t.c.x = 0.5f * scale;              // in the plane between two cells
         if (i % 5 == 0) t.c = t.a + 0x1p-20f * scale * random.direction(); // a sliver
         const Vec3 corner = scale * Vec3{0.5f, random.within(-0.5f, 0), random.within(-0.5f, 0)};
         const double slack = clip_slack(2 * scale);

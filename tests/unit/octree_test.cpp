@@ -17,7 +17,12 @@ using namespace pertev::test;
 
 namespace {
 
-const OctreeSettings kSettings[] = {{}, {.max_leaf = 1}, {.max_depth = 20, .max_leaf = 1, .max_references = 50}, {.max_depth = 4, .max_references = 2}, {.max_depth = 0}, {.max_references = 1}};
+const OctreeSettings kSettings[] = {{},
+                                    {.max_leaf = 1},
+                                    {.max_depth = 20, .max_leaf = 1, .max_references = 50},
+                                    {.max_depth = 4, .max_references = 2},
+                                    {.max_depth = 0},
+                                    {.max_references = 1}};
 
 } // namespace
 
@@ -33,13 +38,15 @@ TEST_CASE("octrees over nasty meshes are sound and keep to their bounds") {
             CHECK(tree.depth <= settings.max_depth);
             CHECK(tree.references.size() <= settings.max_references * c.triangles.size());
             CHECK(tree.nodes.empty() == c.triangles.empty());
-            if (settings.max_depth > 0 && settings.max_references >= 16 && c.triangles.size() > 500) CHECK(tree.depth > 2);
+            if (settings.max_depth > 0 && settings.max_references >= 16 && c.triangles.size() > 500)
+                CHECK(tree.depth > 2);
         }
     }
 }
 
 TEST_CASE("an octree holds a point, a line, and bounds as far away or as small as floats go") {
-    const Vec3 places[] = {{0, 0, 0}, {-0x1p40f, 0x1p40f, 0x1.fffffep39f}, {0x1p-140f, -0x1p-140f, 0}, {3, -0x1p30f, 1}};
+    const Vec3 places[] = {
+        {0, 0, 0}, {-0x1p40f, 0x1p40f, 0x1.fffffep39f}, {0x1p-140f, -0x1p-140f, 0}, {3, -0x1p30f, 1}};
     const float sizes[] = {0, 0x1p-149f, 0x1p-100f, 1e-6f, 1, 0x1p39f};
     for (const Vec3 place : places) {
         for (const float size : sizes) {
@@ -48,7 +55,9 @@ TEST_CASE("an octree holds a point, a line, and bounds as far away or as small a
             for (uint32_t i = 0; i < 100; ++i) {
                 const auto corner = [&] { return place + size * random.point(-1, 1); };
                 const Vec3 a = corner(), b = corner();
-                const auto in_range = [](Vec3 p) { return max(min(p, Vec3{0x1p40f, 0x1p40f, 0x1p40f}), Vec3{-0x1p40f, -0x1p40f, -0x1p40f}); };
+                const auto in_range = [](Vec3 p) {
+                    return max(min(p, Vec3{0x1p40f, 0x1p40f, 0x1p40f}), Vec3{-0x1p40f, -0x1p40f, -0x1p40f});
+                };
                 mesh.push_back({in_range(a), i, in_range(b), 0, i % 2 ? in_range(a) : in_range(corner()), 0});
             }
             const auto fault = find_fault(build_octree(mesh, {.max_depth = 20, .max_leaf = 1}));

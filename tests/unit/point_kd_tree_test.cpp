@@ -31,7 +31,8 @@ TEST_CASE("a kd-tree over any number of points is left-balanced") {
         for (uint32_t i = 1; i < n; ++i) { // each node is on its side of every plane above it
             for (uint32_t at = i; at > 0; at = (at - 1) / 2) {
                 const PointKdNode& above = tree.nodes[(at - 1) / 2];
-                const float from = component(tree.nodes[i].position, above.axis()) - component(above.position, above.axis());
+                const float from =
+                    component(tree.nodes[i].position, above.axis()) - component(above.position, above.axis());
                 CHECK((at % 2 == 1 ? from <= 0 : from >= 0));
             }
         }

@@ -53,7 +53,8 @@ TEST_CASE("an octree over spheres finds all that cover a place, and no other, ea
                 if (distance_squared <= spheres[i].radius * spheres[i].radius) want.push_back({distance_squared, i});
             }
             visit_covering(view_of(tree), at, [&](const NearPoint& p) { seen.push_back(p); });
-            std::sort(seen.begin(), seen.end(), [](const NearPoint& a, const NearPoint& b) { return a.index < b.index; });
+            std::sort(seen.begin(), seen.end(),
+                      [](const NearPoint& a, const NearPoint& b) { return a.index < b.index; });
             REQUIRE(seen == want);
             covering += want.size();
         }

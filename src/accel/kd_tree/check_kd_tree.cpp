@@ -31,7 +31,8 @@ public:
         parallel_for(tree_.triangles.size(), 256, [&](uint64_t i) {
             if (is_covered(static_cast<uint32_t>(i))) return;
             uint64_t seen = first;
-            while (i < seen && !first.compare_exchange_weak(seen, i)) {}
+            while (i < seen && !first.compare_exchange_weak(seen, i)) {
+            }
         });
         if (first == tree_.triangles.size()) return std::nullopt;
         return fmt::format("a part of triangle {} lies in no leaf that lists it", first.load());

@@ -15,8 +15,8 @@
 
 namespace pertev {
 
-inline constexpr int kMaxKdTreeDepth = 48;                // inner nodes on any way down; a walk's stack holds as many
-inline constexpr uint32_t kMaxKdTreeNodes = 1u << 30;     // an index has 30 bits
+inline constexpr int kMaxKdTreeDepth = 48;            // inner nodes on any way down; a walk's stack holds as many
+inline constexpr uint32_t kMaxKdTreeNodes = 1u << 30; // an index has 30 bits
 inline constexpr uint32_t kMaxKdTreeTriangles = (1u << 30) - 1; // as has a leaf's count
 
 struct alignas(8) KdTreeNode {

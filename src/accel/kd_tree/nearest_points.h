@@ -18,8 +18,7 @@ struct NearPoint {
 };
 
 HD inline bool is_nearer(const NearPoint& a, const NearPoint& b) {
-    return a.distance_squared < b.distance_squared ||
-           (a.distance_squared == b.distance_squared && a.index < b.index);
+    return a.distance_squared < b.distance_squared || (a.distance_squared == b.distance_squared && a.index < b.index);
 }
 
 /// The one formula for all searches. It grows with each of |a - b|'s components, rounding included: so the distance to

@@ -1,7 +1,7 @@
 #pragma once
 
-// The kd-tree over points, left-balanced: node i has the children 2 i + 1 and 2 i + 2, so it needs no links, and a search
-// needs no stack. For photon maps: k nearest within a radius, and all within a radius.
+// The kd-tree over points, left-balanced: node i has the children 2 i + 1 and 2 i + 2, so it needs no links, and a
+// search needs no stack. For photon maps: k nearest within a radius, and all within a radius.
 //
 // Sources: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 6; Wald, "A Stack-Free Traversal
 // Algorithm for Left-Balanced k-d Trees", 2022, algorithm 1.

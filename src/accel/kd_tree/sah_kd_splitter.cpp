@@ -98,7 +98,8 @@ SahKdSplitter::Choice SahKdSplitter::find_cheapest(const Node& node, int axis) c
     Choice best = {kInfinite, {axis, 0}, true};
     const float lo = component(node.cell.lo, axis), hi = component(node.cell.hi, axis);
     // The area of a half is linear in the plane's position.
-    const double whole = kd_cell_area(node.cell, max_abs_), flat = kd_cell_area(cell_below(node.cell, axis, lo), max_abs_);
+    const double whole = kd_cell_area(node.cell, max_abs_),
+                 flat = kd_cell_area(cell_below(node.cell, axis, lo), max_abs_);
     if (!(hi > lo && whole > 0)) return best;
     const double slope = (whole - flat) / (static_cast<double>(hi) - static_cast<double>(lo));
     const double node_cost = static_cast<double>(settings_.node_cost);
@@ -153,7 +154,8 @@ std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node&
         if (sides[i] == kAbove) places[i] = add(above, i);
         if (sides[i] != kBoth) continue;
         const BvhTriangle& triangle = triangles_[node.triangles[i]];
-        const Bounds3 part_below = clip_triangle(triangle, low, slack), part_above = clip_triangle(triangle, high, slack);
+        const Bounds3 part_below = clip_triangle(triangle, low, slack),
+                      part_above = clip_triangle(triangle, high, slack);
         if (!part_below.is_empty()) add_events(part_below, add(below, i), fresh_below);
         if (!part_above.is_empty()) add_events(part_above, add(above, i), fresh_above);
     }

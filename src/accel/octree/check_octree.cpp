@@ -42,7 +42,8 @@ public:
         parallel_for(tree_.triangles.size(), 256, [&](uint64_t i) {
             if (is_covered(static_cast<uint32_t>(i))) return;
             uint64_t seen = first;
-            while (i < seen && !first.compare_exchange_weak(seen, i)) {}
+            while (i < seen && !first.compare_exchange_weak(seen, i)) {
+            }
         });
         if (first == tree_.triangles.size()) return std::nullopt;
         return fmt::format("a part of triangle {} lies in no leaf that lists it", first.load());
@@ -72,7 +73,8 @@ private:
             const OctreeNode& node = tree_.nodes[at.node];
             depth = std::max(depth, at.depth);
             if (node.is_leaf()) {
-                if (uint64_t(node.first) + node.count() > listed.size()) return fmt::format("leaf {} runs past the end", at.node);
+                if (uint64_t(node.first) + node.count() > listed.size())
+                    return fmt::format("leaf {} runs past the end", at.node);
                 for (uint32_t i = 0; i < node.count(); ++i) {
                     if (listed[node.first + i]) return fmt::format("leaf {} has another's references", at.node);
                     listed[node.first + i] = true;
@@ -82,14 +84,16 @@ private:
                 continue;
             }
             if (at.depth >= kMaxOctreeDepth) return fmt::format("node {} is too deep", at.node);
-            if (node.link == 0 || node.link > 0xff) return fmt::format("node {} has no children, or others than 8", at.node);
+            if (node.link == 0 || node.link > 0xff)
+                return fmt::format("node {} has no children, or others than 8", at.node);
             if (!is_exact(at.cell, tree_.corner)) return fmt::format("node {} has a cell that is not exact", at.node);
             for (uint32_t k = 0; k < 8; ++k) {
                 if (node.has_child(k)) pending.push_back({node.child(k), at.depth + 1, at.cell.child(k)});
             }
         }
         if (nodes != tree_.nodes.size()) return fmt::format("{} of {} nodes are reached", nodes, tree_.nodes.size());
-        if (references != listed.size()) return fmt::format("{} of {} references are in leaves", references, listed.size());
+        if (references != listed.size())
+            return fmt::format("{} of {} references are in leaves", references, listed.size());
         if (depth != tree_.depth) return fmt::format("depth {}, stated {}", depth, tree_.depth);
         return std::nullopt;
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// The octree over triangles: cubes cut in eight at their centres. A leaf lists the triangles that reach into its cell, so
-// one triangle may stand in several leaves. Only cells with a triangle in them have a node; it holds no coordinates.
+// The octree over triangles: cubes cut in eight at their centres. A leaf lists the triangles that reach into its cell,
+// so one triangle may stand in several leaves. Only cells with a triangle in them have a node; it holds no coordinates.
 //
 // Source: Glassner, "Space Subdivision for Fast Ray Tracing", IEEE CG&A 4(10), 1984.
 // Cells are exact: the root's side is a power of two and its corner a multiple of the smallest side a cell may have,

@@ -42,7 +42,8 @@ public:
 
 private:
     static Vec3 corner_of(unsigned k, Vec3 corner, float half) {
-        return corner + half * Vec3{static_cast<float>(k & 1), static_cast<float>(k >> 1 & 1), static_cast<float>(k >> 2)};
+        return corner +
+               half * Vec3{static_cast<float>(k & 1), static_cast<float>(k >> 1 & 1), static_cast<float>(k >> 2)};
     }
 
     void add_inner(std::vector<uint32_t>& ids, const std::vector<uint32_t>& own,

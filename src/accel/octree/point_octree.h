@@ -26,7 +26,7 @@ struct alignas(16) Sphere {
 };
 
 struct alignas(16) PointOctreeNode {
-    Vec3 lo; // of the centres in the subtree
+    Vec3 lo;        // of the centres in the subtree
     uint32_t first; // of the spheres that stay at this node
     Vec3 hi;
     uint32_t count;
@@ -54,8 +54,8 @@ inline PointOctreeView view_of(const PointOctree& tree) {
     return {tree.nodes.data(), tree.spheres.data(), tree.indices.data(), static_cast<uint32_t>(tree.nodes.size())};
 }
 
-/// Cells with more than max_leaf spheres are cut, those kept aside that are larger than half a cell. Spheres are finite,
-/// |coordinate| and radius <= kMaxCoordinate. Throws Error(OverLimit) for more than kMaxOctreeSpheres.
+/// Cells with more than max_leaf spheres are cut, those kept aside that are larger than half a cell. Spheres are
+/// finite, |coordinate| and radius <= kMaxCoordinate. Throws Error(OverLimit) for more than kMaxOctreeSpheres.
 PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf = 4);
 
 /// Of the distance from `at` to the box, 0 within; no more than squared_distance to a point of it.
@@ -98,8 +98,8 @@ HD inline void search_points(const PointOctreeView& tree, Vec3 at, Found& found)
     }
 }
 
-/// The k centres nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far ones
-/// those of lower index. `found` has room for k. Returns how many there are.
+/// The k centres nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far
+/// ones those of lower index. `found` has room for k. Returns how many there are.
 HD inline uint32_t find_nearest(const PointOctreeView& tree, Vec3 at, float radius, uint32_t k, NearPoint* found) {
     NearestPoints nearest(found, k, square_of_radius(radius));
     search_points(tree, at, nearest);
