@@ -1,0 +1,71 @@
+#include "accel/kd_tree/point_kd_tree.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "math/bounds3.h"
+
+namespace pertev {
+namespace {
+
+constexpr std::size_t kParallelSubtree = 1 << 12; // points from which the two halves are built at once
+
+/// How many of n points are below the root of a left-balanced tree.
+std::size_t count_of_left(std::size_t n) {
+    if (n <= 1) return 0;
+    const std::size_t half_row = std::size_t(1) << (std::bit_width(n) - 2); // of the last row, left half
+    const std::size_t in_last_row = n - (2 * half_row - 1);
+    return half_row - 1 + std::min(in_last_row, half_row);
+}
+
+class PointKdBuilder {
+public:
+    PointKdBuilder(std::span<const Vec3> points, std::vector<PointKdNode>& nodes) : points_(points), nodes_(nodes) {}
+
+    /// Puts the points `ids` below the node `at`.
+    void build(std::span<uint32_t> ids, std::size_t at) const {
+        if (ids.empty()) return;
+        Bounds3 bounds;
+        for (const uint32_t id : ids) bounds.extend(points_[id]);
+        const Vec3 size = bounds.size();
+        const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+        const std::size_t left = count_of_left(ids.size());
+        // A total order, so that it does not matter how nth_element goes about it.
+        const auto is_before = [&](uint32_t a, uint32_t b) {
+            const float x = component(points_[a], axis), y = component(points_[b], axis);
+            return x < y || (x == y && a < b);
+        };
+        std::nth_element(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(left), ids.end(), is_before);
+        nodes_[at] = {points_[ids[left]], ids[left] << 2 | static_cast<uint32_t>(axis)};
+        const auto build_left = [&] { build(ids.first(left), 2 * at + 1); };
+        const auto build_right = [&] { build(ids.subspan(left + 1), 2 * at + 2); };
+        if (ids.size() >= kParallelSubtree) return parallel_invoke(build_left, build_right);
+        build_left();
+        build_right();
+    }
+
+private:
+    std::span<const Vec3> points_;
+    std::vector<PointKdNode>& nodes_;
+};
+
+} // namespace
+
+PointKdTree build_point_kd_tree(std::span<const Vec3> points) {
+    if (points.size() > kMaxKdPoints) {
+        throw Error(ErrorCode::OverLimit, "a kd-tree over points holds at most 2^30 - 1 of them");
+    }
+    PointKdTree tree;
+    tree.nodes.resize(points.size());
+    std::vector<uint32_t> ids(points.size());
+    for (uint32_t i = 0; i < ids.size(); ++i) {
+        PERTEV_CHECK(is_finite(points[i]));
+        ids[i] = i;
+    }
+    PointKdBuilder(points, tree.nodes).build(ids, 0);
+    return tree;
+}
+
+} // namespace pertev

@@ -1,0 +1,93 @@
+#pragma once
+
+// The kd-tree over points, left-balanced: node i has the children 2 i + 1 and 2 i + 2, so it needs no links, and a
+// search needs no stack. For photon maps: k nearest within a radius, and all within a radius.
+//
+// Sources: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 6; Wald, "A Stack-Free Traversal
+// Algorithm for Left-Balanced k-d Trees", 2022, algorithm 1.
+// A half is left out only if its plane is farther than the limit: equal is entered, so that ties are settled by index.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "accel/kd_tree/nearest_points.h"
+#include "base/host_device.h"
+#include "math/vec3.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kMaxKdPoints = (1u << 30) - 1; // an index has 30 bits; twice one is still an int
+
+struct alignas(16) PointKdNode {
+    Vec3 position;
+    uint32_t index_and_axis; // index in the builder's input, times 4, + the axis that the plane cuts
+
+    HD uint32_t index() const { return index_and_axis >> 2; }
+    HD int axis() const { return static_cast<int>(index_and_axis & 3); }
+};
+static_assert(sizeof(PointKdNode) == 16);
+
+struct PointKdTree {
+    std::vector<PointKdNode> nodes;
+};
+
+/// Plain pointers, host's or device's.
+struct PointKdTreeView {
+    const PointKdNode* nodes = nullptr;
+    uint32_t count = 0;
+};
+
+inline PointKdTreeView view_of(const PointKdTree& tree) {
+    return {tree.nodes.data(), static_cast<uint32_t>(tree.nodes.size())};
+}
+
+/// Points are finite, |coordinate| <= kMaxCoordinate. The same for any number of threads. Throws Error(OverLimit) for
+/// more than kMaxKdPoints.
+PointKdTree build_point_kd_tree(std::span<const Vec3> points);
+
+/// Offers `found` each point that may be within its limit, which may shrink meanwhile:
+///   float limit() const             squared; what is farther may be left out
+///   void offer(const NearPoint&)
+template <class Found>
+HD inline void search_points(const PointKdTreeView& tree, Vec3 at, Found& found) {
+    const int count = static_cast<int>(tree.count);
+    int current = 0, previous = -1; // -1 stands above the root
+    while (current >= 0) {
+        const int parent = (current + 1) / 2 - 1;
+        if (current >= count) {
+            previous = current;
+            current = parent;
+            continue;
+        }
+        const PointKdNode node = tree.nodes[current];
+        if (previous < current) found.offer({squared_distance(node.position, at), node.index()});
+        const float from = component(at, node.axis()) - component(node.position, node.axis());
+        const int near = 2 * current + (from > 0 ? 2 : 1), far = 2 * current + (from > 0 ? 1 : 2);
+        int next = parent;
+        if (previous < current) {
+            next = near;
+        } else if (previous == near && from * from <= found.limit()) {
+            next = far;
+        }
+        previous = current;
+        current = next;
+    }
+}
+
+/// The k points nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far ones
+/// those of lower index. `found` has room for k. Returns how many there are.
+HD inline uint32_t find_nearest(const PointKdTreeView& tree, Vec3 at, float radius, uint32_t k, NearPoint* found) {
+    NearestPoints nearest(found, k, square_of_radius(radius));
+    search_points(tree, at, nearest);
+    return nearest.sort();
+}
+
+/// Calls visit(NearPoint) for each point at most `radius` away, in an order that only the points and `at` decide.
+template <class Visit>
+HD inline void visit_within(const PointKdTreeView& tree, Vec3 at, float radius, Visit&& visit) {
+    PointsWithin<Visit> within = {square_of_radius(radius), visit};
+    search_points(tree, at, within);
+}
+
+} // namespace pertev

@@ -1,0 +1,116 @@
+#pragma once
+
+// The octree over spheres of influence, and over points, which are spheres of radius 0. For irradiance caches: all
+// records whose sphere covers a place, and all whose centre is within a radius of it.
+//
+// Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 4: a
+// sphere stays at the level where cells are about its size, so that a large one does not make small cells reach far.
+// Nodes lie depth first, each with a link to what follows its subtree, so that a search needs no stack. A node knows
+// the bounds of the centres beneath it and their largest radius; it is left out only if it is farther than that.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "accel/kd_tree/nearest_points.h"
+#include "base/host_device.h"
+#include "math/vec3.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kMaxOctreeSpheres = 1u << 30; // there are at most twice as many nodes
+
+struct alignas(16) Sphere {
+    Vec3 centre;
+    float radius = 0; // >= 0
+};
+
+struct alignas(16) PointOctreeNode {
+    Vec3 lo;        // of the centres in the subtree
+    uint32_t first; // of the spheres that stay at this node
+    Vec3 hi;
+    uint32_t count;
+    float max_radius; // in the subtree
+    uint32_t skip;    // the node that follows the subtree
+    uint32_t unused[2] = {0, 0};
+};
+static_assert(sizeof(PointOctreeNode) == 48);
+
+struct PointOctree {
+    std::vector<PointOctreeNode> nodes; // none: no sphere
+    std::vector<Sphere> spheres;        // node after node
+    std::vector<uint32_t> indices;      // [spheres] in the builder's input; ascending within a node
+};
+
+/// Plain pointers, host's or device's.
+struct PointOctreeView {
+    const PointOctreeNode* nodes = nullptr;
+    const Sphere* spheres = nullptr;
+    const uint32_t* indices = nullptr;
+    uint32_t node_count = 0;
+};
+
+inline PointOctreeView view_of(const PointOctree& tree) {
+    return {tree.nodes.data(), tree.spheres.data(), tree.indices.data(), static_cast<uint32_t>(tree.nodes.size())};
+}
+
+/// Cells with more than max_leaf spheres are cut, those kept aside that are larger than half a cell. Spheres are
+/// finite, |coordinate| and radius <= kMaxCoordinate. Throws Error(OverLimit) for more than kMaxOctreeSpheres.
+PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf = 4);
+
+/// Of the distance from `at` to the box, 0 within; no more than squared_distance to a point of it.
+HD inline float squared_distance_to_box(Vec3 lo, Vec3 hi, Vec3 at) {
+    const Vec3 d = max(max(lo - at, at - hi), Vec3{0, 0, 0});
+    return d.x * d.x + d.y * d.y + d.z * d.z;
+}
+
+/// Calls visit(NearPoint) for each sphere that covers `at`, its surface included, in the order of the tree.
+template <class Visit>
+HD inline void visit_covering(const PointOctreeView& tree, Vec3 at, Visit&& visit) {
+    for (uint32_t i = 0; i < tree.node_count;) {
+        const PointOctreeNode node = tree.nodes[i];
+        if (squared_distance_to_box(node.lo, node.hi, at) > node.max_radius * node.max_radius) {
+            i = node.skip;
+            continue;
+        }
+        for (uint32_t k = node.first; k < node.first + node.count; ++k) {
+            const Sphere sphere = tree.spheres[k];
+            const float distance_squared = squared_distance(sphere.centre, at);
+            if (distance_squared <= sphere.radius * sphere.radius) visit(NearPoint{distance_squared, tree.indices[k]});
+        }
+        ++i;
+    }
+}
+
+/// Offers `found` each centre that may be within its limit; see point_kd_tree.h.
+template <class Found>
+HD inline void search_points(const PointOctreeView& tree, Vec3 at, Found& found) {
+    for (uint32_t i = 0; i < tree.node_count;) {
+        const PointOctreeNode node = tree.nodes[i];
+        if (!(squared_distance_to_box(node.lo, node.hi, at) <= found.limit())) {
+            i = node.skip;
+            continue;
+        }
+        for (uint32_t k = node.first; k < node.first + node.count; ++k) {
+            found.offer({squared_distance(tree.spheres[k].centre, at), tree.indices[k]});
+        }
+        ++i;
+    }
+}
+
+/// The k centres nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far
+/// ones those of lower index. `found` has room for k. Returns how many there are.
+HD inline uint32_t find_nearest(const PointOctreeView& tree, Vec3 at, float radius, uint32_t k, NearPoint* found) {
+    NearestPoints nearest(found, k, square_of_radius(radius));
+    search_points(tree, at, nearest);
+    return nearest.sort();
+}
+
+/// Calls visit(NearPoint) for each centre at most `radius` away, in the order of the tree.
+template <class Visit>
+HD inline void visit_within(const PointOctreeView& tree, Vec3 at, float radius, Visit&& visit) {
+    PointsWithin<Visit> within = {square_of_radius(radius), visit};
+    search_points(tree, at, within);
+}
+
+} // namespace pertev

@@ -1,0 +1,34 @@
+#pragma once
+
+// Tests the triangles that a leaf lists by reference. One that stands in several leaves is tested in each again: that
+// changes no result, and costs less than remembering.
+
+#include <cstdint>
+
+#include "accel/bvh/bvh.h"
+#include "base/host_device.h"
+#include "trace/load_bvh.h"
+#include "trace/ray.h"
+#include "trace/ray_tests.h"
+
+namespace pertev {
+
+/// As test_leaf, for references[0] to references[count - 1].
+template <class Tests = ExactTests, class Visitor, class Counter>
+HD inline bool test_references(const BvhTriangle* triangles, const uint32_t* references, uint32_t count, const Ray& ray,
+                               const typename Tests::Triangles& prepared, uint32_t instance, Visitor& visitor,
+                               const Counter& counter) {
+    for (uint32_t i = 0; i < count; ++i) {
+        const BvhTriangle* at = triangles + references[i];
+        counter.add_triangle(at);
+        const BvhTriangle triangle = load_aligned(at);
+        TriangleHit hit;
+        if (Tests::intersect(ray, prepared, triangle.a, triangle.b, triangle.c, hit) &&
+            visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace pertev
