@@ -1,0 +1,56 @@
+#pragma once
+
+// Speculative while-while: a ray that has found a leaf puts it off and goes on down, as long as another lane of its
+// warp is still without one, for it would idle otherwise. What it tests meanwhile may turn out not to have been needed.
+//
+// Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 4 (one postponed
+// leaf). How far lanes run ahead is a matter of the warp they are in; the hits are not. On the host, where a warp is
+// one ray, nothing is put off and the nodes tested are those of WhileWhileWalk.
+
+#include "trace/test_leaf.h"
+#include "trace/walk_options.h"
+#include "trace/walk_stack.h"
+#include "trace/warp_vote.h"
+
+namespace pertev {
+
+template <WalkOptions kOptions>
+struct SpeculativeWalk {
+    using Tree = BvhView;
+
+    template <class Visitor, class Counter>
+    HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
+                        const Counter& counter) {
+        using Tests = TestsOf<kOptions>;
+        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
+        const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
+        const auto prepared = Tests::make_triangles(ray);
+        WalkStack<kOptions.rta> stack;
+        uint32_t link = bvh.root, postponed = kNoLink;
+        for (;;) {
+            while (!(link & kLeafBit)) {
+                counter.add_node(bvh.nodes + link);
+                const BvhNode node = load_aligned(bvh.nodes + link);
+                const float limit = skip_beyond<kOptions>(visitor, ray);
+                link = step_down<kNear>(node, boxes, ray.t_min, limit, stack);
+                const bool at_leaf = (link & kLeafBit) && link != kNoLink;
+                if (all_lanes(at_leaf || postponed != kNoLink)) break;
+                if (at_leaf && postponed == kNoLink) {
+                    postponed = link;
+                    link = stack.pop(limit);
+                }
+            }
+            for (;;) { // what was put off, then what the loop above ended at
+                const bool was_postponed = postponed != kNoLink;
+                const uint32_t leaf = was_postponed ? postponed : link;
+                if (!(leaf & kLeafBit) || leaf == kNoLink) break;
+                if (test_leaf<Tests>(bvh.triangles, leaf, ray, prepared, instance, visitor, counter)) return true;
+                postponed = kNoLink;
+                if (!was_postponed) link = stack.pop(skip_beyond<kOptions>(visitor, ray));
+            }
+            if (link == kNoLink) return false;
+        }
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,59 @@
+#pragma once
+
+// The stack of the laboratory's walks, and the step that all of them take at an inner node of a binary tree.
+//
+// Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009: both boxes are tested at
+// once, the walk goes on with the nearer child and the other one is pushed. Redundant traversal avoidance drops, at
+// each pop, what is entered beyond the nearest hit so far; without it no entry parameters are kept.
+
+#include <cstdint>
+
+#include "accel/bvh/bvh.h"
+#include "base/host_device.h"
+#include "base/limits.h"
+#include "trace/ray_boxes.h"
+#include "trace/walk_tree.h"
+
+namespace pertev {
+
+template <bool kRta>
+struct WalkStack {
+    WalkStackEntry entries[kMaxBvhDepth];
+    int size = 0;
+
+    HD void push(uint32_t link, float entry) { entries[size++] = {link, entry}; }
+    /// kNoLink when nothing is left.
+    HD uint32_t pop(float limit) {
+        while (size > 0) {
+            const WalkStackEntry top = entries[--size];
+            if (top.entry <= limit) return top.link;
+        }
+        return kNoLink;
+    }
+};
+
+template <>
+struct WalkStack<false> {
+    uint32_t links[kMaxBvhDepth];
+    int size = 0;
+
+    HD void push(uint32_t link, float) { links[size++] = link; }
+    HD uint32_t pop(float) { return size > 0 ? links[--size] : kNoLink; }
+};
+
+/// The link to go on with after `node`: a child, or what is popped where neither is entered.
+template <bool kNearFirst, class Stack>
+HD inline uint32_t step_down(const BvhNode& node, const RayBoxes& boxes, float t_min, float t_limit, Stack& stack) {
+    float entry0, entry1;
+    const bool enters0 = enters_child(boxes, node, 0, t_min, t_limit, entry0);
+    const bool enters1 = enters_child(boxes, node, 1, t_min, t_limit, entry1);
+    if (enters0 && enters1) {
+        const bool swap = kNearFirst && entry1 <= entry0;
+        stack.push(swap ? node.child[0] : node.child[1], swap ? entry0 : entry1);
+        return swap ? node.child[1] : node.child[0];
+    }
+    if (enters0 || enters1) return enters0 ? node.child[0] : node.child[1];
+    return stack.pop(t_limit);
+}
+
+} // namespace pertev
