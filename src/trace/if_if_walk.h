@@ -22,7 +22,8 @@ struct IfIfWalk {
         constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
         const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
         const auto prepared = Tests::make_triangles(ray);
-        WalkStack<kOptions.rta> stack;
+        typename WalkStack<kOptions.rta>::Slot slots[kMaxBvhDepth];
+        WalkStack<kOptions.rta> stack = {slots};
         uint32_t link = bvh.root; // at a leaf: kLeafBit | the triangle to test next
         while (link != kNoLink) {
             if (!(link & kLeafBit)) {

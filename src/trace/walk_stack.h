@@ -16,16 +16,19 @@
 
 namespace pertev {
 
+/// Over slots that lie in an array of their own, [kMaxBvhDepth]: together in one object, the compiler would keep the
+/// size in the device's local memory as well.
 template <bool kRta>
 struct WalkStack {
-    WalkStackEntry entries[kMaxBvhDepth];
+    using Slot = WalkStackEntry;
+    Slot* slots;
     int size = 0;
 
-    HD void push(uint32_t link, float entry) { entries[size++] = {link, entry}; }
+    HD void push(uint32_t link, float entry) { slots[size++] = {link, entry}; }
     /// kNoLink when nothing is left.
     HD uint32_t pop(float limit) {
         while (size > 0) {
-            const WalkStackEntry top = entries[--size];
+            const WalkStackEntry top = slots[--size];
             if (top.entry <= limit) return top.link;
         }
         return kNoLink;
@@ -34,11 +37,12 @@ struct WalkStack {
 
 template <>
 struct WalkStack<false> {
-    uint32_t links[kMaxBvhDepth];
+    using Slot = uint32_t;
+    Slot* slots;
     int size = 0;
 
-    HD void push(uint32_t link, float) { links[size++] = link; }
-    HD uint32_t pop(float) { return size > 0 ? links[--size] : kNoLink; }
+    HD void push(uint32_t link, float) { slots[size++] = link; }
+    HD uint32_t pop(float) { return size > 0 ? slots[--size] : kNoLink; }
 };
 
 /// The link to go on with after `node`: a child, or what is popped where neither is entered.

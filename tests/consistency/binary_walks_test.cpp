@@ -21,6 +21,7 @@
 #include "trace/short_stack_walk.h"
 #include "trace/skip_links_walk.h"
 #include "trace/speculative_walk.h"
+#include "trace/warp_packet_walk.h"
 #include "trace/while_while_walk.h"
 
 using namespace pertev;
@@ -64,6 +65,7 @@ void check_binary_walks(const SceneBvhView& scene, const std::vector<Ray>& rays,
     check_options<RestartTrailWalk>("restart trail", scene, rays, expected, accept);
     check_options<ShortStackWalk>("short stack", scene, rays, expected, accept);
     check_options<ParentLinksWalk>("parent links", scene, rays, expected, accept);
+    check_options<WarpPacketWalk>("warp packet", scene, rays, expected, accept);
 }
 
 Bvh with_parent_links(Bvh bvh) {
@@ -207,6 +209,7 @@ TEST_CASE("walks with a stack visit the same, walks without one visit more, brut
             const Visits stack = count_visits<StackWalk>(view_of(bvh), ray, any);
             wrong += count_visits<WhileWhileWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
             wrong += count_visits<SpeculativeWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
+            wrong += count_visits<WarpPacketWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
             wrong += count_visits<IfIfWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
             const Visits trail = count_visits<RestartTrailWalk<kAll>>(view_of(bvh), ray, any);
             const Visits some = count_visits<ShortStackWalk<kAll>>(view_of(bvh), ray, any);
