@@ -11,8 +11,9 @@
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
 #include "base/limits.h"
+#include "math/scalar.h"
+#include "trace/load_bvh.h"
 #include "trace/ray_boxes.h"
-#include "trace/walk_tree.h"
 
 namespace pertev {
 
@@ -20,16 +21,16 @@ namespace pertev {
 /// size in the device's local memory as well.
 template <bool kRta>
 struct WalkStack {
-    using Slot = WalkStackEntry;
+    using Slot = uint64_t; // link in the lower half, entry in the upper: one load, where a struct would become two
     Slot* slots;
     int size = 0;
 
-    HD void push(uint32_t link, float entry) { slots[size++] = {link, entry}; }
+    HD void push(uint32_t link, float entry) { slots[size++] = uint64_t(bits_of(entry)) << 32 | link; }
     /// kNoLink when nothing is left.
     HD uint32_t pop(float limit) {
         while (size > 0) {
-            const WalkStackEntry top = slots[--size];
-            if (top.entry <= limit) return top.link;
+            const Slot top = slots[--size];
+            if (float_of(static_cast<uint32_t>(top >> 32)) <= limit) return static_cast<uint32_t>(top);
         }
         return kNoLink;
     }

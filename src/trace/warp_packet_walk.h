@@ -13,7 +13,7 @@
 
 #include "trace/test_leaf.h"
 #include "trace/walk_options.h"
-#include "trace/walk_stack.h"
+#include "trace/walk_tree.h"
 #include "trace/warp_vote.h"
 
 namespace pertev {
