@@ -11,6 +11,7 @@
 
 #include <cstdint>
 
+#include "base/limits.h"
 #include "trace/test_leaf.h"
 #include "trace/walk_options.h"
 #include "trace/walk_tree.h"
