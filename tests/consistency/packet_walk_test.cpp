@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "accel/bvh/build_bvh.h"
@@ -62,7 +63,7 @@ void check_all_options(const SceneBvhView& scene, const std::vector<Ray>& rays, 
 
 TEST_CASE("packets give each ray the hit of testing every triangle") {
     for (const NastyMesh& c : nasty_meshes()) {
-        CAPTURE(c.name);
+        CAPTURE(std::string(c.name));
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(400, 20000)), c, 41);
         const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const Bvh bvh = build_bvh(c.triangles), split = build_split_bvh(c.triangles, 6);

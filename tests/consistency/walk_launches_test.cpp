@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "accel/bvh/build_bvh.h"
@@ -75,13 +76,13 @@ uint64_t count_wrong(const std::vector<Hit>& hits, const std::vector<Hit>& expec
 TEST_CASE("each way of handing out rays gives each ray its hit") {
     Queue queue = queue_asked_for();
     for (const NastyMesh& c : nasty_meshes()) {
-        CAPTURE(c.name);
+        CAPTURE(std::string(c.name));
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(333, 20011)), c, 43);
         const std::vector<Hit> expected = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const TreeOnDevice tree(queue, linked_bvh(c.triangles));
         for (const WalkLaunch& launch : walk_launches()) {
-            CAPTURE(launch.walk);
-            CAPTURE(launch.distribution);
+            CAPTURE(std::string(launch.walk));
+            CAPTURE(std::string(launch.distribution));
             CAPTURE(launch.any);
             CAPTURE(launch.rta);
             BatchOnDevice batch(queue, rays);
@@ -121,8 +122,8 @@ TEST_CASE("so they do over instances, those that can, and packets whose rays par
     int launches = 0;
     for (const WalkLaunch& launch : walk_launches()) {
         if (launch.run_scene == nullptr) continue;
-        CAPTURE(launch.walk);
-        CAPTURE(launch.distribution);
+        CAPTURE(std::string(launch.walk));
+        CAPTURE(std::string(launch.distribution));
         CAPTURE(launch.any);
         BatchOnDevice batch(queue, s.rays);
         batch.hits.zero();

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <optional>
+#include <string>
 
 #include "accel/bvh/build_bvh.h"
 #include "tests/support/nasty_meshes.h"
@@ -14,7 +15,7 @@ using namespace pertev::test;
 
 TEST_CASE("parent links lead from every node to the root") {
     for (const NastyMesh& c : nasty_meshes()) {
-        CAPTURE(c.name);
+        CAPTURE(std::string(c.name));
         Bvh bvh = build_bvh(c.triangles);
         for (const BvhNode& node : bvh.nodes) CHECK((node.parent == 0 && node.split == 0)); // as the cache stores them
         add_parent_links(bvh);

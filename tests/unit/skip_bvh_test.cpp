@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <optional>
+#include <string>
 
 #include "accel/bvh/build_bvh.h"
 #include "tests/support/nasty_meshes.h"
@@ -15,7 +16,7 @@ using namespace pertev::test;
 
 TEST_CASE("a list with skip links is sound for every mesh") {
     for (const NastyMesh& c : nasty_meshes()) {
-        CAPTURE(c.name);
+        CAPTURE(std::string(c.name));
         const Bvh bvh = build_bvh(c.triangles);
         const SkipBvh skip = make_skip_bvh(bvh);
         CHECK(skip.nodes.size() == (c.triangles.empty() ? 0 : 2 * bvh.nodes.size() + 1));
