@@ -44,14 +44,20 @@ HD inline RayBoxes make_ray_boxes(Vec3 origin, Vec3 direction, float bounds_max_
     return r;
 }
 
-/// Whether the box of child k may hold a hit with t_min < t <= t_limit; its entry parameter goes to `entry`.
-HD inline bool enters_child(const RayBoxes& r, const BvhNode& node, int k, float t_min, float t_limit, float& entry) {
-    const float x0 = fma(node.x[k], r.inv.x, r.lo.x), x1 = fma(node.x[k + 2], r.inv.x, r.hi.x);
-    const float y0 = fma(node.y[k], r.inv.y, r.lo.y), y1 = fma(node.y[k + 2], r.inv.y, r.hi.y);
-    const float z0 = fma(node.z[k], r.inv.z, r.lo.z), z1 = fma(node.z[k + 2], r.inv.z, r.hi.z);
+/// Whether a box may hold a hit with t_min < t <= t_limit; its entry parameter goes to `entry`.
+HD inline bool enters_box(const RayBoxes& r, Vec3 lower, Vec3 upper, float t_min, float t_limit, float& entry) {
+    const float x0 = fma(lower.x, r.inv.x, r.lo.x), x1 = fma(upper.x, r.inv.x, r.hi.x);
+    const float y0 = fma(lower.y, r.inv.y, r.lo.y), y1 = fma(upper.y, r.inv.y, r.hi.y);
+    const float z0 = fma(lower.z, r.inv.z, r.lo.z), z1 = fma(upper.z, r.inv.z, r.hi.z);
     entry = box_max(box_max(box_min(x0, x1), box_min(y0, y1)), box_max(box_min(z0, z1), t_min));
     const float exit = box_min(box_min(box_max(x0, x1), box_max(y0, y1)), box_min(box_max(z0, z1), t_limit));
     return entry <= exit;
+}
+
+/// The same of the box of child k.
+HD inline bool enters_child(const RayBoxes& r, const BvhNode& node, int k, float t_min, float t_limit, float& entry) {
+    return enters_box(r, {node.x[k], node.y[k], node.z[k]}, {node.x[k + 2], node.y[k + 2], node.z[k + 2]}, t_min,
+                      t_limit, entry);
 }
 
 } // namespace pertev

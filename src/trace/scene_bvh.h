@@ -26,6 +26,12 @@ struct SceneTrees {
 };
 using SceneBvhView = SceneTrees<BvhView>;
 
+/// A scene all of whose triangles are baked. Its walk has no top level in it, which saves a kernel registers.
+template <class Tree>
+struct SingleTree {
+    Tree baked;
+};
+
 /// The ray in an instance's space. The direction is not renormalised, so that t is shared by all spaces.
 HD inline Ray transform_ray(const Transform& local_from_world, const Ray& ray) {
     return {transform_point(local_from_world, ray.origin), ray.t_min, transform_vector(local_from_world, ray.direction),

@@ -1,6 +1,6 @@
 #pragma once
 
-// Tests the run of triangles that a leaf is.
+// Tests the run of triangles that a leaf is, or one of them.
 
 #include <cstdint>
 
@@ -12,21 +12,28 @@
 
 namespace pertev {
 
-/// Shows the visitor each triangle of the run that the link `leaf` names and the ray hits. `instance` is kNoHit where
-/// the triangles carry their own. True when the visitor ended the walk.
+/// Shows the visitor the triangle at `at`, if the ray hits it; `last` tells whether its leaf ends
+/// there. `instance` is kNoHit where the triangles carry their own. True when the visitor ended the walk.
+template <class Tests = ExactTests, class Visitor, class Counter>
+HD inline bool test_triangle(const BvhTriangle* at, const Ray& ray, const typename Tests::Triangles& prepared,
+                             uint32_t instance, Visitor& visitor, const Counter& counter, bool& last) {
+    counter.add_triangle(at);
+    const BvhTriangle triangle = load_aligned(at);
+    last = (triangle.flags & kLastInLeaf) != 0;
+    TriangleHit hit;
+    return Tests::intersect(ray, prepared, triangle.a, triangle.b, triangle.c, hit) &&
+           visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit);
+}
+
+/// The same of each triangle of the run that the link `leaf` names.
 template <class Tests = ExactTests, class Visitor, class Counter>
 HD inline bool test_leaf(const BvhTriangle* triangles, uint32_t leaf, const Ray& ray,
                          const typename Tests::Triangles& prepared, uint32_t instance, Visitor& visitor,
                          const Counter& counter) {
     for (const BvhTriangle* at = triangles + (leaf & ~kLeafBit);; ++at) {
-        counter.add_triangle(at);
-        const BvhTriangle triangle = load_aligned(at);
-        TriangleHit hit;
-        if (Tests::intersect(ray, prepared, triangle.a, triangle.b, triangle.c, hit) &&
-            visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit)) {
-            return true;
-        }
-        if (triangle.flags & kLastInLeaf) return false;
+        bool last;
+        if (test_triangle<Tests>(at, ray, prepared, instance, visitor, counter, last)) return true;
+        if (last) return false;
     }
 }
 

@@ -23,9 +23,8 @@ struct AnyVisitor {
     }
 };
 
-template <class Walk = StackWalk, class Accept, class Counter = NoWalkCounter>
-HD inline bool trace_any(const SceneTrees<typename Walk::Tree>& scene, const Ray& ray, const Accept& accept,
-                         const Counter& counter = {}) {
+template <class Walk = StackWalk, class Scene, class Accept, class Counter = NoWalkCounter>
+HD inline bool trace_any(const Scene& scene, const Ray& ray, const Accept& accept, const Counter& counter = {}) {
     AnyVisitor<Accept> visitor = {accept, ray.t_max};
     walk_scene<Walk>(scene, ray, visitor, counter);
     return visitor.found;

@@ -34,10 +34,11 @@ struct ClosestVisitor {
 };
 
 /// True and `hit` when there is a candidate; else false and hit.instance is kNoHit. `accept(instance, primitive, u, v)`
-/// is a pure function: a walk may ask it in any order, and about any subset that decides the result.
-template <class Walk = StackWalk, class Accept, class Counter = NoWalkCounter>
-HD inline bool trace_closest(const SceneTrees<typename Walk::Tree>& scene, const Ray& ray, const Accept& accept,
-                             Hit& hit, const Counter& counter = {}) {
+/// is a pure function: a walk may ask it in any order, and about any subset that decides the result. `scene` is
+/// SceneTrees or SingleTree of what the walk walks.
+template <class Walk = StackWalk, class Scene, class Accept, class Counter = NoWalkCounter>
+HD inline bool trace_closest(const Scene& scene, const Ray& ray, const Accept& accept, Hit& hit,
+                             const Counter& counter = {}) {
     ClosestVisitor<Accept> visitor = {accept, {}};
     visitor.best.t = ray.t_max;
     walk_scene<Walk>(scene, ray, visitor, counter);

@@ -51,6 +51,12 @@ struct StackWalk {
 };
 
 template <class Walk, class Visitor, class Counter>
+HD inline void walk_scene(const SingleTree<typename Walk::Tree>& scene, const Ray& ray, Visitor& visitor,
+                          const Counter& counter) {
+    Walk::walk(scene.baked, ray, kNoHit, visitor, counter);
+}
+
+template <class Walk, class Visitor, class Counter>
 HD inline void walk_scene(const SceneTrees<typename Walk::Tree>& scene, const Ray& ray, Visitor& visitor,
                           const Counter& counter) {
     WalkStackEntry top_stack[kMaxTopLevelDepth];

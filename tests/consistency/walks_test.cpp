@@ -9,6 +9,7 @@
 #include "accel/bvh/top_level_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/check_walk.h"
+#include "tests/support/instanced_scene.h"
 #include "tests/support/nasty_meshes.h"
 
 using namespace pertev;
@@ -49,47 +50,16 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
 }
 
 TEST_CASE("instances give the hits of testing every triangle of every instance, bit for bit") {
-    const std::vector<BvhTriangle> meshes[] = {triangles_of(make_torus(16, 12)), make_soup(300, 0),
-                                               make_soup(200, 1000.0f), triangles_of(make_sphere(0, {}, 1))};
-    const std::vector<BvhTriangle> baked = triangles_of(make_torus(20, 16), 7);
-    std::vector<Bvh> trees;
+    const InstancedScene s = make_instanced_scene(3000);
     std::vector<BvhView> views;
-    for (const auto& mesh : meshes) trees.push_back(build_bvh(mesh));
-    for (const Bvh& tree : trees) views.push_back(view_of(tree));
-    const std::vector<WideBvhNode<8>> wide_torus = make_wide_nodes(trees[0]), wide_soup = make_wide_nodes(trees[2]);
+    for (const Bvh& tree : s.trees) views.push_back(view_of(tree));
+    const std::vector<WideBvhNode<8>> wide_torus = make_wide_nodes(s.trees[0]),
+                                      wide_soup = make_wide_nodes(s.trees[2]);
     views[0].wide = wide_torus.data();
     views[2].wide = wide_soup.data();
-
-    Random random(5);
-    std::vector<PlacedBvh> placed;
-    for (uint32_t i = 0; i < 60; ++i) {
-        const uint32_t mesh = i % 4;
-        const Vec3 axis = random.direction();
-        const float w = random.within(-1, 1), s = sqrt(1 - w * w);
-        Transform place = make_rotation(s * axis.x, s * axis.y, s * axis.z, w);
-        if (i % 5 == 0) place = Transform{}; // identity: exact, and ties with its neighbours
-        if (i % 3 == 0) place = compose(place, make_scale({0.5f, random.within(0.01f, 4), -1}));
-        if (i % 7 == 0) place = compose(place, make_scale({1e4f, 1e4f, 1e4f}));
-        place = compose(make_translation(i % 5 == 0 ? Vec3{} : random.point(-3, 3)), place);
-        if (mesh == 2) place = compose(place, make_translation({-1000, 0, 1000})); // far from its own origin
-        placed.push_back({place, trees[mesh].bounds, mesh, i * 3 + 1});
-    }
-    const TopLevelBvh top = build_top_level_bvh(placed);
-    const Bvh baked_tree = build_bvh(baked);
     for (const bool with_baked : {false, true}) {
-        SceneBvhView scene = {{},        top.nodes.data(), top.instances.data(), views.data(), top.root,
-                              top.reach, top.growth};
-        if (with_baked) scene.baked = view_of(baked_tree);
-        const std::vector<Ray> rays = nasty_rays(3000, {"torus", baked, {}, 1}, 23);
-        std::vector<Hit> expected(rays.size());
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            if (with_baked) trace_by_brute_force(baked, rays[i], kNoHit, AcceptSome{}, expected[i]);
-            for (const PlacedBvh& p : placed) {
-                const Ray local = transform_ray(inverse(p.world_from_local), rays[i]);
-                trace_by_brute_force(meshes[p.mesh_bvh], local, p.instance, AcceptSome{}, expected[i]);
-            }
-        }
-        check_walk(scene, rays, expected, AcceptSome{});
+        const SceneBvhView scene = s.scene(views, with_baked ? view_of(s.baked_tree) : BvhView{});
+        check_walk(scene, s.rays, s.hits_by_brute_force(with_baked), AcceptSome{});
     }
 }
 

@@ -218,9 +218,12 @@ private:
         const int first = half_area(left.box) * right_size >= half_area(right.box) * left_size ? 0 : 1;
         set_child(node, first, to_bounds(left.box), links[0]);
         set_child(node, 1 - first, to_bounds(right.box), links[1]);
-        node.unused[first] = counts[0], node.unused[1 - first] = counts[1];
+        leaf_size(node, first) = counts[0], leaf_size(node, 1 - first) = counts[1];
         return index;
     }
+
+    /// Boxes of child k where that is a leaf; the words are set to 0 again when the nodes are put in order.
+    static uint32_t& leaf_size(BvhNode& node, int k) { return k == 0 ? node.parent : node.split; }
 
     static uint32_t leaf(const Range& range, uint32_t& leaf_count) {
         leaf_count = range.size();
@@ -380,11 +383,11 @@ private:
             for (int k = 1; k >= 0; --k) {
                 const double probability = static_cast<double>(child_bounds(node, k).half_area()) / area;
                 if (node.child[k] & kLeafBit) {
-                    end_leaf(node.child[k], node.unused[k], probability);
+                    end_leaf(node.child[k], leaf_size(node, k), probability);
                 } else {
                     pending.push_back({node.child[k], index, k, at.depth + 1, probability});
                 }
-                node.unused[k] = 0;
+                leaf_size(node, k) = 0;
             }
             tree.nodes.push_back(node);
         }

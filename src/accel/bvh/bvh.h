@@ -34,8 +34,9 @@ static_assert(sizeof(BvhTriangle) == 48);
 /// Inner node, 64 bytes: four loads of 16. Along each axis {lower of child 0, lower of 1, upper of 0, upper of 1}.
 struct alignas(64) BvhNode {
     float x[4], y[4], z[4];
-    uint32_t child[2]; // links
-    uint32_t unused[2] = {0, 0};
+    uint32_t child[2];   // links
+    uint32_t parent = 0; // this and `split` are what add_parent_links (parent_links.h) makes of them; else 0
+    uint32_t split = 0;
 };
 static_assert(sizeof(BvhNode) == 64);
 

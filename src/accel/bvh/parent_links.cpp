@@ -1,0 +1,51 @@
+#include "accel/bvh/parent_links.h"
+
+#include <fmt/format.h>
+
+#include "base/parallel_for.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint64_t kGrain = 1 << 14;
+
+uint32_t split_of(const BvhNode& node) {
+    const Vec3 apart = child_bounds(node, 1).centre() - child_bounds(node, 0).centre();
+    const Vec3 size = abs(apart);
+    const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+    return static_cast<uint32_t>(axis) | (component(apart, axis) < 0 ? kSecondIsLower : 0u);
+}
+
+} // namespace
+
+void add_parent_links(Bvh& bvh) {
+    if (bvh.root & kLeafBit) return;
+    bvh.nodes[bvh.root].parent = kNoLink;
+    parallel_for(bvh.nodes.size(), kGrain, [&](uint64_t i) {
+        BvhNode& node = bvh.nodes[i];
+        node.split = split_of(node);
+        for (uint32_t k = 0; k < 2; ++k) { // each node is written to by its one parent
+            if (node.child[k] & kLeafBit) continue;
+            bvh.nodes[node.child[k]].parent = static_cast<uint32_t>(i) | (k == 1 ? kSecondChildBit : 0u);
+        }
+    });
+}
+
+std::optional<std::string> find_parent_link_fault(const Bvh& bvh) {
+    if (bvh.root & kLeafBit) return std::nullopt;
+    if (bvh.nodes[bvh.root].parent != kNoLink) return "the root has a parent";
+    for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
+        const BvhNode& node = bvh.nodes[i];
+        if (node.split != split_of(node)) return fmt::format("node {} states split {}", i, node.split);
+        for (uint32_t k = 0; k < 2; ++k) {
+            if (node.child[k] & kLeafBit) continue;
+            const uint32_t parent = bvh.nodes[node.child[k]].parent;
+            if (parent != (static_cast<uint32_t>(i) | (k == 1 ? kSecondChildBit : 0u))) {
+                return fmt::format("child {} of node {} states parent {:#x}", k, i, parent);
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace pertev

@@ -1,0 +1,37 @@
+#pragma once
+
+// Tests every triangle of a tree's array: the oracle of all other walks. No node, no order, nothing skipped. A tree
+// with spatial splits holds a triangle more than once; the second time changes nothing.
+
+#include "trace/test_leaf.h"
+#include "trace/walk_options.h"
+
+namespace pertev {
+
+struct TriangleArrayView {
+    const BvhTriangle* triangles = nullptr;
+    uint32_t count = 0;
+};
+
+inline TriangleArrayView triangle_array_of(const Bvh& bvh) {
+    return {bvh.triangles.data(), static_cast<uint32_t>(bvh.triangles.size())};
+}
+
+template <WalkOptions kOptions>
+struct BruteForceWalk {
+    using Tree = TriangleArrayView;
+
+    template <class Visitor, class Counter>
+    HD static bool walk(const TriangleArrayView& array, const Ray& ray, uint32_t instance, Visitor& visitor,
+                        const Counter& counter) {
+        using Tests = TestsOf<kOptions>;
+        const auto prepared = Tests::make_triangles(ray);
+        for (uint32_t i = 0; i < array.count; ++i) {
+            bool last;
+            if (test_triangle<Tests>(array.triangles + i, ray, prepared, instance, visitor, counter, last)) return true;
+        }
+        return false;
+    }
+};
+
+} // namespace pertev

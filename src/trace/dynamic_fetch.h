@@ -1,0 +1,130 @@
+#pragma once
+
+// Persistent threads with dynamic fetch: lanes whose rays are done get new ones while the others are still on their
+// way, as soon as fewer than kRefillBelow of a warp's lanes are at work. The loop of the walk is the kernel, so this is
+// for walks that can be left between two turns (WhileWhileWalk, SpeculativeWalk) over one tree; a scene with instances
+// has more than one, and is for the caller to refuse. Included by .cu files alone (see device/launch_body.h).
+//
+// Source: Aila, Laine, Karras, "Understanding the Efficiency of Ray Traversal on GPUs - Kepler and Fermi Addendum",
+// 2012.
+
+#include <cstdint>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "device/queue.h"
+#include "trace/kernel_limits.h"
+#include "trace/persistent.h"
+#include "trace/trace_any.h"
+#include "trace/trace_closest.h"
+#include "trace/warp_vote.h"
+
+namespace pertev {
+
+// The paper's; lanes of 32.
+inline constexpr int kRefillBelow = 20;
+
+/// The visitor of one kind of search, made anew for each ray, and what the search found.
+template <bool kAny>
+struct RaySearch;
+
+template <>
+struct RaySearch<false> {
+    ClosestVisitor<AcceptAll> visitor;
+    HD RaySearch(const AcceptAll& accept, float t_max) : visitor{accept, Hit{.t = t_max}} {}
+    HD void restart(float t_max) { visitor.best = Hit{.t = t_max}; }
+    HD Hit hit() const { return visitor.best; }
+};
+
+template <>
+struct RaySearch<true> {
+    AnyVisitor<AcceptAll> visitor;
+    HD RaySearch(const AcceptAll& accept, float t_max) : visitor{accept, t_max} {}
+    HD void restart(float t_max) {
+        visitor.t_max = t_max;
+        visitor.found = false;
+    }
+    HD Hit hit() const { return {.t = 0, .instance = visitor.found ? 0u : kNoHit}; }
+};
+
+#if defined(__CUDACC__)
+
+template <class Walk, bool kAny, class Rays, class Counter>
+__global__ void __launch_bounds__(kWalkThreads)
+    run_dynamic_fetch(BvhView bvh, Rays rays, uint32_t count, uint32_t* pool, Counter counter) {
+    constexpr LaneMask kWarp = 0xffffffffu;
+    constexpr uint32_t kNoRay = 0xffffffffu;
+    const LaneMask lanes_before = (1u << (threadIdx.x % 32)) - 1;
+    const AcceptAll accept;
+    typename Walk::Place::Slot slots[kMaxBvhDepth];
+    typename Walk::Place place = {{slots}, kNoLink};
+    typename Walk::Tests::Boxes boxes;
+    typename Walk::Tests::Triangles prepared;
+    RaySearch<kAny> search(accept, 0);
+    Ray ray;
+    uint32_t index = kNoRay;
+    bool pool_is_empty = false; // alike in all lanes, as is what leads out of this loop
+    for (;;) {
+        if (!pool_is_empty) {
+            const LaneMask idle = ballot(kWarp, index == kNoRay);
+            const uint32_t wanted = static_cast<uint32_t>(count_lanes(idle));
+            const uint32_t first = fetch_from_pool(pool, wanted);
+            pool_is_empty = first + wanted >= count;
+            const uint32_t next = first + static_cast<uint32_t>(count_lanes(idle & lanes_before));
+            if (index == kNoRay && next < count) {
+                index = next;
+                ray = rays.load(index);
+                boxes = Walk::Tests::make_boxes(ray, bvh.bounds_max_abs);
+                prepared = Walk::Tests::make_triangles(ray);
+                search.restart(ray.t_max);
+                place.stack.size = 0;
+                place.link = bvh.root;
+            }
+        }
+        if (ballot(kWarp, index != kNoRay) == 0) return; // then the pool is empty too
+        while (place.link != kNoLink) {
+            if (Walk::turn(bvh, ray, boxes, prepared, kNoHit, place, search.visitor, counter)) place.link = kNoLink;
+            if (place.link == kNoLink) break;
+            if (!pool_is_empty && count_lanes(lanes_here()) < kRefillBelow) break;
+        }
+        if (index != kNoRay && place.link == kNoLink) {
+            rays.store(index, search.hit());
+            index = kNoRay;
+        }
+        __syncwarp();
+    }
+}
+
+#endif
+
+/// Walks one tree, whose triangles carry their instance, for rays [0, count), count <= kMaxPoolCount. `rays` has
+/// `Ray load(uint32_t i) const` and `void store(uint32_t i, const Hit&) const`, host-device; of an any-hit search the
+/// hit's instance alone counts: kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. On the
+/// CPU this is one ray after the other.
+template <class Walk, bool kAny, class Rays, class Counter = NoWalkCounter>
+void launch_dynamic_fetch(Queue& queue, const char* name, const BvhView& bvh, const Rays& rays, uint32_t count,
+                          uint32_t* pool, const Counter& counter = {}) {
+    PERTEV_CHECK(count <= kMaxPoolCount);
+    if (count == 0) return;
+    const Queue::Scope scope(queue, name);
+#if defined(__CUDACC__)
+    if (queue.is_cuda()) {
+        const uint32_t blocks = blocks_that_fit(run_dynamic_fetch<Walk, kAny, Rays, Counter>, count);
+        queue.zero(pool, sizeof *pool);
+        run_dynamic_fetch<Walk, kAny>
+            <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(bvh, rays, count, pool, counter);
+        return queue.check_launch();
+    }
+#endif
+    static_cast<void>(pool);
+    parallel_for(count, 256, [&](uint64_t k) {
+        const uint32_t i = static_cast<uint32_t>(k);
+        const AcceptAll accept;
+        const Ray ray = rays.load(i);
+        RaySearch<kAny> search(accept, ray.t_max);
+        Walk::walk(bvh, ray, kNoHit, search.visitor, counter);
+        rays.store(i, search.hit());
+    });
+}
+
+} // namespace pertev

@@ -1,0 +1,66 @@
+#pragma once
+
+// Speculative while-while: a ray that has found a leaf puts it off and goes on down, as long as another lane of its
+// warp is still without one, for it would idle otherwise. What it tests meanwhile may turn out not to have been needed.
+//
+// Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 4 (one postponed
+// leaf). How far lanes run ahead is a matter of the warp they are in; the hits are not. On the host, where a warp is
+// one ray, nothing is put off and the nodes tested are those of WhileWhileWalk.
+
+#include "trace/warp_vote.h"
+#include "trace/while_while_walk.h"
+
+namespace pertev {
+
+template <WalkOptions kOptions>
+struct SpeculativeWalk {
+    using Tree = BvhView;
+    using Tests = TestsOf<kOptions>;
+    using Place = WalkPlace<kOptions>;
+
+    template <class Visitor, class Counter>
+    HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
+                        const Counter& counter) {
+        const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
+        const auto prepared = Tests::make_triangles(ray);
+        typename Place::Slot slots[kMaxBvhDepth];
+        Place place = {{slots}, bvh.root};
+        while (place.link != kNoLink) {
+            if (turn(bvh, ray, boxes, prepared, instance, place, visitor, counter)) return true;
+        }
+        return false;
+    }
+
+    /// Down until all lanes that run together have found a leaf, and the leaves found. True when the visitor ended it.
+    template <class Visitor, class Counter>
+    HD static bool turn(const BvhView& bvh, const Ray& ray, const typename Tests::Boxes& boxes,
+                        const typename Tests::Triangles& prepared, uint32_t instance, Place& place, Visitor& visitor,
+                        const Counter& counter) {
+        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
+        uint32_t link = place.link, postponed = kNoLink;
+        while (!(link & kLeafBit)) {
+            counter.add_node(bvh.nodes + link);
+            const BvhNode node = load_aligned(bvh.nodes + link);
+            const float limit = skip_beyond<kOptions>(visitor, ray);
+            link = step_down<kNear>(node, boxes, ray.t_min, limit, place.stack);
+            const bool at_leaf = (link & kLeafBit) && link != kNoLink;
+            if (all_lanes_here(at_leaf || postponed != kNoLink)) break;
+            if (at_leaf && postponed == kNoLink) {
+                postponed = link;
+                link = place.stack.pop(limit);
+            }
+        }
+        for (;;) { // what was put off, then what the loop above ended at
+            const bool was_postponed = postponed != kNoLink;
+            const uint32_t leaf = was_postponed ? postponed : link;
+            if (!(leaf & kLeafBit) || leaf == kNoLink) break;
+            if (test_leaf<Tests>(bvh.triangles, leaf, ray, prepared, instance, visitor, counter)) return true;
+            postponed = kNoLink;
+            if (!was_postponed) link = place.stack.pop(skip_beyond<kOptions>(visitor, ray));
+        }
+        place.link = link;
+        return false;
+    }
+};
+
+} // namespace pertev

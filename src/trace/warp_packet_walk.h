@@ -1,0 +1,89 @@
+#pragma once
+
+// A packet of a whole warp: its rays are always at the same node, which is entered if any of them enters it. The stack
+// is one, each lane keeping a copy of its links; beside them lies the lane's own entry parameter, so that every push
+// and pop of a warp is one line of memory. Meant for persistent warps (trace/persistent.h), whose lanes start together.
+//
+// Source: Guenther, Popov, Seidel, Slusallek, "Realtime Ray Tracing on GPU with BVH-based Packet Traversal", IEEE RT
+// 2007 (the majority says which child is walked first); Aila, Laine, HPG 2009, section 3 (the same as persistent
+// packets). Lanes that come here with different trees make packets of their own. On the host a packet is one ray, and
+// visits what WhileWhileWalk visits; packet_walk.h has the host's own packets.
+
+#include <cstdint>
+
+#include "base/limits.h"
+#include "trace/test_leaf.h"
+#include "trace/walk_options.h"
+#include "trace/walk_tree.h"
+#include "trace/warp_vote.h"
+
+namespace pertev {
+
+template <WalkOptions kOptions>
+struct WarpPacketWalk {
+    using Tree = BvhView;
+
+    template <class Visitor, class Counter>
+    HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
+                        const Counter& counter) {
+        using Tests = TestsOf<kOptions>;
+        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
+        // An instance's rays are in a space of their own, but the tree is the same for all instances of a mesh.
+        const LaneMask packet = lanes_with_same(lanes_here(), reinterpret_cast<uint64_t>(bvh.triangles));
+        const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
+        const auto prepared = Tests::make_triangles(ray);
+        WalkStackEntry stack[kMaxBvhDepth]; // links are the packet's, entries the lane's
+        int size = 0;
+        uint32_t link = bvh.root; // like size: the same in every lane of the packet
+        bool takes_part = true, found = false;
+        const auto pop = [&] {
+            const float limit = skip_beyond<kOptions>(visitor, ray);
+            while (size > 0) {
+                const WalkStackEntry top = stack[--size];
+                takes_part = !found && top.entry <= limit;
+                if (ballot(packet, takes_part) != 0) return top.link;
+            }
+            return kNoLink;
+        };
+        while (link != kNoLink) {
+            if (link & kLeafBit) {
+                if (takes_part) {
+                    found = test_leaf<Tests>(bvh.triangles, link, ray, prepared, instance, visitor, counter);
+                }
+                link = pop();
+                continue;
+            }
+            counter.add_node(bvh.nodes + link);
+            const BvhNode node = load_aligned(bvh.nodes + link);
+            const float limit = skip_beyond<kOptions>(visitor, ray);
+            float entry0, entry1;
+            const bool enters0 = enters_child(boxes, node, 0, ray.t_min, limit, entry0) && takes_part;
+            const bool enters1 = enters_child(boxes, node, 1, ray.t_min, limit, entry1) && takes_part;
+            const LaneMask into0 = ballot(packet, enters0), into1 = ballot(packet, enters1);
+            if (into0 != 0 && into1 != 0) {
+                bool second = false; // child 1 first
+                if constexpr (kNear) {
+                    const int both = count_lanes(into0 & into1);
+                    second =
+                        both != 0 && 2 * count_lanes(ballot(packet, enters0 && enters1 && entry1 <= entry0)) >= both;
+                }
+                const bool enters_later = second ? enters0 : enters1;
+                stack[size++] = {second ? node.child[0] : node.child[1],
+                                 enters_later ? (second ? entry0 : entry1) : kNeverEntered};
+                link = second ? node.child[1] : node.child[0];
+                takes_part = second ? enters1 : enters0;
+            } else if ((into0 | into1) != 0) {
+                link = into0 != 0 ? node.child[0] : node.child[1];
+                takes_part = into0 != 0 ? enters0 : enters1;
+            } else {
+                link = pop();
+            }
+        }
+        return found;
+    }
+
+private:
+    static constexpr float kNeverEntered = __builtin_nanf(""); // not <= any limit
+};
+
+} // namespace pertev

@@ -1,0 +1,34 @@
+#pragma once
+
+// A scene of instances that is hard on walks: turned, mirrored, squeezed, far from their own origins, some of them at
+// the very same place, with or without a baked mesh among them; and what rays meet in it, by testing every triangle.
+
+#include <vector>
+
+#include "accel/bvh/top_level_bvh.h"
+#include "tests/support/check_walk.h"
+#include "trace/scene_bvh.h"
+
+namespace pertev::test {
+
+struct InstancedScene {
+    std::vector<std::vector<BvhTriangle>> meshes; // [InstanceRecord::mesh_bvh]
+    std::vector<Bvh> trees;                       // of the meshes
+    std::vector<BvhTriangle> baked;
+    Bvh baked_tree;
+    std::vector<PlacedBvh> placed;
+    TopLevelBvh top;
+    std::vector<Ray> rays;
+
+    /// Over views of the meshes' trees, of whatever kind; they must outlive it. `baked` may be empty.
+    template <class Tree>
+    SceneTrees<Tree> scene(const std::vector<Tree>& views, const Tree& baked_view = {}) const {
+        return {baked_view, top.nodes.data(), top.instances.data(), views.data(), top.root, top.reach, top.growth};
+    }
+
+    std::vector<Hit> hits_by_brute_force(bool with_baked) const; // AcceptSome
+};
+
+InstancedScene make_instanced_scene(uint32_t ray_count);
+
+} // namespace pertev::test

@@ -1,0 +1,16 @@
+#pragma once
+
+// A tree as spatial splits make it (Stich, Friedrich, Dietrich, HPG 2009), in its plainest form: each node cuts its
+// cell in the middle, and a triangle whose box reaches into both halves lies in both. Boxes are the cells, so hits on a
+// triangle lie outside of all but one of the leaves that hold it.
+
+#include <vector>
+
+#include "accel/bvh/bvh.h"
+
+namespace pertev::test {
+
+/// At most `max_depth` levels, 4 triangles a leaf where these suffice.
+Bvh build_split_bvh(const std::vector<BvhTriangle>& triangles, int max_depth);
+
+} // namespace pertev::test

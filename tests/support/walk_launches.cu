@@ -1,0 +1,113 @@
+#include "tests/support/walk_launches.h"
+
+#include "device/launch_body.h"
+#include "trace/dynamic_fetch.h"
+#include "trace/if_if_walk.h"
+#include "trace/parent_links_walk.h"
+#include "trace/persistent.h"
+#include "trace/short_stack_walk.h"
+#include "trace/speculative_walk.h"
+#include "trace/warp_packet_walk.h"
+#include "trace/while_while_walk.h"
+
+namespace pertev::test {
+namespace {
+
+template <class Walk, bool kAny, class Scene, class Counter = NoWalkCounter>
+struct TraceBatch {
+    Scene scene;
+    WalkBatch batch;
+    Counter counter;
+
+    HD void operator()(uint32_t i) const {
+        const AcceptAll accept;
+        Hit hit;
+        if constexpr (kAny) {
+            if (trace_any<Walk>(scene, batch.rays[i], accept, counter)) hit.instance = 0;
+            hit.t = 0;
+        } else {
+            trace_closest<Walk>(scene, batch.rays[i], accept, hit, counter);
+        }
+        batch.hits[i] = hit;
+    }
+};
+
+struct BatchRays {
+    WalkBatch batch;
+
+    HD Ray load(uint32_t i) const { return batch.rays[i]; }
+    HD void store(uint32_t i, const Hit& hit) const { batch.hits[i] = hit; }
+};
+
+template <class Walk, bool kAny, bool kPersistent, class Scene>
+void run_stage_of(Queue& queue, const Scene& scene, const WalkBatch& batch) {
+    const TraceBatch<Walk, kAny, Scene> stage = {scene, batch, {}};
+    if constexpr (kPersistent) {
+        launch_persistent(queue, "trace persistent", batch.count, stage, batch.pool);
+    } else {
+        launch(queue, "trace", batch.count, stage);
+    }
+}
+
+template <class Walk, bool kAny, bool kPersistent>
+void run_tree(Queue& queue, const BvhView& bvh, const WalkBatch& batch) {
+    run_stage_of<Walk, kAny, kPersistent>(queue, SingleTree<BvhView>{bvh}, batch);
+}
+
+template <class Walk, bool kAny>
+void run_dynamic(Queue& queue, const BvhView& bvh, const WalkBatch& batch) {
+    launch_dynamic_fetch<Walk, kAny>(queue, "trace dynamic", bvh, BatchRays{batch}, batch.count, batch.pool);
+}
+
+template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, bool kDynamic>
+void add(const char* name, std::vector<WalkLaunch>& launches) {
+    using W = Walk<kOptions>;
+    WalkLaunch row = {name, "one a thread", kOptions.rta, kOptions.near_first, kAny, run_tree<W, kAny, false>, nullptr};
+    if constexpr (kOptions.rta) row.run_scene = run_stage_of<W, kAny, false, SceneBvhView>;
+    launches.push_back(row);
+    row.distribution = "persistent";
+    row.run = run_tree<W, kAny, true>;
+    if constexpr (kOptions.rta) row.run_scene = run_stage_of<W, kAny, true, SceneBvhView>;
+    launches.push_back(row);
+    if constexpr (kDynamic) {
+        row.distribution = "dynamic fetch";
+        row.run = run_dynamic<W, kAny>;
+        row.run_scene = nullptr;
+        launches.push_back(row);
+    }
+}
+
+template <template <WalkOptions> class Walk, bool kDynamic>
+void add_all(const char* name, std::vector<WalkLaunch>& launches) {
+    add<Walk, WalkOptions{true, true}, false, kDynamic>(name, launches);
+    add<Walk, WalkOptions{true, true}, true, kDynamic>(name, launches);
+    add<Walk, WalkOptions{false, false}, false, kDynamic>(name, launches);
+    add<Walk, WalkOptions{false, false}, true, kDynamic>(name, launches);
+}
+
+} // namespace
+
+std::vector<WalkLaunch> walk_launches() {
+    std::vector<WalkLaunch> launches;
+    add_all<WhileWhileWalk, true>("while-while", launches);
+    add_all<SpeculativeWalk, true>("speculative", launches);
+    add_all<IfIfWalk, false>("if-if", launches);
+    add_all<RestartTrailWalk, false>("restart trail", launches);
+    add_all<ShortStackWalk, false>("short stack", launches);
+    add_all<ParentLinksWalk, false>("parent links", launches);
+    add_all<WarpPacketWalk, false>("warp packet", launches);
+    return launches;
+}
+
+void count_lanes_persistent(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
+    using Walk = WhileWhileWalk<WalkOptions{}>;
+    const TraceBatch<Walk, false, SingleTree<BvhView>, LaneCounter> stage = {{bvh}, batch, {counts}};
+    launch_persistent(queue, "count lanes", batch.count, stage, batch.pool);
+}
+
+void count_lanes_dynamic(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
+    launch_dynamic_fetch<WhileWhileWalk<WalkOptions{}>, false>(queue, "count lanes", bvh, BatchRays{batch}, batch.count,
+                                                               batch.pool, LaneCounter{counts});
+}
+
+} // namespace pertev::test

@@ -1,0 +1,37 @@
+#pragma once
+
+// The laboratory's walks of binary trees as launches, by every way of handing out rays, for tests that run them on
+// either device.
+
+#include <cstdint>
+#include <vector>
+
+#include "device/queue.h"
+#include "trace/lane_counter.h"
+#include "trace/ray.h"
+#include "trace/scene_bvh.h"
+
+namespace pertev::test {
+
+/// Device pointers. Of an any-hit search a hit's instance is 0 or kNoHit and the rest is as of a new Hit.
+struct WalkBatch {
+    const Ray* rays;
+    Hit* hits;
+    uint32_t count;
+    uint32_t* pool; // one number
+};
+
+struct WalkLaunch {
+    const char* walk;
+    const char* distribution;
+    bool rta, near_first, any;
+    void (*run)(Queue&, const BvhView&, const WalkBatch&);            // one tree
+    void (*run_scene)(Queue&, const SceneBvhView&, const WalkBatch&); // null: not for scenes
+};
+std::vector<WalkLaunch> walk_launches();
+
+/// Closest hits by while-while with all switches on, counted.
+void count_lanes_persistent(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts);
+void count_lanes_dynamic(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts);
+
+} // namespace pertev::test

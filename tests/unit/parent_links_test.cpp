@@ -1,0 +1,56 @@
+// Parent links lead from every node to the root and tell which child is lower; the check of them sees each that is not.
+
+#include "accel/bvh/parent_links.h"
+
+#include <doctest/doctest.h>
+
+#include <optional>
+#include <string>
+
+#include "accel/bvh/build_bvh.h"
+#include "tests/support/nasty_meshes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+TEST_CASE("parent links lead from every node to the root") {
+    for (const NastyMesh& c : nasty_meshes()) {
+        CAPTURE(std::string(c.name));
+        Bvh bvh = build_bvh(c.triangles);
+        for (const BvhNode& node : bvh.nodes) CHECK((node.parent == 0 && node.split == 0)); // as the cache stores them
+        add_parent_links(bvh);
+        CHECK(find_parent_link_fault(bvh) == std::nullopt);
+        uint64_t wrong = 0;
+        for (uint32_t i = 0; i < bvh.nodes.size(); ++i) {
+            int up = 0;
+            for (uint32_t at = i; at != bvh.root && up <= bvh.depth; ++up) {
+                const uint32_t parent = bvh.nodes[at].parent & ~kSecondChildBit;
+                const int k = (bvh.nodes[at].parent & kSecondChildBit) ? 1 : 0;
+                wrong += bvh.nodes[parent].child[k] != at ? 1 : 0;
+                at = parent;
+            }
+            wrong += up > bvh.depth ? 1 : 0;
+            const uint32_t split = bvh.nodes[i].split;
+            const int axis = static_cast<int>(split & 3), lower = (split & kSecondIsLower) ? 1 : 0;
+            wrong += component(child_bounds(bvh.nodes[i], lower).centre(), axis) >
+                             component(child_bounds(bvh.nodes[i], 1 - lower).centre(), axis)
+                         ? 1
+                         : 0;
+        }
+        CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("a tree without parent links, or with a wrong one, is told") {
+    Bvh bvh = build_bvh(make_soup(200, 0));
+    CHECK(find_parent_link_fault(bvh) != std::nullopt);
+    add_parent_links(bvh);
+    for (std::size_t i = 0; i < bvh.nodes.size(); i += 7) {
+        Bvh broken = bvh;
+        broken.nodes[i].parent ^= i % 2 == 0 ? kSecondChildBit : 1u;
+        CHECK(find_parent_link_fault(broken) != std::nullopt);
+        broken = bvh;
+        broken.nodes[i].split ^= kSecondIsLower;
+        CHECK(find_parent_link_fault(broken) != std::nullopt);
+    }
+}
