@@ -13,5 +13,6 @@ void add_render_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
+void add_lab_command(CLI::App& app, int& status);
 
 } // namespace pertev

@@ -38,7 +38,7 @@ int fail(ErrorCode code, const std::string& message) {
 std::string describe(const CLI::App* app, const CLI::Error& error) {
     std::string verb = app->get_name(), what = error.what();
     for (const CLI::App* sub : app->get_subcommands()) verb += ' ' + sub->get_name();
-    if (what.starts_with("A subcommand")) what = "a verb is required: render, compare, info or bench";
+    if (what.starts_with("A subcommand")) what = "a verb is required: render, compare, info, bench or lab";
     return fmt::format("pertev: {}\n({} --help lists what there is)\n", what, verb);
 }
 
@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
     add_compare_command(app, status);
     add_info_command(app, status);
     add_bench_command(app, status);
+    add_lab_command(app, status);
     try {
         app.parse(argc, argv);
         return status;

@@ -39,8 +39,8 @@ HD inline Ray load_ray(const Ray* rays, uint32_t i) {
 }
 
 /// What the ray meets, told to `counter`.
-template <class Walk, bool kAny, class Counter>
-HD inline RayHit trace_ray(const SceneTrees<typename Walk::Tree>& scene, const Ray& ray, const Counter& counter) {
+template <class Walk, bool kAny, class Scene, class Counter>
+HD inline RayHit trace_ray(const Scene& scene, const Ray& ray, const Counter& counter) {
     const AcceptAll accept;
     if constexpr (kAny) {
         return {0.0f, trace_any<Walk>(scene, ray, accept, counter) ? 0u : kNoHit, 0u};
@@ -51,9 +51,10 @@ HD inline RayHit trace_ray(const SceneTrees<typename Walk::Tree>& scene, const R
     }
 }
 
-template <class Walk, bool kAny>
+/// `Scene` is SceneTrees or SingleTree of what the walk walks.
+template <class Walk, bool kAny, class Scene = SceneTrees<typename Walk::Tree>>
 struct TraceRays {
-    SceneTrees<typename Walk::Tree> scene;
+    Scene scene;
     const Ray* rays;
     RayHit* hits;
 

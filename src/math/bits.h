@@ -26,4 +26,12 @@ HD inline uint32_t highest_bit(uint32_t x) {
 #endif
 }
 
+HD inline uint32_t highest_bit(uint64_t x) {
+#if PERTEV_ON_DEVICE
+    return 63u - static_cast<uint32_t>(__clzll(static_cast<long long>(x)));
+#else
+    return 63u - static_cast<uint32_t>(std::countl_zero(x));
+#endif
+}
+
 } // namespace pertev

@@ -12,7 +12,7 @@
 #include <cstdint>
 
 #include "base/limits.h"
-#include "math/highest_bit.h"
+#include "math/bits.h"
 #include "trace/test_leaf.h"
 #include "trace/walk_options.h"
 #include "trace/walk_tree.h"
@@ -38,7 +38,7 @@ struct RestartTrail {
     template <class ShortStack>
     HD uint32_t pop(uint32_t root, float limit, ShortStack& stack) {
         while (waiting != 0) {
-            const int deepest = highest_bit(waiting);
+            const int deepest = static_cast<int>(highest_bit(waiting));
             waiting ^= uint64_t(1) << deepest;
             taken ^= uint64_t(1) << deepest;
             WalkStackEntry top;

@@ -11,9 +11,9 @@
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/options.h"
-#include "trace/walk_compressed.h"
+#include "trace/compressed_walk.h"
 #include "trace/walk_wide.h"
-#include "trace/walk_wide_scalar.h"
+#include "trace/wide_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -12,7 +12,7 @@
 #include "accel/bvh/binary_tree.h"
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/check_bvh.h"
-#include "accel/bvh/clip_triangle.h"
+#include "accel/bvh/cut_triangle.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
@@ -259,7 +259,7 @@ TEST_CASE("the parts of a triangle cut in two hold every point of it, those on t
         const double slack = 0x1p-50 * static_cast<double>(box.max_abs());
         const int axis = i % 3;
         const float plane = lerp(component(box.lo, axis), component(box.hi, axis), i % 7 == 0 ? 0.0f : random.unit());
-        const ClippedBoxes parts = clip_triangle(t, box, axis, plane);
+        const ClippedBoxes parts = cut_triangle(t, box, axis, plane);
         for (const Bounds3& part : {parts.left, parts.right}) {
             if (!part.is_empty() && intersection(part, box) != part) ++outside;
         }

@@ -14,7 +14,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/nasty_meshes.h"
 #include "trace/compressed_boxes.h"
-#include "trace/walk_compressed.h"
+#include "trace/compressed_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <string>
 
+#include "accel/clip_triangle.h"
 #include "accel/kd_tree/build_kd_tree.h"
 #include "accel/kd_tree/check_kd_tree.h"
-#include "accel/kd_tree/clip_triangle.h"
 #include "accel/kd_tree/triangle_points.h"
 #include "base/parallel_for.h"
 #include "tests/support/nasty_meshes.h"

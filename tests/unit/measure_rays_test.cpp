@@ -31,7 +31,7 @@ RaySet random_rays(uint32_t count, bool any_hit) {
 
 TEST_CASE("a walk over a set of rays gives the hits and the work of each ray's own walk") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(32, 24)));
-    const std::vector<WideBvhNode> wide = make_wide_nodes(bvh);
+    const std::vector<WideBvhNode<8>> wide = make_wide_nodes(bvh);
     BvhView view = view_of(bvh);
     const SceneBvhView binary = scene_of(view);
     view.wide = wide.data();

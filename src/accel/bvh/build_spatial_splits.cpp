@@ -11,7 +11,7 @@
 #include "accel/bvh/binary_tree.h"
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/builders.h"
-#include "accel/bvh/clip_triangle.h"
+#include "accel/bvh/cut_triangle.h"
 #include "accel/bvh/find_spatial_cut.h"
 #include "accel/bvh/halve_references.h"
 #include "accel/bvh/sweep_cut.h"
@@ -178,7 +178,7 @@ private:
             const Bounds3 box = box_of(r);
             ClippedBoxes parts;
             if (component(box.hi, axis) > cut.plane && component(box.lo, axis) < cut.plane) {
-                parts = clip_triangle(triangles_[r.id], box, axis, cut.plane);
+                parts = cut_triangle(triangles_[r.id], box, axis, cut.plane);
                 if (parts.left.is_empty() && parts.right.is_empty()) parts.left = box; // never: it has a point there
             } else {
                 (component(box.hi, axis) <= cut.plane ? parts.left : parts.right) = box;

@@ -1,6 +1,6 @@
 #include "accel/bvh/find_spatial_cut.h"
 
-#include "accel/bvh/clip_triangle.h"
+#include "accel/bvh/cut_triangle.h"
 
 namespace pertev {
 namespace {
@@ -40,7 +40,7 @@ SpatialCut find_spatial_cut(std::span<const BuildReference> references, const st
         const int last = to_int((component(r.hi, axis) - lo) * scale, first, bin_count - 1);
         Bounds3 rest = {r.lo, r.hi};
         for (int k = first; k < last && !rest.is_empty(); ++k) {
-            const ClippedBoxes parts = clip_triangle(triangles[r.id], rest, axis, planes[k + 1]);
+            const ClippedBoxes parts = cut_triangle(triangles[r.id], rest, axis, planes[k + 1]);
             bins[k].box.extend(parts.left); // an empty box adds nothing
             rest = parts.right;
         }

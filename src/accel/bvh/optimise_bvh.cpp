@@ -9,7 +9,7 @@
 
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/builders.h"
-#include "accel/bvh/clip_triangle.h"
+#include "accel/bvh/cut_triangle.h"
 #include "accel/bvh/linked_tree.h"
 #include "base/error.h"
 #include "base/parallel_for.h"

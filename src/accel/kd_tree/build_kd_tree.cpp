@@ -3,7 +3,7 @@
 #include <bit>
 #include <utility>
 
-#include "accel/kd_tree/clip_triangle.h"
+#include "accel/clip_triangle.h"
 #include "accel/kd_tree/kd_subtree.h"
 #include "accel/kd_tree/sah_kd_splitter.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "accel/kd_tree/clip_triangle.h"
+#include "accel/clip_triangle.h"
 
 namespace pertev {
 namespace {

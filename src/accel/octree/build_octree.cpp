@@ -3,8 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "accel/clip_triangle.h"
 #include "accel/kd_tree/build_kd_tree.h"
-#include "accel/kd_tree/clip_triangle.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 

@@ -39,7 +39,7 @@ inline Bounds3 box_of_crossing(Vec3 a, Vec3 b, int axis, float plane) {
 }
 
 /// Boxes of what lies on either side of the plane and in `box`, which they never leave.
-inline ClippedBoxes clip_triangle(const BvhTriangle& triangle, const Bounds3& box, int axis, float plane) {
+inline ClippedBoxes cut_triangle(const BvhTriangle& triangle, const Bounds3& box, int axis, float plane) {
     ClippedBoxes boxes;
     const Vec3 corners[3] = {triangle.a, triangle.b, triangle.c};
     for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-#include "accel/kd_tree/clip_triangle.h"
+#include "accel/clip_triangle.h"
 
 namespace pertev {
 namespace {

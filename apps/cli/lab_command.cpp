@@ -1,0 +1,192 @@
+// pertev lab: every structure and every walk side by side, on this machine and scene.
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/bench_parts.h"
+#include "apps/cli/choose_device.h"
+#include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/lab_files.h"
+#include "apps/cli/parse_values.h"
+#include "apps/cli/reporter.h"
+#include "apps/cli/scene_options.h"
+#include "apps/cli/thesis_command.h"
+#include "base/error.h"
+#include "lab/ray_sets.h"
+#include "lab/record_scenes.h"
+#include "lab/run_lab.h"
+#include "lab/write_tables.h"
+
+namespace pertev {
+namespace {
+
+struct LabFlags {
+    SceneOptions scene;
+    std::vector<std::string> structures, walks, rays = {"primary", "shadow", "diffuse"};
+    std::string rta = "both", order = "on", tests = "exact", persistent = "both", size = "1024x768", depths = "1-3";
+    std::string output;
+    uint32_t runs = 20, count = kRecordRays;
+    bool no_heat_maps = false, thesis = false;
+    MachineFlags machine;
+    ReportFlags report;
+};
+
+std::vector<bool> on_off(const std::string& value) {
+    if (value == "both") return {true, false};
+    return {value == "on"};
+}
+
+/// "1-8" or "8": first and last.
+std::pair<int, int> parse_depths(const std::string& text) {
+    const std::size_t dash = text.find('-');
+    const auto last = whole_number_in(dash == std::string::npos ? text : text.substr(dash + 1));
+    const auto first = dash == std::string::npos ? std::optional<uint64_t>(1) : whole_number_in(text.substr(0, dash));
+    if (!first || !last || *first < 1 || *first > *last || *last > kMaxFrameDepth + 1) {
+        throw Error(ErrorCode::BadInput, fmt::format("--depths {}: wants a depth or a range such as 1-8, within 1-{}",
+                                                     text, kMaxFrameDepth + 1));
+    }
+    return {static_cast<int>(*first), static_cast<int>(*last)};
+}
+
+/// `all` where nothing is named. Names are CLI11's to check.
+template <class Kind, class Named>
+std::vector<Kind> chosen(const std::vector<std::string>& names, std::span<const Kind> all, const Named& named) {
+    std::vector<Kind> kinds;
+    for (const std::string& name : names) kinds.push_back(*named(name));
+    return names.empty() ? std::vector<Kind>(all.begin(), all.end()) : kinds;
+}
+
+LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
+    LabSettings settings;
+    settings.structures = chosen(flags.structures, all_structures(), structure_named);
+    settings.by_name = !flags.structures.empty() && !flags.walks.empty();
+    settings.walks = chosen(flags.walks, all_walks(), walk_named);
+    // A brute-force walk over all of a frame's rays takes hours: only when asked for.
+    if (flags.walks.empty()) std::erase(settings.walks, WalkKind::BruteForce);
+    for (const bool exact : on_off(flags.tests == "both" ? "both" : flags.tests == "exact" ? "on" : "off")) {
+        for (const bool rta : on_off(flags.rta)) {
+            for (const bool near_first : on_off(flags.order)) settings.options.push_back({rta, near_first, exact});
+        }
+    }
+    settings.distributions.clear();
+    if (!is_cuda || flags.persistent != "on") settings.distributions.push_back(Distribution::OneAThread);
+    if (is_cuda && flags.persistent != "off") {
+        settings.distributions.push_back(Distribution::Persistent);
+        settings.distributions.push_back(Distribution::DynamicFetch);
+    }
+    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
+    std::tie(settings.first_depth, settings.depth) = parse_depths(flags.depths);
+    const auto traces = [&](const char* kind) { return std::ranges::find(flags.rays, kind) != flags.rays.end(); };
+    settings.primary = traces("primary"), settings.shadow = traces("shadow"), settings.diffuse = traces("diffuse");
+    if (traces("record")) {
+        settings.record_rays = flags.count;
+        const FrameSize frame = record_frame(flags.count);
+        settings.width = frame.width, settings.height = frame.height;
+    }
+    settings.runs = static_cast<int>(flags.runs);
+    settings.warm_ups = is_cuda ? 3 : 1;
+    settings.heat_maps = !flags.no_heat_maps;
+    return settings;
+}
+
+/// A line for each refusal that the user asked for by name; the rest are in the report.
+void say_refusals(const LabFlags& flags, const LabReport& report, Reporter& reporter) {
+    const bool by_name = !flags.structures.empty() && !flags.walks.empty();
+    for (const CombinationFigures& c : report.combinations) {
+        const bool wrong = c.refused.starts_with("WRONG");
+        if (wrong || (by_name && !c.refused.empty())) reporter.say(fmt::format("{}: {}", c.name, c.refused));
+    }
+}
+
+int run(const LabFlags& flags) {
+    Reporter reporter(flags.report);
+    Messages& messages = reporter.messages();
+    if (!flags.output.empty()) check_lab_folder(flags.output);
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
+    const LabSettings settings = lab_settings(flags, queue->is_cuda());
+    listen_for_interrupt();
+    if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
+    if (flags.scene.scene.empty()) throw Error(ErrorCode::BadInput, "lab: SCENE is required (or --thesis)");
+
+    const RecordScene* record = find_record_scene(flags.scene.scene);
+    const Scene scene = record != nullptr ? make_record_scene(*record, public_scenes_folder(), messages)
+                                          : read_any_scene(flags.scene.scene, flags.scene.allowed_paths, messages);
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
+    reporter.say_messages();
+    LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter));
+    reporter.end_progress();
+    report.scene = std::filesystem::path(flags.scene.scene).stem().string();
+    say_refusals(flags, report, reporter);
+    reporter.answer(text_of(report));
+    reporter.event(json_of(report));
+    if (!flags.output.empty()) write_lab_files(flags.output, report, reporter);
+    return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;
+}
+
+template <class Kind>
+std::vector<std::string> names_of(std::span<const Kind> kinds) {
+    std::vector<std::string> names;
+    for (const Kind kind : kinds) names.emplace_back(name_of(kind));
+    return names;
+}
+
+void add_switch(CLI::App& verb, const char* flag, std::string& value, const char* what,
+                std::vector<std::string> values = {"on", "off", "both"}) {
+    verb.add_option(flag, value, what)->type_name("WHICH")->check(one_of(std::move(values)))->capture_default_str();
+}
+
+} // namespace
+
+void add_lab_command(CLI::App& app, int& status) {
+    CLI::App& verb = *app.add_subcommand("lab", "Every structure and every walk side by side, on your scene and card");
+    const auto flags = std::make_shared<LabFlags>();
+    add_scene_options(verb, flags->scene);
+    verb.get_option("SCENE")->required(false);
+    verb.add_option("--structures", flags->structures, "some of the structures (all)")
+        ->type_name("NAME,...")
+        ->delimiter(',')
+        ->check(one_of(names_of(all_structures())));
+    verb.add_option("--walks", flags->walks, "some of the walks (all but brute-force)")
+        ->type_name("NAME,...")
+        ->delimiter(',')
+        ->check(one_of(names_of(all_walks())));
+    add_switch(verb, "--rta", flags->rta, "redundant traversal avoidance: skip what lies beyond the\nnearest hit");
+    add_switch(verb, "--order", flags->order, "nearer children first");
+    add_switch(verb, "--tests", flags->tests, "exact, fast (leaks at edges, as most tracers do) or both",
+               {"exact", "fast", "both"});
+    add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
+    verb.add_option("--size", flags->size, "camera rays")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--depths", flags->depths, "lengths of paths, in rays")
+        ->type_name("FIRST-LAST")
+        ->capture_default_str();
+    verb.add_option("--rays", flags->rays, "primary, shadow, diffuse (all), or record: the five sets of\nbench rays")
+        ->type_name("KIND,...")
+        ->delimiter(',')
+        ->check(one_of({"primary", "shadow", "diffuse", "record"}));
+    verb.add_option("--count", flags->count, "rays of a set of the record")
+        ->type_name("N")
+        ->check(whole_between(1, 1u << 30))
+        ->capture_default_str();
+    verb.add_option("--runs", flags->runs, "times that each is traced; the figure is the median")
+        ->type_name("N")
+        ->check(whole_between(1, 10000))
+        ->capture_default_str();
+    verb.add_flag("--no-heat-maps", flags->no_heat_maps, "no pictures of the tests a pixel");
+    verb.add_flag("--thesis", flags->thesis,
+                  "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found under PERTEV_SCENES)");
+    verb.add_option("-o,--output", flags->output, "write report.csv, .json, .html and heat maps here")
+        ->type_name("DIR");
+    add_machine_flags(verb, flags->machine);
+    add_report_flags(verb, flags->report);
+    verb.callback([flags, &status] { status = run(*flags); });
+}
+
+} // namespace pertev

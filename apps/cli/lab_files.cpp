@@ -1,0 +1,64 @@
+#include "apps/cli/lab_files.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "apps/cli/interrupt.h"
+#include "base/error.h"
+#include "base/write_file_atomically.h"
+#include "image/write_png.h"
+#include "lab/heat_map.h"
+#include "lab/write_html.h"
+#include "lab/write_tables.h"
+
+namespace pertev {
+namespace {
+
+/// A combination's name as part of a file's.
+std::string file_part(std::string name) {
+    std::ranges::replace(name, ' ', '-');
+    return name;
+}
+
+} // namespace
+
+void check_lab_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        throw Error(ErrorCode::FileWrite, fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    }
+    check_writable(folder / "report.csv");
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    write_file_atomically(path, std::as_bytes(std::span(text)));
+}
+
+void write_lab_files(const std::filesystem::path& folder, const LabReport& report, Reporter& reporter) {
+    write_text(folder / "report.csv", csv_of(report));
+    write_text(folder / "report.json", json_of(report) + '\n');
+    write_text(folder / "report.html", html_of(report));
+    for (const HeatMap& map : report.heat_maps) {
+        const std::string part = file_part(map.name);
+        write_png(folder / fmt::format("nodes-{}.png", part),
+                  draw_heat_map(map.nodes, map.width, map.height, scale_end(map.nodes)));
+        write_png(folder / fmt::format("triangles-{}.png", part),
+                  draw_heat_map(map.triangles, map.width, map.height, scale_end(map.triangles)));
+    }
+    reporter.say(fmt::format("written: {}", (folder / "report.html").string()));
+}
+
+std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter) {
+    return [&reporter](const LabProgress& now) {
+        const double left_s = now.share > 0.01 ? now.seconds * (1 - now.share) / now.share : 0;
+        reporter.progress(now.share,
+                          fmt::format("{}{}", now.doing, left_s > 0 ? fmt::format(", {:.0f} s left", left_s) : ""));
+        reporter.event(fmt::format(R"({{"event":"progress","share":{:.4f},"doing":{},"seconds":{:.3f}}})", now.share,
+                                   json_string(now.doing), now.seconds));
+        return !interrupted();
+    };
+}
+
+} // namespace pertev

@@ -1,0 +1,34 @@
+#include "base/parallel_for.h"
+#include "lab/brute_force_rays.h"
+
+namespace pertev {
+
+BruteForce::BruteForce(Queue& queue, const LabTriangles& triangles) : queue_(queue) {
+    triangles_.emplace_back(queue, std::span(triangles.baked), "triangles");
+    std::vector<TriangleRange> meshes;
+    for (const auto& mesh : triangles.meshes) {
+        triangles_.emplace_back(queue, std::span(mesh), "triangles");
+        meshes.push_back({triangles_.back().data(), mesh.size()});
+    }
+    meshes_ = Buffer<TriangleRange>(queue, std::span<const TriangleRange>(meshes), "triangle ranges");
+    instances_ = Buffer<InstanceRecord>(queue, std::span(triangles.top_level.instances), "instances");
+}
+
+std::vector<RayHit> BruteForce::trace(std::span<const Ray> rays) const {
+    const Buffer<Ray> on_device(queue_, rays, "rays");
+    const Buffer<RayHit> hits(queue_, rays.size(), "hits");
+    const BruteForceRays stage = {{triangles_.front().data(), triangles_.front().size()},
+                                  meshes_.data(),
+                                  instances_.data(),
+                                  instances_.size(),
+                                  on_device.data(),
+                                  hits.data()};
+    if (queue_.is_cuda()) {
+        launch(queue_, "brute force", static_cast<uint32_t>(rays.size()), stage);
+    } else { // few rays of much work each
+        parallel_for(rays.size(), 4, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    }
+    return hits.download();
+}
+
+} // namespace pertev

@@ -1,0 +1,72 @@
+#pragma once
+
+// The oracle: each ray against every triangle of the scene, without any tree. The result rule of docs/conventions.md
+// word by word, by the triangle test that the walks use.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/host_device.h"
+#include "device/buffer.h"
+#include "device/launch.h"
+#include "lab/built_structure.h"
+#include "lab/trace_rays.h"
+
+namespace pertev {
+
+struct TriangleRange {
+    const BvhTriangle* first = nullptr;
+    uint64_t count = 0;
+};
+
+struct BruteForceRays {
+    TriangleRange baked;
+    const TriangleRange* meshes; // [InstanceRecord::mesh_bvh]
+    const InstanceRecord* instances;
+    uint64_t instance_count;
+    const Ray* rays;
+    RayHit* hits; // the closest
+
+    HD void operator()(uint32_t i) const {
+        const Ray ray = load_ray(rays, i);
+        RayHit best = {ray.t_max, kNoHit, 0};
+        test(baked, ray, kNoHit, best);
+        for (uint64_t k = 0; k < instance_count; ++k) {
+            const InstanceRecord record = load_aligned(instances + k);
+            test(meshes[record.mesh_bvh], transform_ray(record.local_from_world, ray), record.instance, best);
+        }
+        hits[i] = best;
+    }
+
+private:
+    HD static void test(const TriangleRange& triangles, const Ray& ray, uint32_t instance, RayHit& best) {
+        const RayShear shear = make_ray_shear(ray.direction);
+        for (uint64_t k = 0; k < triangles.count; ++k) {
+            const BvhTriangle t = load_aligned(triangles.first + k);
+            TriangleHit hit;
+            if (!intersect_triangle(ray.origin, shear, ray.t_min, ray.t_max, t.a, t.b, t.c, hit)) continue;
+            const uint32_t id = instance == kNoHit ? t.instance : instance;
+            const bool first =
+                hit.t < best.t ||
+                (hit.t == best.t && (id < best.instance || (id == best.instance && t.primitive < best.primitive)));
+            if (first) best = {hit.t, id, t.primitive};
+        }
+    }
+};
+
+/// The triangles in a device's memory, once for any number of rays.
+class BruteForce {
+public:
+    BruteForce(Queue& queue, const LabTriangles& triangles);
+    std::vector<RayHit> trace(std::span<const Ray> rays) const;
+
+private:
+    Queue& queue_;
+    std::vector<Buffer<BvhTriangle>> triangles_;
+    Buffer<TriangleRange> meshes_;
+    Buffer<InstanceRecord> instances_;
+};
+
+} // namespace pertev

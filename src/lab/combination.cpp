@@ -1,0 +1,156 @@
+#include "lab/combination.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace pertev {
+namespace {
+
+constexpr std::array kStructures = {StructureKind::Binned,      StructureKind::Sweep,         StructureKind::Median,
+                                    StructureKind::EqualCounts, StructureKind::SpatialSplits, StructureKind::Ploc,
+                                    StructureKind::Insertion,   StructureKind::Reinsertion,   StructureKind::KdMedian,
+                                    StructureKind::KdSah,       StructureKind::Octree};
+constexpr std::array kWalks = {
+    WalkKind::IfIf,       WalkKind::WhileWhile,  WalkKind::Speculative, WalkKind::BruteForce, WalkKind::RestartTrail,
+    WalkKind::ShortStack, WalkKind::ParentLinks, WalkKind::SkipLinks,   WalkKind::Packet,     WalkKind::Wide4,
+    WalkKind::Wide8,      WalkKind::Wide8Simd,   WalkKind::Compressed,  WalkKind::Kd,         WalkKind::Octree};
+
+bool is_kd(StructureKind kind) { return kind == StructureKind::KdMedian || kind == StructureKind::KdSah; }
+
+/// Whether the walk knows nearer children from farther ones.
+bool has_order(WalkKind walk) { return walk != WalkKind::BruteForce && walk != WalkKind::SkipLinks; }
+
+} // namespace
+
+std::span<const StructureKind> all_structures() { return kStructures; }
+std::span<const WalkKind> all_walks() { return kWalks; }
+
+const char* name_of(StructureKind kind) {
+    switch (kind) {
+    case StructureKind::Binned:
+        return "binned";
+    case StructureKind::Sweep:
+        return "sweep";
+    case StructureKind::Median:
+        return "median";
+    case StructureKind::EqualCounts:
+        return "equal-counts";
+    case StructureKind::SpatialSplits:
+        return "sbvh";
+    case StructureKind::Ploc:
+        return "ploc";
+    case StructureKind::Insertion:
+        return "insertion";
+    case StructureKind::Reinsertion:
+        return "reinsertion";
+    case StructureKind::KdMedian:
+        return "kd-median";
+    case StructureKind::KdSah:
+        return "kd-sah";
+    case StructureKind::Octree:
+        return "octree";
+    }
+    return "";
+}
+
+const char* name_of(WalkKind kind) {
+    switch (kind) {
+    case WalkKind::IfIf:
+        return "if-if";
+    case WalkKind::WhileWhile:
+        return "while-while";
+    case WalkKind::Speculative:
+        return "speculative";
+    case WalkKind::BruteForce:
+        return "brute-force";
+    case WalkKind::RestartTrail:
+        return "restart-trail";
+    case WalkKind::ShortStack:
+        return "short-stack";
+    case WalkKind::ParentLinks:
+        return "parent-links";
+    case WalkKind::SkipLinks:
+        return "skip-links";
+    case WalkKind::Packet:
+        return "packet";
+    case WalkKind::Wide4:
+        return "wide4";
+    case WalkKind::Wide8:
+        return "wide8";
+    case WalkKind::Wide8Simd:
+        return "wide8-simd";
+    case WalkKind::Compressed:
+        return "compressed";
+    case WalkKind::Kd:
+        return "kd";
+    case WalkKind::Octree:
+        return "octree";
+    }
+    return "";
+}
+
+const char* name_of(Distribution distribution) {
+    switch (distribution) {
+    case Distribution::OneAThread:
+        return "one-a-thread";
+    case Distribution::Persistent:
+        return "persistent";
+    case Distribution::DynamicFetch:
+        return "dynamic-fetch";
+    }
+    return "";
+}
+
+std::string name_of(const Combination& c) {
+    std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.walk));
+    name += c.options.rta ? " rta" : " no-rta";
+    if (has_order(c.walk)) name += c.options.near_first ? " near" : " unordered";
+    if (!c.options.exact) name += " fast-tests";
+    if (c.distribution != Distribution::OneAThread) name += fmt::format(" {}", name_of(c.distribution));
+    return name;
+}
+
+std::optional<StructureKind> structure_named(const std::string& name) {
+    const auto at = std::ranges::find_if(kStructures, [&](StructureKind kind) { return name == name_of(kind); });
+    return at == kStructures.end() ? std::nullopt : std::optional(*at);
+}
+
+std::optional<WalkKind> walk_named(const std::string& name) {
+    const auto at = std::ranges::find_if(kWalks, [&](WalkKind kind) { return name == name_of(kind); });
+    return at == kWalks.end() ? std::nullopt : std::optional(*at);
+}
+
+std::optional<std::string> why_not(StructureKind structure, WalkKind walk) {
+    if ((walk == WalkKind::Kd) != is_kd(structure)) {
+        return walk == WalkKind::Kd ? "a tree of boxes has no split planes to walk; take kd-median or kd-sah"
+                                    : "a kd-tree has planes in place of boxes; the walk for it is kd";
+    }
+    if ((walk == WalkKind::Octree) != (structure == StructureKind::Octree)) {
+        return walk == WalkKind::Octree ? "walks the cells of an octree; the structure for it is octree"
+                                        : "an octree has eight cells a node; the walk for it is octree";
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> why_not(const Combination& c, const LabMachine& machine) {
+    if (auto reason = why_not(c.structure, c.walk)) return reason;
+    if (!c.options.near_first && !has_order(c.walk)) return "there is no order of children to switch off";
+    if (!c.options.rta && c.walk == WalkKind::BruteForce) return "without nodes there is no redundant traversal";
+    if (c.walk == WalkKind::Wide8Simd && machine.is_cuda)
+        return "eight boxes at once by the CPU's vector unit; on a GPU take wide8";
+    if (c.distribution != Distribution::OneAThread && !machine.is_cuda) {
+        return "threads of a CPU take rays from a pool anyway";
+    }
+    if (c.distribution != Distribution::OneAThread && machine.has_instances) {
+        return "rays from a pool are compiled for scenes of one tree, and this one has shared meshes";
+    }
+    if (c.distribution == Distribution::DynamicFetch && c.walk != WalkKind::WhileWhile &&
+        c.walk != WalkKind::Speculative) {
+        return "rays are refilled inside the walk: there is one for while-while and one for speculative";
+    }
+    return std::nullopt;
+}
+
+} // namespace pertev

@@ -1,0 +1,96 @@
+// The walks that only a CPU has: eight boxes of one ray, and one box of eight rays, at a time.
+
+#include <array>
+
+#include "base/parallel_for.h"
+#include "lab/walk_kernels.h"
+#include "trace/packet_walk.h"
+#include "trace/walk_wide.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint64_t kGrain = 256; // rays
+
+template <WalkOptions kOptions, bool kAny>
+void trace_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, RayHit* hits) {
+    using Walk = Wide8SimdWalk<kOptions>;
+    const TraceRays<Walk, kAny> stage = {std::get<SceneTrees<typename Walk::Tree>>(trees), batch.rays, hits};
+    parallel_for(batch.count, kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+}
+
+template <WalkOptions kOptions, bool kAny>
+void count_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
+    using Walk = Wide8SimdWalk<kOptions>;
+    const CountRays<Walk, kAny> stage = {std::get<SceneTrees<typename Walk::Tree>>(trees), batch.rays, work};
+    parallel_for(batch.count, kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+}
+
+/// Eight rays in a row, fewer at the end.
+template <WalkOptions kOptions, bool kAny, class Counter>
+void trace_packet(const SceneBvhView& scene, const RayBatch& batch, uint64_t packet, RayHit* hits,
+                  const Counter& counter) {
+    const uint64_t first = packet * kPacketRays, count = std::min<uint64_t>(kPacketRays, batch.count - first);
+    const unsigned active = (1u << count) - 1;
+    RayPacket rays{};
+    for (uint64_t k = 0; k < count; ++k) rays[k] = batch.rays[first + k];
+    if constexpr (kAny) {
+        const unsigned found = trace_packet_any<kOptions>(scene, rays, active, AcceptAll{}, counter);
+        for (uint64_t k = 0; k < count; ++k) hits[first + k] = {0.0f, found >> k & 1 ? 0u : kNoHit, 0u};
+    } else {
+        std::array<Hit, kPacketRays> found;
+        trace_packet_closest<kOptions>(scene, rays, active, AcceptAll{}, found, counter);
+        for (uint64_t k = 0; k < count; ++k) hits[first + k] = {found[k].t, found[k].instance, found[k].primitive};
+    }
+}
+
+uint64_t packets_of(const RayBatch& batch) { return (uint64_t(batch.count) + kPacketRays - 1) / kPacketRays; }
+
+template <WalkOptions kOptions, bool kAny>
+void trace_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayHit* hits) {
+    const auto& scene = std::get<SceneBvhView>(trees);
+    parallel_for(packets_of(batch), kGrain / kPacketRays,
+                 [&](uint64_t packet) { trace_packet<kOptions, kAny>(scene, batch, packet, hits, NoWalkCounter{}); });
+}
+
+/// What a packet tests is its eight rays' together: each of them gets an equal part.
+template <WalkOptions kOptions, bool kAny>
+void count_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
+    const auto& scene = std::get<SceneBvhView>(trees);
+    std::vector<RayHit> hits(batch.count);
+    parallel_for(packets_of(batch), kGrain / kPacketRays, [&](uint64_t packet) {
+        uint64_t nodes = 0, triangles = 0;
+        trace_packet<kOptions, kAny>(scene, batch, packet, hits.data(), WalkCounter{&nodes, &triangles});
+        const uint64_t first = packet * kPacketRays, count = std::min<uint64_t>(kPacketRays, batch.count - first);
+        for (uint64_t k = 0; k < count; ++k) { // so that the sum is exact
+            work[first + k] = {static_cast<uint32_t>((nodes + k) / count),
+                               static_cast<uint32_t>((triangles + k) / count)};
+        }
+    });
+}
+
+template <WalkOptions kOptions, bool kAny>
+void add_rows(std::vector<WalkKernel>& rows) {
+    rows.push_back({WalkKind::Wide8Simd, kOptions, Distribution::OneAThread, kAny, false, true,
+                    trace_simd<kOptions, kAny>, count_simd<kOptions, kAny>, nullptr, nullptr});
+    rows.push_back({WalkKind::Packet, kOptions, Distribution::OneAThread, kAny, false, true,
+                    trace_packets<kOptions, kAny>, count_packets<kOptions, kAny>, nullptr, nullptr});
+}
+
+template <WalkOptions kOptions>
+void add_kernels(std::vector<WalkKernel>& rows) {
+    add_rows<kOptions, false>(rows);
+    if constexpr (kOptions.rta) add_rows<kOptions, true>(rows);
+}
+
+} // namespace
+
+void add_host_kernels(std::vector<WalkKernel>& rows) {
+    add_kernels<WalkOptions{true, true, true}>(rows);
+    add_kernels<WalkOptions{false, true, true}>(rows);
+    add_kernels<WalkOptions{true, false, true}>(rows);
+    add_kernels<WalkOptions{false, false, true}>(rows);
+    add_kernels<WalkOptions{true, true, false}>(rows);
+}
+
+} // namespace pertev

@@ -1,0 +1,140 @@
+#include "lab/svg_plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace pertev {
+namespace {
+
+constexpr const char* kColors[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e",
+                                   "#17becf", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22"};
+
+std::string text_at(double x, double y, const char* anchor, const std::string& text) {
+    return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>)", x, y, anchor, html_text(text));
+}
+
+std::string line(double x0, double y0, double x1, double y1, const char* color) {
+    return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"/>)", x0, y0, x1, y1, color);
+}
+
+std::string svg(double width, double height, const std::string& title, const std::string& content) {
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"11\" role=\"img\">\n"
+        "<title>{2}</title><text x=\"8\" y=\"16\" font-size=\"13\" font-weight=\"bold\">{2}</text>\n{3}</svg>\n",
+        width, height, html_text(title), content);
+}
+
+} // namespace
+
+std::string html_text(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        switch (c) {
+        case '&':
+            out += "&amp;";
+            break;
+        case '<':
+            out += "&lt;";
+            break;
+        case '>':
+            out += "&gt;";
+            break;
+        case '"':
+            out += "&quot;";
+            break;
+        default:
+            out += c;
+        }
+    }
+    return out;
+}
+
+double axis_step(double most, int count) {
+    double step = 1;
+    while (step * count < most) step *= 10;
+    while (step / 10 * count >= most) step /= 10;
+    for (const double part : {0.2, 0.5}) {
+        if (step * part * count >= most) return step * part;
+    }
+    return step;
+}
+
+std::string svg_bars(const std::string& title, const std::string& unit, const std::vector<Bar>& bars) {
+    constexpr double width = 900, left = 330, right = 80, top = 40, row = 17;
+    double most = 0;
+    for (const Bar& bar : bars) most = std::max({most, bar.value, bar.largest});
+    if (!(most > 0) || !std::isfinite(most)) return {};
+    const double scale = (width - left - right) / most, bottom = top + row * static_cast<double>(bars.size());
+    std::string content;
+    const double step = axis_step(most, 6);
+    for (double at = 0; at <= most; at += step) {
+        content += line(left + at * scale, top - 4, left + at * scale, bottom, "#ddd");
+        content += text_at(left + at * scale, top - 8, "middle", fmt::format("{:g}", at));
+    }
+    content += text_at(width - 4, top - 8, "end", unit) + '\n';
+    double y = top;
+    for (const Bar& bar : bars) {
+        const double middle = y + row / 2;
+        content += fmt::format(
+            R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}"><title>{}: {:g}</title></rect>)",
+            left, y + 2, bar.value * scale, row - 4, kColors[0], html_text(bar.label), bar.value);
+        if (bar.largest > bar.least) {
+            content += line(left + bar.least * scale, middle, left + bar.largest * scale, middle, "#000");
+        }
+        content += text_at(left - 6, middle + 4, "end", bar.label);
+        content += text_at(left + std::max(bar.value, bar.largest) * scale + 5, middle + 4, "start",
+                           fmt::format("{:.4g}", bar.value)) +
+                   '\n';
+        y += row;
+    }
+    return svg(width, bottom + 10, title, content);
+}
+
+std::string svg_curves(const std::string& title, const std::string& x_label, const std::string& y_label,
+                       const std::vector<Curve>& curves) {
+    constexpr double width = 900, height = 380, left = 70, right = 330, top = 40, bottom = 45;
+    double most_x = 0, most_y = 0, least_x = 1e300;
+    for (const Curve& curve : curves) {
+        for (const auto& [x, y] : curve.points) {
+            most_x = std::max(most_x, x), least_x = std::min(least_x, x), most_y = std::max(most_y, y);
+        }
+    }
+    if (!(most_y > 0) || !std::isfinite(most_y) || !(most_x > least_x)) return {};
+    const double plot_width = width - left - right, plot_height = height - top - bottom;
+    const auto at_x = [&](double x) { return left + (x - least_x) / (most_x - least_x) * plot_width; };
+    const auto at_y = [&](double y) { return top + (1 - y / most_y) * plot_height; };
+    std::string content;
+    const double step_y = axis_step(most_y, 6), step_x = std::max(1.0, axis_step(most_x - least_x, 10));
+    for (double y = 0; y <= most_y; y += step_y) {
+        content += line(left, at_y(y), left + plot_width, at_y(y), "#ddd");
+        content += text_at(left - 6, at_y(y) + 4, "end", fmt::format("{:g}", y));
+    }
+    for (double x = least_x; x <= most_x; x += step_x) {
+        content += line(at_x(x), top + plot_height, at_x(x), top + plot_height + 4, "#000");
+        content += text_at(at_x(x), top + plot_height + 16, "middle", fmt::format("{:g}", x));
+    }
+    content += line(left, top + plot_height, left + plot_width, top + plot_height, "#000");
+    content += text_at(left + plot_width / 2, height - 10, "middle", x_label) + text_at(8, top - 8, "start", y_label);
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const char* color = kColors[i % std::size(kColors)];
+        std::string points;
+        for (const auto& [x, y] : curves[i].points) points += fmt::format("{:.1f},{:.1f} ", at_x(x), at_y(y));
+        content += fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"{}/>)", points, color,
+                               i < std::size(kColors) ? "" : R"( stroke-dasharray="5 3")");
+        for (const auto& [x, y] : curves[i].points) {
+            content +=
+                fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="2.5" fill="{}"><title>{}: {:g}</title></circle>)",
+                            at_x(x), at_y(y), color, html_text(curves[i].label), y);
+        }
+        const double y = top + 14 * static_cast<double>(i);
+        content += fmt::format(R"(<rect x="{:.0f}" y="{:.0f}" width="10" height="10" fill="{}"/>)", width - right + 20,
+                               y, color);
+        content += text_at(width - right + 36, y + 9, "start", curves[i].label) + '\n';
+    }
+    return svg(width, std::max(height, top + 14 * static_cast<double>(curves.size()) + 10), title, content);
+}
+
+} // namespace pertev

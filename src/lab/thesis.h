@@ -1,0 +1,35 @@
+#pragma once
+
+// Chapter 6 of Bellek, "Realtime photo-realistic rendering using modern GPU systems", M.Sc. thesis, ITU 2014, measured
+// anew: tables 6.3 to 6.6 (frames a second, seconds a frame and rays a second over the depth of paths, in the Cornell
+// box and in Sibenik cathedral at 1024x768) and figures 6.7 to 6.11. P = persistent threads, R = without redundant
+// traversal avoidance, A = the kernel of Aila and Laine.
+
+#include <string>
+#include <vector>
+
+#include "lab/lab_report.h"
+
+namespace pertev {
+
+/// One column of the tables.
+struct ThesisVariant {
+    const char* name; // "PSWW", "PSWW-R", ...
+    const char* meaning;
+    Combination combination;
+};
+
+/// What there is on this kind of device: on a CPU nothing is persistent.
+std::vector<ThesisVariant> thesis_variants(bool is_cuda);
+
+/// Reports of Cornell box and Sibenik, in this order, of exactly the variants' combinations; `local` and `global` are
+/// pictures of the two scenes.
+struct ThesisReport {
+    std::vector<LabReport> scenes;
+    std::vector<Picture> local, global;
+};
+
+std::string text_of(const ThesisReport& thesis);
+std::string html_of(const ThesisReport& thesis);
+
+} // namespace pertev

@@ -1,0 +1,126 @@
+#include "lab/traced_set.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "math/transform.h"
+
+namespace pertev {
+namespace {
+
+/// In the world; any of the scene's.
+BvhTriangle some_triangle(const LabTriangles& triangles, uint32_t& state) {
+    const auto below = [&](std::size_t count) {
+        return std::min(static_cast<std::size_t>(draw(state) * static_cast<float>(count)), count - 1);
+    };
+    const auto& instances = triangles.top_level.instances;
+    const bool baked = instances.empty() || (!triangles.baked.empty() && draw(state) < 0.5f);
+    if (baked) return triangles.baked[below(triangles.baked.size())];
+    const InstanceRecord& record = instances[below(instances.size())];
+    const Transform world_from_local = inverse(record.local_from_world);
+    BvhTriangle t = triangles.meshes[record.mesh_bvh][below(triangles.meshes[record.mesh_bvh].size())];
+    t.a = transform_point(world_from_local, t.a);
+    t.b = transform_point(world_from_local, t.b);
+    t.c = transform_point(world_from_local, t.c);
+    return t;
+}
+
+Ray nasty_ray(Ray ray, uint32_t i, const LabTriangles& triangles) {
+    uint32_t state = secondary_state(i, 99);
+    const BvhTriangle t = some_triangle(triangles, state);
+    switch (i % 4) {
+    case 0: { // along an axis, the other components exactly 0, of both signs
+        const float sign = i & 4 ? -1.0f : 1.0f, zero = i & 8 ? -0.0f : 0.0f;
+        const uint32_t axis = i / 16 % 3;
+        ray.direction = {axis == 0 ? sign : zero, axis == 1 ? sign : zero, axis == 2 ? sign : zero};
+        break;
+    }
+    case 1:
+        ray.direction = t.b - ray.origin;
+        break; // at a vertex
+    case 2:
+        ray.direction = 0.5f * (t.a + t.c) - ray.origin;
+        break; // at an edge
+    case 3:
+        ray.direction = t.b - t.a, ray.origin = t.a - ray.direction;
+        break; // along an edge
+    }
+    const float size = max_component(abs(ray.direction));
+    if (!(size >= 0x1p-40f && size <= 0x1p40f)) ray.direction = {0, 0, 1};
+    return ray;
+}
+
+RayHit wanted_of(const RayHit& hit, bool any_hit) {
+    return any_hit ? RayHit{0.0f, hit.is_hit() ? 0u : kNoHit, 0u} : hit;
+}
+
+std::string text_of(const Ray& r) {
+    return fmt::format("origin {:a} {:a} {:a} direction {:a} {:a} {:a} t {:a} {:a}", r.origin.x, r.origin.y, r.origin.z,
+                       r.direction.x, r.direction.y, r.direction.z, r.t_min, r.t_max);
+}
+
+std::vector<RayHit> trace_proven(Queue& queue, const SceneBvhView& proven, bool any_hit, const Buffer<Ray>& rays) {
+    const Buffer<RayHit> hits(queue, rays.size(), "hits");
+    const auto count = static_cast<uint32_t>(rays.size());
+    if (any_hit) {
+        launch(queue, "proven walk", count, TraceRays<StackWalk, true>{proven, rays.data(), hits.data()});
+    } else {
+        launch(queue, "proven walk", count, TraceRays<StackWalk, false>{proven, rays.data(), hits.data()});
+    }
+    return hits.download();
+}
+
+} // namespace
+
+std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t nasty_count) {
+    std::vector<Ray> rays;
+    const std::size_t of_set = std::min<std::size_t>(count, set.rays.size());
+    for (std::size_t i = 0; i < of_set; ++i) rays.push_back(set.rays[i * set.rays.size() / of_set]);
+    if (of_set == 0) return rays;
+    for (uint32_t i = 0; i < nasty_count; ++i) rays.push_back(nasty_ray(rays[i % of_set], i, triangles));
+    return rays;
+}
+
+TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle,
+                    const LabTriangles& triangles, uint32_t oracle_count, uint32_t nasty_count) {
+    const std::vector<Ray> some = oracle_rays(set, triangles, oracle_count, nasty_count);
+    const std::vector<RayHit> truth = oracle.trace(some);
+    const std::vector<RayHit> found =
+        trace_proven(queue, proven, set.any_hit, Buffer<Ray>(queue, std::span<const Ray>(some), "rays"));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        if (found[i] == wanted_of(truth[i], set.any_hit)) continue;
+        throw Error(ErrorCode::DeviceFault,
+                    fmt::format("the walk of pictures differs from brute force on {} ({}): instance {} in place of {}, "
+                                "primitive {} in place of {}, t {:a} in place of {:a}; please report it",
+                                set.name, text_of(some[i]), found[i].instance, truth[i].instance, found[i].primitive,
+                                truth[i].primitive, found[i].t, truth[i].t));
+    }
+
+    TracedSet traced;
+    traced.rays = Buffer<Ray>(queue, std::span<const Ray>(set.rays), set.name + " rays");
+    traced.wanted = trace_proven(queue, proven, set.any_hit, traced.rays);
+    traced.figures = {
+        .name = set.name, .any_hit = set.any_hit, .rays = set.rays.size(), .brute_force_rays = some.size()};
+    const auto hits = std::ranges::count_if(traced.wanted, [](const RayHit& hit) { return hit.is_hit(); });
+    if (!set.rays.empty()) {
+        traced.figures.hit_share = static_cast<double>(hits) / static_cast<double>(set.rays.size());
+    }
+    return traced;
+}
+
+uint64_t count_different(std::span<const RayHit> hits, std::span<const RayHit> wanted) {
+    PERTEV_CHECK(hits.size() == wanted.size());
+    std::atomic<uint64_t> different{0};
+    parallel_for_ranges(hits.size(), 1 << 14, [&](uint64_t begin, uint64_t end) {
+        uint64_t here = 0;
+        for (uint64_t i = begin; i < end; ++i) here += hits[i] == wanted[i] ? 0 : 1;
+        different += here;
+    });
+    return different;
+}
+
+} // namespace pertev

@@ -1,0 +1,35 @@
+#pragma once
+
+// A set of rays with what they meet, as every combination is held to: from the proven walk, which itself was held
+// against brute force on some of them.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/buffer.h"
+#include "lab/brute_force_rays.h"
+#include "lab/lab_report.h"
+#include "lab/ray_sets.h"
+
+namespace pertev {
+
+struct TracedSet {
+    SetFigures figures;
+    Buffer<Ray> rays;           // on the queue's device
+    std::vector<RayHit> wanted; // in the form that TraceRays gives for the set's kind
+};
+
+/// Some of a set's rays, spread over it, and others from their origins that run along axes or exactly through vertices
+/// and along edges of the scene's triangles. A function of its arguments.
+std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t nasty_count);
+
+/// Traces the set by the proven walk. Throws Error(DeviceFault) where brute force gives another hit, with the ray as
+/// hex floats.
+TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle,
+                    const LabTriangles& triangles, uint32_t oracle_count, uint32_t nasty_count);
+
+/// Rays whose result is not the one wanted.
+uint64_t count_different(std::span<const RayHit> hits, std::span<const RayHit> wanted);
+
+} // namespace pertev

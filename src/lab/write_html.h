@@ -1,0 +1,18 @@
+#pragma once
+
+// The report as one HTML file that needs nothing else: tables, bars, curves over depth, heat maps and pictures inside.
+
+#include <string>
+
+#include "lab/lab_report.h"
+
+namespace pertev {
+
+std::string html_of(const LabReport& report);
+
+/// The pieces, for pages of other shapes.
+std::string html_page(const std::string& title, const std::string& body);
+/// An <img> with the picture inside.
+std::string html_image(const Rgba8Image& image, const std::string& caption, uint32_t shown_width);
+
+} // namespace pertev

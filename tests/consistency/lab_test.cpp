@@ -1,0 +1,200 @@
+// Every combination of structure, walk and switches gives the hits of the walk of pictures, bit for bit, and that walk
+// those of brute force: in public scenes and in meshes made to break them, with instances and without.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/read_scene.h"
+#include "lab/record_scenes.h"
+#include "lab/run_lab.h"
+#include "scene/defaults.h"
+#include "tests/support/nasty_meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr WalkOptions kAllOn = {.rta = true, .near_first = true, .exact = true};
+
+std::vector<WalkOptions> exact_options() {
+    std::vector<WalkOptions> options;
+    for (const bool rta : {true, false}) {
+        for (const bool near_first : {true, false}) options.push_back({rta, near_first, true});
+    }
+    return options;
+}
+
+/// Everything that is there on a device; brute force only where a scene is small.
+LabSettings all_combinations(bool is_cuda, bool brute_force) {
+    LabSettings settings;
+    settings.structures.assign(all_structures().begin(), all_structures().end());
+    settings.walks.assign(all_walks().begin(), all_walks().end());
+    if (!brute_force) std::erase(settings.walks, WalkKind::BruteForce);
+    settings.options = exact_options();
+    if (is_cuda) {
+        settings.distributions = {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch};
+    }
+    settings.runs = settings.warm_ups = 0;
+    settings.heat_maps = false;
+    return settings;
+}
+
+/// Every walk with every switch on one tree; every structure with all switches on.
+LabSettings some_combinations(bool is_cuda) {
+    const LabSettings all = all_combinations(is_cuda, false);
+    LabSettings settings = all;
+    for (const Distribution distribution : all.distributions) {
+        for (const WalkKind walk : all.walks) {
+            for (const StructureKind structure : all.structures) {
+                if (why_not(structure, walk)) continue;
+                const bool every_switch =
+                    structure == StructureKind::SpatialSplits || walk == WalkKind::Kd || walk == WalkKind::Octree;
+                for (const WalkOptions& options : all.options) {
+                    if (every_switch || (options.rta && options.near_first)) {
+                        settings.only.push_back({structure, walk, options, distribution});
+                    }
+                }
+            }
+        }
+    }
+    return settings;
+}
+
+void check(const LabReport& report) {
+    uint64_t checked = 0;
+    for (const CombinationFigures& c : report.combinations) {
+        CAPTURE(c.name);
+        CAPTURE(c.refused);
+        CHECK_FALSE(c.refused.starts_with("WRONG"));
+        CHECK_FALSE(c.refused == "not compiled");
+        for (const RunFigures& run : c.runs) CHECK(run.different == 0);
+        checked += c.runs.empty() ? 0 : 1;
+    }
+    CHECK(checked >= 40);
+}
+
+void check_file(const std::filesystem::path& file, Queue& queue, uint64_t rays) {
+    Messages messages;
+    ReadOptions options;
+    options.geometry_only = true;
+    const Scene scene = read_scene(file, options, messages);
+    LabSettings settings = some_combinations(queue.is_cuda());
+    settings.width = static_cast<uint32_t>(std::sqrt(static_cast<double>(rays) * 4 / 3)) + 1;
+    settings.height = settings.width * 3 / 4 + 1;
+    settings.depth = 2;
+    const Camera camera = make_default_camera(scene, 4.0f / 3.0f, messages);
+    const LabReport report = run_lab(queue, scene, camera, settings, {});
+    REQUIRE(report.sets.size() == 3);
+    CHECK(report.sets[0].rays >= rays);
+    for (const SetFigures& set : report.sets) CHECK(set.brute_force_rays >= 2200);
+    check(report);
+}
+
+/// The mesh's triangles as one instance a given number.
+Scene scene_of(const NastyMesh& nasty) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.meshes.resize(1);
+    for (const BvhTriangle& t : nasty.triangles) {
+        for (const Vec3 corner : {t.a, t.b, t.c}) {
+            scene.meshes[0].indices.push_back(static_cast<uint32_t>(scene.meshes[0].positions.size()));
+            scene.meshes[0].positions.push_back(corner);
+        }
+    }
+    scene.instances.push_back({.name = "nasty", .mesh = 0, .material = 0, .world_from_local = {}});
+    return scene;
+}
+
+void check_nasty_meshes(Queue& queue, uint32_t side) {
+    for (const NastyMesh& nasty : nasty_meshes()) {
+        if (nasty.triangles.empty()) continue;
+        CAPTURE(nasty.name);
+        const Scene scene = scene_of(nasty);
+        LabSettings settings = all_combinations(queue.is_cuda(), true);
+        settings.width = settings.height = side;
+        settings.depth = 3;
+        Camera camera;
+        camera.world_from_camera = look_at(nasty.centre + nasty.extent * Vec3{1.5f, 0.7f, 3}, nasty.centre, {0, 1, 0});
+        check(run_lab(queue, scene, camera, settings, {}));
+    }
+}
+
+} // namespace
+
+TEST_CASE("every combination gives the same hits in the mixed scene, which has instances") {
+    Queue queue = Queue::make_cpu();
+    const Scene scene = make_mixed_scene();
+    LabSettings settings = all_combinations(false, true);
+    settings.width = 64, settings.height = 48, settings.depth = 3;
+    const LabReport report = run_lab(queue, scene, mixed_scene_camera(), settings, {});
+    check(report);
+}
+
+TEST_CASE("every combination gives the same hits in meshes made to break them") {
+    Queue queue = Queue::make_cpu();
+    check_nasty_meshes(queue, static_cast<uint32_t>(effort(12, 48)));
+}
+
+TEST_CASE("every combination gives the same hits on 10^5 rays of each kind in Sponza and Sibenik") {
+    Queue queue = Queue::make_cpu();
+    for (const char* file : {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"}) {
+        if (const auto path = test_scene(file)) check_file(*path, queue, effort(100'000, 1'000'000));
+    }
+}
+
+TEST_CASE("CUDA: every combination gives the same hits") {
+    if (!cuda_requested()) return;
+    Queue queue = make_cuda_queue();
+    check_nasty_meshes(queue, static_cast<uint32_t>(effort(64, 256)));
+    for (const char* file : {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"}) {
+        if (const auto path = test_scene(file)) check_file(*path, queue, 1'000'000);
+    }
+}
+
+TEST_CASE("fast tests miss a few rays, which are counted") {
+    Queue queue = Queue::make_cpu();
+    const Scene scene = scene_of({"torus", triangles_of(make_torus(60, 30), 0), {}});
+    LabSettings settings;
+    settings.only = {{StructureKind::Binned, WalkKind::WhileWhile, {true, true, false}},
+                     {StructureKind::Binned, WalkKind::WhileWhile, kAllOn}};
+    settings.width = settings.height = 128;
+    settings.runs = 1, settings.warm_ups = 0;
+    Camera camera;
+    camera.world_from_camera = look_at({1.5f, 0.7f, 3}, {}, {0, 1, 0});
+    const LabReport report = run_lab(queue, scene, camera, settings, {});
+    for (const CombinationFigures& c : report.combinations) {
+        CAPTURE(c.refused);
+        REQUIRE(c.runs.size() == 3);
+    }
+    const RunFigures& fast = report.combinations[0].runs[0];
+    CHECK(fast.different > 0); // t differs in its last bits at least
+    CHECK(report.combinations[1].runs[0].different == 0);
+    CHECK(fast.nodes > 1);
+    CHECK(fast.median_s > 0);
+}
+
+TEST_CASE("an interrupted laboratory keeps what it has measured") {
+    Queue queue = Queue::make_cpu();
+    const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
+    LabSettings settings = all_combinations(false, false);
+    settings.width = settings.height = 16;
+    Camera camera;
+    camera.world_from_camera = look_at({1.5f, 0.7f, 3}, {}, {0, 1, 0});
+    const LabReport report =
+        run_lab(queue, scene, camera, settings, [](const LabProgress& now) { return now.share < 0.5; });
+    CHECK(report.interrupted);
+    const auto measured = std::ranges::count_if(report.combinations, [](const auto& c) { return !c.runs.empty(); });
+    CHECK(measured > 10);
+    CHECK(static_cast<std::size_t>(measured) < report.combinations.size());
+}
+
+TEST_CASE("a scene without triangles is refused by a clear line") {
+    Queue queue = Queue::make_cpu();
+    const LabSettings settings = all_combinations(false, false);
+    CHECK_THROWS_WITH(run_lab(queue, Scene{}, Camera{}, settings, {}), "the scene has no triangles: nothing to trace");
+}
