@@ -7,6 +7,7 @@ lab_table.py REPORT.csv SET [--filter walk=... --filter rta=1 ...] [--column nod
 import argparse
 import csv
 
+
 def number(text, column):
     if not text:
         return ""

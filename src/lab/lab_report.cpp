@@ -4,7 +4,12 @@
 
 namespace pertev {
 
-double frame_seconds(const LabReport& report, const CombinationFigures& combination, int depth) {
+const RunFigures* find_run(const CombinationFigures& combination, uint32_t set) {
+    const auto at = std::ranges::find_if(combination.runs, [set](const RunFigures& run) { return run.set == set; });
+    return at == combination.runs.end() ? nullptr : &*at;
+}
+
+std::optional<double> frame_seconds(const LabReport& report, const CombinationFigures& combination, int depth) {
     double seconds = 0;
     int found = 0;
     for (const RunFigures& run : combination.runs) {
@@ -13,7 +18,7 @@ double frame_seconds(const LabReport& report, const CombinationFigures& combinat
         seconds += run.median_s;
         ++found;
     }
-    return found == depth ? seconds : 0;
+    return found == depth && seconds > 0 ? std::optional(seconds) : std::nullopt;
 }
 
 uint64_t frame_rays(const LabReport& report, int depth) {
@@ -26,6 +31,19 @@ int largest_depth(const LabReport& report) {
     int depth = 0;
     for (const SetFigures& set : report.sets) depth = std::max(depth, set.depth);
     return depth;
+}
+
+std::optional<double> price_of_exactness(const LabReport& report, const CombinationFigures& combination, uint32_t set) {
+    if (!combination.combination.options.exact) return std::nullopt;
+    Combination fast = combination.combination;
+    fast.options.exact = false;
+    const std::string name = name_of(fast);
+    const auto at =
+        std::ranges::find_if(report.combinations, [&](const CombinationFigures& c) { return c.name == name; });
+    if (at == report.combinations.end()) return std::nullopt;
+    const RunFigures *exact_run = find_run(combination, set), *fast_run = find_run(*at, set);
+    if (exact_run == nullptr || fast_run == nullptr || !(fast_run->median_s > 0)) return std::nullopt;
+    return exact_run->median_s / fast_run->median_s;
 }
 
 } // namespace pertev

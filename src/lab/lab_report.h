@@ -1,8 +1,10 @@
 #pragma once
 
-// What the laboratory measured: plain data that the command prints and that becomes CSV, JSON, HTML.
+// What the laboratory measured: plain data that the command prints and that becomes CSV, JSON, HTML. Where nothing was
+// measured there is no value, not a 0.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +15,12 @@ namespace pertev {
 
 /// A set of rays of one kind, traced as a whole.
 struct SetFigures {
-    std::string name; // "primary", "shadow", "diffuse 1", ...
+    std::string name; // "primary", "shadow", "diffuse1", ...
     bool any_hit = false;
     int depth = 0; // which ray of a path these are: 1 = camera rays; 0: not part of a frame
     uint64_t rays = 0;
     double hit_share = 0;
-    uint64_t brute_force_rays = 0; // of them, how many the proven walk was held against brute force on
+    uint64_t brute_force_rays = 0; // how many rays the proven walk was held against brute force on
 };
 
 struct StructureFigures {
@@ -27,27 +29,30 @@ struct StructureFigures {
     double build_s = 0;                // from triangles to what the walk reads, conversion included
     uint64_t nodes = 0, triangles = 0; // triangles: in leaves, so duplicates count
     std::size_t bytes = 0;             // nodes and triangles
-    double sah_cost = 0;               // a node 1, a triangle 1
+    double sah_cost = 0;               // in its builder's own unit: binary trees compare with binary trees alone
     int depth = 0;
 };
 
 /// One combination on one set.
 struct RunFigures {
-    uint32_t set = 0;                                // index into LabReport::sets
-    double median_s = 0, least_s = 0, largest_s = 0; // of the runs; the whole set
-    double nodes = 0, triangles = 0;                 // tests a ray
-    double node_lanes = 0, triangle_lanes = 0;       // live lanes of 32 at a test; 0: not measured (CPU)
-    double sectors = 0;                              // of 32 bytes, a load of 16 bytes a lane; 0: not measured
-    uint64_t different = 0;                          // rays whose result differs: fast tests alone may have any
+    uint32_t set = 0;                                     // index into LabReport::sets
+    double median_s = 0, least_s = 0, largest_s = 0;      // of the runs; the whole set
+    std::optional<double> nodes, triangles;               // tests a ray; what a node is differs between layouts
+    std::optional<double> node_lanes, triangle_lanes;     // live lanes of 32 at a test
+    std::optional<double> node_sectors, triangle_sectors; // of 32 bytes, a load of 16 bytes a lane: 1 to 32
+    uint64_t different = 0;                               // rays whose result differs: fast tests alone may have any
+    /// The same walk was measured for another combination (any hit with RTA on, say) and its figures stand here too.
+    bool is_copy = false;
 };
 
 struct CombinationFigures {
     Combination combination;
-    uint32_t structure = 0; // index into LabReport::structures
+    std::optional<uint32_t> structure; // index into LabReport::structures; none: it never came to its turn
     std::string name;
-    std::string refused;  // why there are no figures; empty: there are
-    int registers = 0;    // of the closest-hit kernel; 0: not a kernel
-    double occupancy = 0; // share of the GPU's warps that it can hold
+    std::string refused;                       // why there are no figures; empty: there are
+    bool wrong = false;                        // it differs from the proven walk: `refused` says where
+    std::optional<int> registers, local_bytes; // of the closest-hit kernel, a thread
+    std::optional<double> occupancy;           // warps that fit / places for them, by its registers
     std::vector<RunFigures> runs;
 };
 
@@ -57,13 +62,10 @@ struct HeatMap {
     std::vector<uint32_t> nodes, triangles; // [height * width] tests of the primary ray of a pixel
 };
 
-struct Picture {
-    std::string caption;
-    Rgba8Image image;
-};
-
 struct LabReport {
     std::string scene, device, commit;
+    uint32_t threads = 0; // of the CPU
+    std::string camera;   // in words
     uint64_t triangles = 0, instances = 0;
     uint32_t width = 0, height = 0;
     int first_depth = 1; // of the frames to show
@@ -73,7 +75,12 @@ struct LabReport {
     std::vector<StructureFigures> structures;
     std::vector<CombinationFigures> combinations;
     std::vector<HeatMap> heat_maps;
-    std::vector<Picture> pictures;
+};
+
+/// A picture and what stands beneath it.
+struct Picture {
+    std::string caption;
+    Rgba8Image image;
 };
 
 /// Million rays a second of a run.
@@ -81,12 +88,19 @@ inline double mrays(const LabReport& report, const RunFigures& run) {
     return run.median_s > 0 ? static_cast<double>(report.sets[run.set].rays) / run.median_s * 1e-6 : 0;
 }
 
-/// Seconds of a frame of paths `depth` rays long: the sets of depths 1 to that, one after the other. 0 when one of them
-/// was not measured.
-double frame_seconds(const LabReport& report, const CombinationFigures& combination, int depth);
+/// The run of a combination on a set, or null.
+const RunFigures* find_run(const CombinationFigures& combination, uint32_t set);
+
+/// Seconds of a frame of paths `depth` rays long: the sets of depths 1 to that, one after the other. None where one of
+/// them was not measured.
+std::optional<double> frame_seconds(const LabReport& report, const CombinationFigures& combination, int depth);
 /// Rays of such a frame.
 uint64_t frame_rays(const LabReport& report, int depth);
 /// The largest depth that there are sets for.
 int largest_depth(const LabReport& report);
+
+/// What exactness costs: time of this combination over that of the same one with fast tests, on the same set. None
+/// where either was not measured, or this one has fast tests itself.
+std::optional<double> price_of_exactness(const LabReport& report, const CombinationFigures& combination, uint32_t set);
 
 } // namespace pertev
