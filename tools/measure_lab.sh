@@ -34,7 +34,7 @@ for part in "${parts[@]}"; do
     sponza) lab sponza sponza "${record[@]}" --rta on ;;
     sibenik) lab sibenik "$scenes/sibenik/sibenik.obj" "${record[@]}" --rta on ;;
     dragon) lab dragon "$scenes/stanford/dragon_res2.ply" "${record[@]}" --rta on ;;
-    forest) lab forest forest "${record[@]}" --rta on --structures binned,sweep,sbvh,ploc,kd-median,octree ;;
+    forest) lab forest forest "${record[@]}" --rta on ;;
     switches) lab switches sponza "${record[@]}" --structures sbvh,kd-sah,octree --rta both --order both --tests both ;;
     peers)
         for scene in sponza bunny forest; do
@@ -44,10 +44,14 @@ for part in "${parts[@]}"; do
         ;;
     profile)
         command -v ncu >/dev/null || { echo "--- profile: ncu is not installed"; continue; }
-        for walk in while-while speculative packet compressed; do
-            ncu --csv --kernel-name regex:'run_stage|run_dynamic_fetch' --launch-count 24 --section SpeedOfLight \
-                --section Occupancy --section WarpStateStats --section MemoryWorkloadAnalysis --section SchedulerStats \
-                "$bin/pertev" lab sponza "${record[@]}" --structures sbvh --walks $walk --rta on --runs 1 \
+        for pair in while-while:WhileWhileWalk speculative:SpeculativeWalk packet:WarpPacketWalk \
+            compressed:CompressedWalk; do
+            walk=${pair%:*}
+            # Five launches a set (one checked, three to warm up, one timed), five sets, each way of handing out rays.
+            ncu --csv --kernel-name-base demangled --launch-count 75 \
+                --kernel-name "regex:run_(stage|stage_persistent|dynamic_fetch).*(TraceRays|${pair#*:}.*BatchInOut)" \
+                --section SpeedOfLight --section Occupancy --section WarpStateStats --section MemoryWorkloadAnalysis --section SchedulerStats \
+                "$bin/pertev" lab sponza "${record[@]}" --structures sbvh --walks "$walk" --rta on --runs 1 \
                 --device cuda -q >"$out/profile-$walk.csv" || status=1
         done
         ;;

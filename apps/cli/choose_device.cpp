@@ -15,7 +15,7 @@ std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages
     if (name == "auto") {
         const std::string reason = why_no_cuda(0);
         if (reason.empty()) return std::make_unique<Queue>(Queue::make_cuda(0));
-        messages.note(fmt::format("rendering on the CPU: {}", reason));
+        messages.note(fmt::format("using the CPU: {}", reason));
         return std::make_unique<Queue>(Queue::make_cpu());
     }
     int index = 0;

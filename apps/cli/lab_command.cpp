@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <set>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -30,9 +29,9 @@ namespace {
 struct LabFlags {
     SceneOptions scene;
     std::vector<std::string> structures, walks, rays = {"primary", "shadow", "diffuse"};
-    std::string rta = "both", order = "on", tests = "exact", persistent = "both", size = "1024x768", depths = "1-3";
+    std::string rta = "both", order = "on", tests = "exact", persistent = "both", size, depths;
     std::string output;
-    uint32_t runs = 20, count = kRecordRays;
+    uint32_t runs = 20, count = 0;
     bool no_heat_maps = false, thesis = false;
     MachineFlags machine;
     ReportFlags report;
@@ -59,7 +58,9 @@ std::pair<int, int> parse_depths(const std::string& text) {
 template <class Kind, class Named>
 std::vector<Kind> chosen(const std::vector<std::string>& names, std::span<const Kind> all, const Named& named) {
     std::vector<Kind> kinds;
-    for (const std::string& name : names) kinds.push_back(*named(name));
+    for (const std::string& name : names) {
+        if (std::ranges::find(kinds, *named(name)) == kinds.end()) kinds.push_back(*named(name));
+    }
     return names.empty() ? std::vector<Kind>(all.begin(), all.end()) : kinds;
 }
 
@@ -76,58 +77,76 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
         }
     }
     settings.distributions.clear();
+    if (!is_cuda && flags.persistent == "on") {
+        throw Error(ErrorCode::BadInput,
+                    "--persistent on: that is for a GPU; threads of a CPU take rays from a pool anyway");
+    }
     if (!is_cuda || flags.persistent != "on") settings.distributions.push_back(Distribution::OneAThread);
     if (is_cuda && flags.persistent != "off") {
         settings.distributions.push_back(Distribution::Persistent);
         settings.distributions.push_back(Distribution::DynamicFetch);
     }
-    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
-    std::tie(settings.first_depth, settings.depth) = parse_depths(flags.depths);
+    std::tie(settings.width, settings.height) = parse_size("--size", flags.size.empty() ? "1024x768" : flags.size);
+    const std::string depths = !flags.depths.empty() ? flags.depths : flags.thesis ? "1-8" : "1-3";
+    std::tie(settings.first_depth, settings.depth) = parse_depths(depths);
     const auto traces = [&](const char* kind) { return std::ranges::find(flags.rays, kind) != flags.rays.end(); };
     settings.primary = traces("primary"), settings.shadow = traces("shadow"), settings.diffuse = traces("diffuse");
     if (traces("record")) {
-        settings.record_rays = flags.count;
-        const FrameSize frame = record_frame(flags.count);
+        if (flags.rays.size() > 1 || !flags.size.empty() || !flags.depths.empty()) {
+            throw Error(ErrorCode::BadInput,
+                        "--rays record: its sets are fixed; no other kind, --size or --depths goes with it");
+        }
+        settings.record_rays = flags.count > 0 ? flags.count : kRecordRays;
+        const FrameSize frame = record_frame(settings.record_rays);
         settings.width = frame.width, settings.height = frame.height;
+    } else if (flags.count > 0) {
+        throw Error(ErrorCode::BadInput, "--count: is for --rays record; the rays of a frame follow from --size");
     }
     settings.runs = static_cast<int>(flags.runs);
     settings.warm_ups = is_cuda ? 3 : 1;
-    settings.heat_maps = !flags.no_heat_maps;
+    settings.heat_maps = !flags.no_heat_maps && !flags.output.empty();
     return settings;
 }
 
 /// A line for each refusal that the user asked for by name; the rest are in the report.
 void say_refusals(const LabFlags& flags, const LabReport& report, Reporter& reporter) {
-    const bool by_name = !flags.structures.empty() && !flags.walks.empty();
+    if (flags.structures.empty() || flags.walks.empty()) return;
     for (const CombinationFigures& c : report.combinations) {
-        const bool wrong = c.refused.starts_with("WRONG");
-        if (wrong || (by_name && !c.refused.empty())) reporter.say(fmt::format("{}: {}", c.name, c.refused));
+        if (!c.refused.empty()) reporter.say(fmt::format("{}: {}", c.name, c.refused));
     }
+}
+
+Scene read_lab_scene(const LabFlags& flags, Messages& messages) {
+    if (const RecordScene* record = find_record_scene(flags.scene.scene)) {
+        return make_record_scene(*record, public_scenes_folder(), messages);
+    }
+    return read_any_scene(flags.scene.scene, flags.scene.allowed_paths, messages);
 }
 
 int run(const LabFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
-    if (!flags.output.empty()) check_lab_folder(flags.output);
+    if (!flags.thesis && flags.scene.scene.empty()) {
+        throw Error(ErrorCode::BadInput, "lab: SCENE is required (or --thesis)");
+    }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
-    const LabSettings settings = lab_settings(flags, queue->is_cuda());
+    LabSettings settings = lab_settings(flags, queue->is_cuda());
     listen_for_interrupt();
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
-    if (flags.scene.scene.empty()) throw Error(ErrorCode::BadInput, "lab: SCENE is required (or --thesis)");
 
-    const RecordScene* record = find_record_scene(flags.scene.scene);
-    const Scene scene = record != nullptr ? make_record_scene(*record, public_scenes_folder(), messages)
-                                          : read_any_scene(flags.scene.scene, flags.scene.allowed_paths, messages);
+    const Scene scene = read_lab_scene(flags, messages);
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
+    if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.say_messages();
-    LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter));
+    settings.scene = std::filesystem::path(flags.scene.scene).stem().string();
+    const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output));
     reporter.end_progress();
-    report.scene = std::filesystem::path(flags.scene.scene).stem().string();
     say_refusals(flags, report, reporter);
     reporter.answer(text_of(report));
     reporter.event(json_of(report));
     if (!flags.output.empty()) write_lab_files(flags.output, report, reporter);
+    fail_if_wrong(report);
     return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
@@ -148,8 +167,10 @@ void add_switch(CLI::App& verb, const char* flag, std::string& value, const char
 void add_lab_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("lab", "Every structure and every walk side by side, on your scene and card");
     const auto flags = std::make_shared<LabFlags>();
-    add_scene_options(verb, flags->scene);
-    verb.get_option("SCENE")->required(false);
+    add_view_options(verb, flags->scene);
+    CLI::Option* scene = verb.get_option("SCENE");
+    scene->required(false);
+    scene->description(scene->get_description() + "; or\nsponza, bunny, forest: those of bench rays");
     verb.add_option("--structures", flags->structures, "some of the structures (all)")
         ->type_name("NAME,...")
         ->delimiter(',')
@@ -163,25 +184,27 @@ void add_lab_command(CLI::App& app, int& status) {
     add_switch(verb, "--tests", flags->tests, "exact, fast (leaks at edges, as most tracers do) or both",
                {"exact", "fast", "both"});
     add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
-    verb.add_option("--size", flags->size, "camera rays")->type_name("WIDTHxHEIGHT")->capture_default_str();
-    verb.add_option("--depths", flags->depths, "lengths of paths, in rays")
-        ->type_name("FIRST-LAST")
-        ->capture_default_str();
+    verb.add_option("--size", flags->size, "camera rays (1024x768)")->type_name("WIDTHxHEIGHT");
+    verb.add_option("--depths", flags->depths, "lengths of paths, in rays (1-3)")->type_name("FIRST-LAST");
     verb.add_option("--rays", flags->rays, "primary, shadow, diffuse (all), or record: the five sets of\nbench rays")
         ->type_name("KIND,...")
         ->delimiter(',')
         ->check(one_of({"primary", "shadow", "diffuse", "record"}));
-    verb.add_option("--count", flags->count, "rays of a set of the record")
+    verb.add_option("--count", flags->count, "rays of a set of the record (8294400)")
         ->type_name("N")
-        ->check(whole_between(1, 1u << 30))
-        ->capture_default_str();
+        ->check(whole_between(1, 1u << 30));
     verb.add_option("--runs", flags->runs, "times that each is traced; the figure is the median")
         ->type_name("N")
         ->check(whole_between(1, 10000))
         ->capture_default_str();
     verb.add_flag("--no-heat-maps", flags->no_heat_maps, "no pictures of the tests a pixel");
-    verb.add_flag("--thesis", flags->thesis,
-                  "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found under PERTEV_SCENES)");
+    CLI::Option* thesis = verb.add_flag(
+        "--thesis", flags->thesis,
+        "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found under PERTEV_SCENES), depths 1-8");
+    for (const char* flag :
+         {"--structures", "--walks", "--rta", "--order", "--tests", "--persistent", "--rays", "--count"}) {
+        thesis->excludes(verb.get_option(flag)); // it is what the thesis compared
+    }
     verb.add_option("-o,--output", flags->output, "write report.csv, .json, .html and heat maps here")
         ->type_name("DIR");
     add_machine_flags(verb, flags->machine);

@@ -50,15 +50,31 @@ void write_lab_files(const std::filesystem::path& folder, const LabReport& repor
     reporter.say(fmt::format("written: {}", (folder / "report.html").string()));
 }
 
-std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter) {
-    return [&reporter](const LabProgress& now) {
+std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder) {
+    return [&reporter, folder](const LabProgress& now) {
         const double left_s = now.share > 0.01 ? now.seconds * (1 - now.share) / now.share : 0;
         reporter.progress(now.share,
                           fmt::format("{}{}", now.doing, left_s > 0 ? fmt::format(", {:.0f} s left", left_s) : ""));
-        reporter.event(fmt::format(R"({{"event":"progress","share":{:.4f},"doing":{},"seconds":{:.3f}}})", now.share,
-                                   json_string(now.doing), now.seconds));
+        reporter.event(
+            fmt::format(R"({{"event":"progress","share":{:.4f},"doing":{},"seconds":{:.3f},"seconds_left":{}}})",
+                        now.share, json_string(now.doing), now.seconds, left_s > 0 ? json_number(left_s) : "null"));
+        if (now.so_far != nullptr && !folder.empty()) {
+            write_text(folder / "report.csv", csv_of(*now.so_far));
+            write_text(folder / "report.json", json_of(*now.so_far) + '\n');
+        }
         return !interrupted();
     };
+}
+
+void fail_if_wrong(const LabReport& report) {
+    std::string names;
+    for (const CombinationFigures& c : report.combinations) {
+        if (c.wrong) names += fmt::format("\n  {}: {}", c.name, c.refused);
+    }
+    if (!names.empty()) {
+        throw Error(ErrorCode::DeviceFault,
+                    fmt::format("{}: combinations that differ from the proven walk:{}", report.scene, names));
+    }
 }
 
 } // namespace pertev

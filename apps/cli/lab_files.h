@@ -19,7 +19,11 @@ void check_lab_folder(const std::filesystem::path& folder);
 void write_lab_files(const std::filesystem::path& folder, const LabReport& report, Reporter& reporter);
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-/// A progress bar with the time left; stops at Ctrl-C. `reporter` outlives it.
-std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter);
+/// A progress bar with the time left; stops at Ctrl-C. Where `folder` is not empty, what has been measured is kept
+/// there after each structure, as CSV and JSON. `reporter` outlives it.
+std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder);
+
+/// Throws Error(DeviceFault) that names the combinations that differ from the proven walk, if there are any.
+void fail_if_wrong(const LabReport& report);
 
 } // namespace pertev

@@ -85,7 +85,7 @@ void flatten(const SceneOptions& options, const Scene& scene, Camera& camera) {
 
 } // namespace
 
-void add_scene_options(CLI::App& verb, SceneOptions& options) {
+void add_view_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
         ->type_name("")
         ->required();
@@ -117,7 +117,12 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(length_m())
         ->group(group);
-    group = "Environment";
+    add_allow_path(verb, options.allowed_paths);
+}
+
+void add_scene_options(CLI::App& verb, SceneOptions& options) {
+    add_view_options(verb, options);
+    const char* group = "Environment";
     verb.add_option("--environment", options.environment, "an .hdr or .exr panorama, or R,G,B: light from far away")
         ->type_name("FILE|R,G,B")
         ->group(group);
@@ -129,7 +134,6 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("X")
         ->check(number_between(0, 1e12f))
         ->group(group);
-    add_allow_path(verb, options.allowed_paths);
 }
 
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders) {

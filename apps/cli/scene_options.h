@@ -29,7 +29,10 @@ struct SceneOptions {
     float environment_rotation_deg = 0, environment_scale = 1;
 };
 
+/// SCENE, its camera and its environment.
 void add_scene_options(CLI::App& verb, SceneOptions& options);
+/// The same without the environment, for verbs that look at geometry alone.
+void add_view_options(CLI::App& verb, SceneOptions& options);
 /// --allow-path alone.
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);
 

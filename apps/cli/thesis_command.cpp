@@ -29,15 +29,52 @@ std::string sibenik() {
     return path.string();
 }
 
-Image render(Queue& queue, const PreparedScene& prepared, const Camera& camera, const LabSettings& lab,
-             PathLight light) {
+struct ThesisScene {
+    std::string name;
+    LoadedScene loaded;
+    Camera camera;
+};
+
+ThesisScene load(SceneOptions options, const std::string& scene, const LabSettings& settings, Messages& messages) {
+    options.scene = scene;
+    ThesisScene thesis = {std::filesystem::path(scene).stem().string(), load_scene(options, messages), {}};
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    thesis.camera = choose_camera(options, thesis.loaded.scene, aspect, messages);
+    return thesis;
+}
+
+RenderResult render(Queue& queue, const PreparedScene& prepared, const Camera& camera, const LabSettings& lab,
+                    PathLight light) {
     RenderSettings settings;
     settings.width = lab.width, settings.height = lab.height;
     settings.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
     settings.path.max_depth = static_cast<uint32_t>(lab.depth);
     settings.path.light = light;
-    return render_picture(queue, prepared, camera, settings, [](const RenderProgress&) { return !interrupted(); })
-        .picture;
+    return render_picture(queue, prepared, camera, settings, [](const RenderProgress&) { return !interrupted(); });
+}
+
+/// Local and global illumination, at one exposure: they are compared.
+void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& settings, Messages& messages,
+                  ThesisReport& thesis) {
+    const PreparedScene prepared = prepare_scene(scene.loaded.scene, {}, messages);
+    const RenderResult local = render(queue, prepared, scene.camera, settings, PathLight::Direct);
+    const RenderResult global = render(queue, prepared, scene.camera, settings, PathLight::Path);
+    const float stops = scene.loaded.default_light ? auto_exposure_stops(global.picture) : 0;
+    const auto caption = [&](const char* light, const RenderResult& result) {
+        return fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result.samples,
+                           interrupted() ? " (interrupted)" : "");
+    };
+    thesis.local.push_back({caption("local", local), tone_map_image(local.picture, ToneMap::Srgb, stops)});
+    thesis.global.push_back({caption("global", global), tone_map_image(global.picture, ToneMap::Srgb, stops)});
+}
+
+void write_files(const std::filesystem::path& folder, const ThesisReport& thesis) {
+    write_text(folder / "thesis.html", html_of(thesis));
+    for (std::size_t i = 0; i < thesis.scenes.size(); ++i) { // numbered: both may have one name
+        const std::string name = fmt::format("thesis-{}-{}", i + 1, thesis.scenes[i].scene);
+        write_text(folder / (name + ".csv"), csv_of(thesis.scenes[i]));
+        write_text(folder / (name + ".json"), json_of(thesis.scenes[i]) + '\n');
+    }
 }
 
 } // namespace
@@ -46,41 +83,33 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
                Reporter& reporter) {
     for (const ThesisVariant& v : thesis_variants(queue.is_cuda())) settings.only.push_back(v.combination);
     settings.primary = settings.diffuse = true;
-    settings.shadow = false;
+    settings.shadow = settings.heat_maps = false;
+    // Both are read before the first is measured. The camera's flags are the second's.
+    const ThesisScene scenes[] = {
+        load({}, "cornell-box", settings, reporter.messages()),
+        load(options, options.scene.empty() ? sibenik() : options.scene, settings, reporter.messages())};
+    if (!output.empty()) check_lab_folder(output);
+    reporter.say_messages();
     ThesisReport thesis;
-    for (const std::string& name : {std::string("cornell-box"), options.scene.empty() ? sibenik() : options.scene}) {
-        SceneOptions scene_options = options; // the camera's flags are the second scene's
-        if (name == "cornell-box") scene_options = {};
-        scene_options.scene = name;
-        const LoadedScene loaded = load_scene(scene_options, reporter.messages());
-        const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-        const Camera camera = choose_camera(scene_options, loaded.scene, aspect, reporter.messages());
-        reporter.say_messages();
-        const std::string title = std::filesystem::path(name).stem().string();
-        reporter.say(fmt::format("{}: {}x{}, depths {} to {}", title, settings.width, settings.height,
+    for (const ThesisScene& scene : scenes) {
+        settings.scene = scene.name;
+        reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                  settings.first_depth, settings.depth));
-        thesis.scenes.push_back(run_lab(queue, loaded.scene, camera, settings, show_lab_progress(reporter)));
-        thesis.scenes.back().scene = title;
+        thesis.scenes.push_back(
+            run_lab(queue, scene.loaded.scene, scene.camera, settings, show_lab_progress(reporter, {})));
         reporter.end_progress();
         reporter.event(json_of(thesis.scenes.back()));
+        if (!output.empty()) {
+            if (!interrupted()) add_pictures(queue, scene, settings, reporter.messages(), thesis);
+            write_files(output, thesis);
+        }
         if (interrupted()) break;
-        if (output.empty()) continue;
-        const PreparedScene prepared = prepare_scene(loaded.scene, {}, reporter.messages());
-        const Image local = render(queue, prepared, camera, settings, PathLight::Direct);
-        const Image global = render(queue, prepared, camera, settings, PathLight::Path);
-        const float stops = loaded.default_light ? auto_exposure_stops(global) : 0; // one for both: they are compared
-        thesis.local.push_back({title + ", local", tone_map_image(local, ToneMap::Srgb, stops)});
-        thesis.global.push_back({title + ", global", tone_map_image(global, ToneMap::Srgb, stops)});
     }
     reporter.answer(text_of(thesis));
     if (!output.empty()) {
-        const std::filesystem::path folder = output;
-        write_text(folder / "thesis.html", html_of(thesis));
-        for (const LabReport& report : thesis.scenes) {
-            write_text(folder / fmt::format("thesis-{}.csv", report.scene), csv_of(report));
-        }
-        reporter.say(fmt::format("written: {}", (folder / "thesis.html").string()));
+        reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
     }
+    for (const LabReport& report : thesis.scenes) fail_if_wrong(report);
     return interrupted() ? exit_status(ErrorCode::Interrupted) : 0;
 }
 

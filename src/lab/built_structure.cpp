@@ -15,33 +15,6 @@
 namespace pertev {
 namespace {
 
-/// kd-trees and the octree have no such builder.
-BvhBuilder builder_of(StructureKind kind) {
-    switch (kind) {
-    case StructureKind::Binned:
-        return BvhBuilder::Binned;
-    case StructureKind::Sweep:
-        return BvhBuilder::Sweep;
-    case StructureKind::Median:
-        return BvhBuilder::Median;
-    case StructureKind::EqualCounts:
-        return BvhBuilder::EqualCounts;
-    case StructureKind::SpatialSplits:
-        return BvhBuilder::SpatialSplits;
-    case StructureKind::Ploc:
-        return BvhBuilder::Ploc;
-    case StructureKind::Insertion:
-        return BvhBuilder::Insertion;
-    case StructureKind::Reinsertion:
-        return BvhBuilder::Reinsertion;
-    case StructureKind::KdMedian:
-    case StructureKind::KdSah:
-    case StructureKind::Octree:
-        break;
-    }
-    throw Error(ErrorCode::BadInput, fmt::format("{} is not a binary hierarchy", name_of(kind)));
-}
-
 const char* suffix_of(TreeLayout layout) {
     switch (layout) {
     case TreeLayout::Skip:
@@ -64,15 +37,6 @@ const char* suffix_of(TreeLayout layout) {
 
 const std::vector<BvhTriangle>& part_of(const LabTriangles& triangles, std::size_t part) {
     return part == 0 ? triangles.baked : triangles.meshes[part - 1];
-}
-
-/// A tree's triangles without the tree.
-struct TriangleArray {
-    std::vector<BvhNode> nodes; // none
-    std::vector<BvhTriangle> triangles;
-};
-TriangleArrayView view_of(const TriangleArray& array) {
-    return {array.triangles.data(), static_cast<uint32_t>(array.triangles.size())};
 }
 
 template <class T>
@@ -136,15 +100,16 @@ uint64_t LabTriangles::count() const {
 }
 
 BinaryTrees build_binary_trees(const LabTriangles& triangles, StructureKind kind) {
-    const BvhBuilder builder = builder_of(kind);
+    const auto builder = builder_of(kind);
+    PERTEV_CHECK(builder.has_value());
+    const auto parts = std::make_shared<std::vector<Bvh>>();
     const Stopwatch watch;
-    BinaryTrees trees;
     for (std::size_t part = 0; part <= triangles.meshes.size(); ++part) {
-        trees.parts.push_back(build_bvh(builder, part_of(triangles, part)));
-        add_parent_links(trees.parts.back());
+        parts->push_back(build_bvh(*builder, part_of(triangles, part)));
     }
-    trees.build_s = watch.seconds();
-    return trees;
+    const double build_s = watch.seconds();
+    for (Bvh& bvh : *parts) add_parent_links(bvh);
+    return {parts, build_s};
 }
 
 template <class T>
@@ -154,10 +119,9 @@ const T* BuiltStructure::keep(Queue& queue, std::span<const T> values, const std
     return reinterpret_cast<const T*>(buffers_.back().data());
 }
 
-/// The view of the tree where the queue's device can read it.
-template <class Tree>
-auto BuiltStructure::place(Queue& queue, const Tree& tree) {
-    auto view = view_of(tree);
+/// The view of the tree, where the queue's device can read it.
+template <class Tree, class View>
+View BuiltStructure::place(Queue& queue, const Tree& tree, View view) {
     if (!queue.is_cuda()) return view;
     if constexpr (requires { view.nodes; }) {
         view.nodes = keep(queue, std::span(tree.nodes), figures_.name + " nodes");
@@ -169,23 +133,22 @@ auto BuiltStructure::place(Queue& queue, const Tree& tree) {
     return view;
 }
 
-template <class Make>
-void BuiltStructure::fill(Queue& queue, const LabTriangles& triangles, const Make& make) {
-    using Tree = std::remove_cvref_t<decltype(make(std::size_t(0)))>;
-    using View = decltype(view_of(std::declval<const Tree&>()));
-    const auto host = std::make_shared<std::vector<Tree>>();
-    const Stopwatch watch;
-    for (std::size_t part = 0; part <= triangles.meshes.size(); ++part) host->push_back(make(part));
-    figures_.build_s += watch.seconds();
-
+template <class Tree, class ViewOf>
+void BuiltStructure::take(Queue& queue, const LabTriangles& triangles, std::shared_ptr<const std::vector<Tree>> parts,
+                          const ViewOf& view_of_part) {
+    using View = decltype(view_of_part(parts->front()));
     std::size_t largest = 0; // the tree whose cost and depth stand for all
     std::vector<View> meshes;
     SceneTrees<View> scene;
-    for (std::size_t part = 0; part < host->size(); ++part) {
-        const Tree& tree = (*host)[part];
-        figures_.nodes += tree.nodes.size();
+    for (std::size_t part = 0; part < parts->size(); ++part) {
+        const Tree& tree = (*parts)[part];
+        View view = view_of_part(tree);
+        if constexpr (requires { view.nodes; }) {
+            figures_.nodes += tree.nodes.size();
+            figures_.bytes += bytes_of(tree.nodes);
+        }
         figures_.triangles += tree.triangles.size();
-        figures_.bytes += bytes_of(tree.nodes) + bytes_of(tree.triangles);
+        figures_.bytes += bytes_of(tree.triangles);
         if constexpr (requires { tree.references; }) {
             figures_.bytes += bytes_of(tree.references);
             figures_.triangles += tree.references.size() - tree.triangles.size();
@@ -197,7 +160,7 @@ void BuiltStructure::fill(Queue& queue, const LabTriangles& triangles, const Mak
                 figures_.depth = tree.depth;
             }
         }
-        (part == 0 ? scene.baked : meshes.emplace_back()) = place(queue, tree);
+        (part == 0 ? scene.baked : meshes.emplace_back()) = place(queue, tree, view);
     }
     scene.meshes = keep(queue, std::span<const View>(meshes), "mesh trees");
     scene.top_nodes = keep(queue, std::span(triangles.top_level.nodes), "top level nodes");
@@ -206,7 +169,50 @@ void BuiltStructure::fill(Queue& queue, const LabTriangles& triangles, const Mak
     scene.top_reach = triangles.top_level.reach;
     scene.top_growth = triangles.top_level.growth;
     trees_ = scene;
-    if (!queue.is_cuda()) host_ = host;
+    if (!queue.is_cuda()) host_ = parts;
+}
+
+/// Makes each part's tree, timed.
+template <class Make>
+void BuiltStructure::build(Queue& queue, const LabTriangles& triangles, const Make& make) {
+    using Tree = std::remove_cvref_t<decltype(make(std::size_t(0)))>;
+    const auto parts = std::make_shared<std::vector<Tree>>();
+    const Stopwatch watch;
+    for (std::size_t part = 0; part <= triangles.meshes.size(); ++part) parts->push_back(make(part));
+    figures_.build_s += watch.seconds();
+    take<Tree>(queue, triangles, parts, [](const Tree& tree) { return view_of(tree); });
+}
+
+void BuiltStructure::convert(Queue& queue, const LabTriangles& triangles, TreeLayout layout,
+                             const BinaryTrees& binary) {
+    figures_.build_s = binary.build_s;
+    const std::vector<Bvh>& parts = *binary.parts;
+    switch (layout) {
+    case TreeLayout::Triangles:
+        take<Bvh>(queue, triangles, binary.parts, triangle_array_of);
+        break;
+    case TreeLayout::Binary:
+        take<Bvh>(queue, triangles, binary.parts, [](const Bvh& bvh) { return view_of(bvh); });
+        break;
+    case TreeLayout::Skip: {
+        build(queue, triangles, [&](std::size_t part) { return make_skip_bvh(parts[part]); });
+        const Bvh& largest = *std::ranges::max_element(parts, {}, [](const Bvh& bvh) { return bvh.triangles.size(); });
+        figures_.sah_cost = static_cast<double>(largest.sah_cost), figures_.depth = largest.depth; // the same tree
+        break;
+    }
+    case TreeLayout::Wide4:
+        build(queue, triangles, [&](std::size_t part) { return make_wide_bvh<4>(parts[part]); });
+        break;
+    case TreeLayout::Wide8:
+        build(queue, triangles, [&](std::size_t part) { return make_wide_bvh<8>(parts[part]); });
+        break;
+    case TreeLayout::Compressed:
+        build(queue, triangles, [&](std::size_t part) { return make_compressed_bvh(parts[part]); });
+        break;
+    case TreeLayout::Kd:
+    case TreeLayout::Octree:
+        break; // are not made of binary trees
+    }
 }
 
 BuiltStructure::BuiltStructure(Queue& queue, const LabTriangles& triangles, StructureKind kind, TreeLayout layout,
@@ -214,38 +220,12 @@ BuiltStructure::BuiltStructure(Queue& queue, const LabTriangles& triangles, Stru
     figures_.name = std::string(name_of(kind)) + suffix_of(layout);
     if (layout == TreeLayout::Kd) {
         const KdTreeSettings settings = {.split = kind == StructureKind::KdSah ? KdSplit::Sah : KdSplit::SpatialMedian};
-        fill(queue, triangles, [&](std::size_t part) { return build_kd_tree(part_of(triangles, part), settings); });
-        return;
-    }
-    if (layout == TreeLayout::Octree) {
-        fill(queue, triangles, [&](std::size_t part) { return build_octree(part_of(triangles, part)); });
-        return;
-    }
-    PERTEV_CHECK(binary != nullptr);
-    figures_.build_s = binary->build_s;
-    const std::vector<Bvh>& parts = binary->parts;
-    switch (layout) {
-    case TreeLayout::Triangles:
-        fill(queue, triangles, [&](std::size_t part) { return TriangleArray{{}, parts[part].triangles}; });
-        break;
-    case TreeLayout::Binary:
-        fill(queue, triangles, [&](std::size_t part) { return parts[part]; });
-        break;
-    case TreeLayout::Skip:
-        fill(queue, triangles, [&](std::size_t part) { return make_skip_bvh(parts[part]); });
-        break;
-    case TreeLayout::Wide4:
-        fill(queue, triangles, [&](std::size_t part) { return make_wide_bvh<4>(parts[part]); });
-        break;
-    case TreeLayout::Wide8:
-        fill(queue, triangles, [&](std::size_t part) { return make_wide_bvh<8>(parts[part]); });
-        break;
-    case TreeLayout::Compressed:
-        fill(queue, triangles, [&](std::size_t part) { return make_compressed_bvh(parts[part]); });
-        break;
-    case TreeLayout::Kd:
-    case TreeLayout::Octree:
-        break;
+        build(queue, triangles, [&](std::size_t part) { return build_kd_tree(part_of(triangles, part), settings); });
+    } else if (layout == TreeLayout::Octree) {
+        build(queue, triangles, [&](std::size_t part) { return build_octree(part_of(triangles, part)); });
+    } else {
+        PERTEV_CHECK(binary != nullptr);
+        convert(queue, triangles, layout, *binary);
     }
 }
 

@@ -43,16 +43,16 @@ struct LabTriangles {
 
 /// A binary tree over each part, [0] the baked one: what several layouts are made of.
 struct BinaryTrees {
-    std::vector<Bvh> parts;
-    double build_s = 0;
+    std::shared_ptr<const std::vector<Bvh>> parts; // with parent links
+    double build_s = 0;                            // without these, which one walk alone reads
 };
 /// `kind` is that of a binary tree. Throws Error(OverLimit), std::bad_alloc.
 BinaryTrees build_binary_trees(const LabTriangles& triangles, StructureKind kind);
 
 class BuiltStructure {
 public:
-    /// `binary` holds the trees of `kind` where the layout is made of those, and outlives this. Throws
-    /// Error(OverLimit), Error(OutOfMemory), std::bad_alloc.
+    /// `binary` holds the trees of `kind` where the layout is made of those. Throws Error(OverLimit),
+    /// Error(OutOfMemory), std::bad_alloc.
     BuiltStructure(Queue& queue, const LabTriangles& triangles, StructureKind kind, TreeLayout layout,
                    const BinaryTrees* binary);
 
@@ -60,16 +60,20 @@ public:
     const StructureFigures& figures() const { return figures_; }
 
 private:
+    void convert(Queue& queue, const LabTriangles& triangles, TreeLayout layout, const BinaryTrees& binary);
     template <class Make>
-    void fill(Queue& queue, const LabTriangles& triangles, const Make& make);
-    template <class Tree>
-    auto place(Queue& queue, const Tree& tree);
+    void build(Queue& queue, const LabTriangles& triangles, const Make& make);
+    template <class Tree, class ViewOf>
+    void take(Queue& queue, const LabTriangles& triangles, std::shared_ptr<const std::vector<Tree>> parts,
+              const ViewOf& view_of_part);
+    template <class Tree, class View>
+    View place(Queue& queue, const Tree& tree, View view);
     template <class T>
     const T* keep(Queue& queue, std::span<const T> values, const std::string& name);
 
     AnyTrees trees_;
     StructureFigures figures_;
-    std::shared_ptr<void> host_; // the trees themselves, where the device is the host
+    std::shared_ptr<const void> host_; // the trees themselves, where the device is the host
     std::vector<Buffer<std::byte>> buffers_;
 };
 

@@ -27,32 +27,35 @@ bool has_order(WalkKind walk) { return walk != WalkKind::BruteForce && walk != W
 std::span<const StructureKind> all_structures() { return kStructures; }
 std::span<const WalkKind> all_walks() { return kWalks; }
 
-const char* name_of(StructureKind kind) {
+std::optional<BvhBuilder> builder_of(StructureKind kind) {
     switch (kind) {
     case StructureKind::Binned:
-        return "binned";
+        return BvhBuilder::Binned;
     case StructureKind::Sweep:
-        return "sweep";
+        return BvhBuilder::Sweep;
     case StructureKind::Median:
-        return "median";
+        return BvhBuilder::Median;
     case StructureKind::EqualCounts:
-        return "equal-counts";
+        return BvhBuilder::EqualCounts;
     case StructureKind::SpatialSplits:
-        return "sbvh";
+        return BvhBuilder::SpatialSplits;
     case StructureKind::Ploc:
-        return "ploc";
+        return BvhBuilder::Ploc;
     case StructureKind::Insertion:
-        return "insertion";
+        return BvhBuilder::Insertion;
     case StructureKind::Reinsertion:
-        return "reinsertion";
+        return BvhBuilder::Reinsertion;
     case StructureKind::KdMedian:
-        return "kd-median";
     case StructureKind::KdSah:
-        return "kd-sah";
     case StructureKind::Octree:
-        return "octree";
+        break;
     }
-    return "";
+    return std::nullopt;
+}
+
+const char* name_of(StructureKind kind) {
+    if (const auto builder = builder_of(kind)) return bvh_builder_name(*builder);
+    return kind == StructureKind::KdMedian ? "kd-median" : kind == StructureKind::KdSah ? "kd-sah" : "octree";
 }
 
 const char* name_of(WalkKind kind) {
@@ -124,8 +127,9 @@ std::optional<WalkKind> walk_named(const std::string& name) {
 
 std::optional<std::string> why_not(StructureKind structure, WalkKind walk) {
     if ((walk == WalkKind::Kd) != is_kd(structure)) {
-        return walk == WalkKind::Kd ? "a tree of boxes has no split planes to walk; take kd-median or kd-sah"
-                                    : "a kd-tree has planes in place of boxes; the walk for it is kd";
+        return walk == WalkKind::Kd
+                   ? "is the walk of a kd-tree's planes; the structures for it are kd-median and kd-sah"
+                   : "a kd-tree has planes in place of boxes; the walk for it is kd";
     }
     if ((walk == WalkKind::Octree) != (structure == StructureKind::Octree)) {
         return walk == WalkKind::Octree ? "walks the cells of an octree; the structure for it is octree"

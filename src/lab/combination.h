@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "accel/bvh/builders.h"
 #include "trace/walk_options.h"
 
 namespace pertev {
@@ -61,6 +62,9 @@ struct Combination {
 /// All there are, in the order above.
 std::span<const StructureKind> all_structures();
 std::span<const WalkKind> all_walks();
+
+/// None for kd-trees and the octree: the others are binary hierarchies.
+std::optional<BvhBuilder> builder_of(StructureKind kind);
 
 const char* name_of(StructureKind kind);
 const char* name_of(WalkKind kind);

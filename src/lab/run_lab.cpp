@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "base/version.h"
 #include "device/device_timer.h"
@@ -18,11 +19,18 @@
 namespace pertev {
 namespace {
 
+constexpr double kAskAfter_s = 0.2; // how long runs go on without asking whether to
+
 /// Thrown when keep_going says no; what has been measured is kept.
 struct Stopped {};
 
-bool is_binary(StructureKind kind) {
-    return kind != StructureKind::KdMedian && kind != StructureKind::KdSah && kind != StructureKind::Octree;
+bool is_binary(StructureKind kind) { return builder_of(kind).has_value(); }
+
+std::string describe(const Camera& camera) {
+    const Transform& m = camera.world_from_camera;
+    const Vec3 eye = m.translation, forward = -column(m, 2);
+    return fmt::format("at ({:g}, {:g}, {:g}) towards ({:g}, {:g}, {:g}), {:g} degrees", eye.x, eye.y, eye.z, forward.x,
+                       forward.y, forward.z, camera.fov_y * 180 / kPi);
 }
 
 class Lab {
@@ -31,8 +39,11 @@ public:
         const std::function<bool(const LabProgress&)>& keep_going)
         : queue_(queue), scene_(scene), camera_(camera), settings_(settings), keep_going_(keep_going),
           triangles_(scene), pool_(queue, 1, "ray pool") {
-        report_ = {.device = queue.device_name(),
+        report_ = {.scene = settings.scene,
+                   .device = queue.device_name(),
                    .commit = fmt::format("{} {}", version(), git_commit()),
+                   .threads = static_cast<uint32_t>(thread_count()),
+                   .camera = describe(camera),
                    .triangles = triangles_.count(),
                    .instances = scene.instances.size(),
                    .width = settings.width,
@@ -51,17 +62,20 @@ public:
         } catch (const Stopped&) {
             report_.interrupted = true;
             for (CombinationFigures& c : report_.combinations) {
-                if (c.runs.empty() && c.refused.empty()) c.refused = "interrupted before its turn";
+                if (c.runs.size() < sets_.size() && c.refused.empty()) {
+                    c.refused = c.runs.empty() ? "interrupted before its turn" : "interrupted";
+                }
             }
         }
-        drop_doubtful_structures();
         return std::move(report_);
     }
 
 private:
+    LabProgress progress_now(std::string doing, const LabReport* so_far = nullptr) const {
+        return {std::min(1.0, work_done_ / std::max(work_, 1.0)), std::move(doing), watch_.seconds(), so_far};
+    }
     void progress(const std::string& doing) {
-        const double share = std::min(1.0, work_done_ / std::max(work_, 1.0));
-        if (keep_going_ && !keep_going_({share, doing, watch_.seconds()})) throw Stopped{};
+        if (keep_going_ && !keep_going_(progress_now(doing))) throw Stopped{};
     }
 
     void add_combination(const Combination& c) {
@@ -86,6 +100,9 @@ private:
         structures_ = settings_.structures;
         for (const StructureKind structure : settings_.structures) {
             for (const WalkKind walk : settings_.walks) {
+                // One array of triangles is as good as another.
+                const auto first = std::ranges::find_if(settings_.structures, is_binary);
+                if (walk == WalkKind::BruteForce && is_binary(structure) && structure != *first) continue;
                 if (!settings_.by_name && why_not(structure, walk)) continue;
                 for (const Distribution distribution : settings_.distributions) {
                     for (const WalkOptions& options : settings_.options) {
@@ -119,7 +136,12 @@ private:
             sets_.back().figures.depth = set.any_hit || record ? 0 : depth; // frames are not of the record
             report_.sets.push_back(sets_.back().figures);
         }
-        if (sets_.empty()) throw Error(ErrorCode::BadInput, "none of the rays asked for meets the scene");
+        if (sets_.empty()) {
+            throw Error(ErrorCode::BadInput,
+                        settings_.depth == 1 && settings_.diffuse && !settings_.primary
+                            ? "diffuse rays are the second of a path: they want a depth of 2 or more"
+                            : "no ray of the camera meets the scene, so there are none to bounce");
+        }
     }
 
     std::vector<CombinationFigures*> combinations_of(StructureKind structure) {
@@ -136,53 +158,80 @@ private:
         if (of_layout.empty()) return;
         std::optional<BinaryTrees> binary;
         for (const auto& [layout, combinations] : of_layout) {
-            try {
+            const uint32_t at = static_cast<uint32_t>(report_.structures.size());
+            const std::string failed = unless_memory_lacks([&] {
                 progress(fmt::format("building {}", name_of(structure)));
                 if (is_binary(structure) && !binary) binary = build_binary_trees(triangles_, structure);
                 const BuiltStructure built(queue_, triangles_, structure, layout, binary ? &*binary : nullptr);
                 report_.structures.push_back(built.figures());
                 for (CombinationFigures* c : combinations) {
-                    c->structure = static_cast<uint32_t>(report_.structures.size() - 1);
-                    measure(*c, built);
+                    c->structure = at;
+                    const std::string lacks = unless_memory_lacks([&] { measure(*c, built); });
+                    if (!lacks.empty()) c->refused = lacks;
                 }
-            } catch (const Error& error) {
-                if (error.code() != ErrorCode::OutOfMemory && error.code() != ErrorCode::OverLimit) throw;
-                refuse(combinations, structure, error.what());
-            } catch (const std::bad_alloc&) {
-                refuse(combinations, structure, "does not fit into this machine's memory");
-            }
+            });
+            if (failed.empty()) continue;
+            report_.structures.push_back({.name = name_of(structure), .failed = failed});
+            for (CombinationFigures* c : combinations) c->structure = at, c->refused = failed;
+        }
+        if (keep_going_ && !keep_going_(progress_now("measured " + std::string(name_of(structure)), &report_))) {
+            throw Stopped{};
         }
     }
 
-    void refuse(const std::vector<CombinationFigures*>& combinations, StructureKind structure, const std::string& why) {
-        report_.structures.push_back({.name = name_of(structure), .failed = why});
-        for (CombinationFigures* c : combinations) {
-            c->structure = static_cast<uint32_t>(report_.structures.size() - 1);
-            if (c->runs.empty()) c->refused = why;
+    /// Runs f; what it lacked where that was memory or a limit, else nothing.
+    template <class F>
+    std::string unless_memory_lacks(const F& f) {
+        try {
+            f();
+            return {};
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::OutOfMemory && error.code() != ErrorCode::OverLimit) throw;
+            return error.what();
+        } catch (const std::bad_alloc&) {
+            return "does not fit into this machine's memory";
         }
     }
 
     void measure(CombinationFigures& c, const BuiltStructure& built) {
-        std::vector<RunFigures> runs;
         for (uint32_t k = 0; k < sets_.size(); ++k) {
             const TracedSet& set = sets_[k];
-            progress(fmt::format("{}: {}", c.name, set.figures.name));
-            const WalkKernel* kernel = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
-            if (kernel == nullptr) continue; // closest hits alone
-            RunFigures run = {.set = k};
-            if (!check(c, set, *kernel, built, run)) return;
-            if (settings_.runs > 0) {
-                time(set, *kernel, built, run);
-                count(c, set, built, run);
+            const std::string doing = fmt::format("{}: {}", c.name, set.figures.name);
+            progress(doing);
+            if (const RunFigures* same = same_run(c, k)) {
+                c.runs.push_back(*same);
+                c.runs.back().is_copy = true;
+            } else {
+                const WalkKernel* kernel = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
+                PERTEV_CHECK(kernel != nullptr);
+                RunFigures run = {.set = k};
+                if (!check(c, set, *kernel, built, run)) return c.runs.clear();
+                if (settings_.runs > 0) {
+                    time(set, *kernel, built, doing, run);
+                    count(c, set, built, run);
+                    if (!set.figures.any_hit) take_limits(c, *kernel);
+                }
+                c.runs.push_back(run);
             }
-            if (!set.figures.any_hit && kernel->limits != nullptr && queue_.is_cuda()) {
-                const KernelLimits limits = kernel->limits();
-                c.registers = limits.registers, c.occupancy = static_cast<double>(limits.occupancy);
-            }
-            runs.push_back(run);
             work_done_ += 1 / static_cast<double>(sets_.size());
         }
-        c.runs = std::move(runs);
+    }
+
+    /// An any-hit search has no nearest hit, so with RTA and without it is one walk: the figures of the one measured.
+    const RunFigures* same_run(const CombinationFigures& c, uint32_t set) const {
+        if (!sets_[set].figures.any_hit) return nullptr;
+        Combination other = c.combination;
+        other.options.rta = !other.options.rta;
+        const std::string name = name_of(other);
+        const auto at = std::ranges::find_if(report_.combinations, [&](const auto& o) { return o.name == name; });
+        return at == report_.combinations.end() ? nullptr : find_run(*at, set);
+    }
+
+    void take_limits(CombinationFigures& c, const WalkKernel& kernel) const {
+        if (!queue_.is_cuda() || kernel.limits == nullptr) return;
+        const KernelLimits limits = kernel.limits(!triangles_.top_level.instances.empty());
+        c.registers = limits.registers, c.local_bytes = limits.local_bytes;
+        c.occupancy = static_cast<double>(limits.occupancy);
     }
 
     RayBatch batch_of(const TracedSet& set) const {
@@ -198,46 +247,67 @@ private:
         std::vector<RayHit> copy;
         run.different = count_different(hits.read(copy), set.wanted);
         if (run.different == 0 || !c.combination.options.exact) return true;
+        c.wrong = true;
         c.refused = fmt::format("WRONG: {} of {} {} rays differ from the proven walk; please report it", run.different,
                                 set.rays.size(), set.figures.name);
         return false;
     }
 
-    void time(const TracedSet& set, const WalkKernel& kernel, const BuiltStructure& built, RunFigures& run) {
+    void time(const TracedSet& set, const WalkKernel& kernel, const BuiltStructure& built, const std::string& doing,
+              RunFigures& run) {
         const Buffer<RayHit> hits(queue_, set.rays.size(), "hits");
-        const RunTimes times = time_runs(queue_, settings_.warm_ups, settings_.runs,
-                                         [&] { kernel.trace(queue_, built.trees(), batch_of(set), hits.data()); });
+        const auto trace = [&] { kernel.trace(queue_, built.trees(), batch_of(set), hits.data()); };
+        for (int i = 0; i < settings_.warm_ups; ++i) trace();
+        DeviceTimer timer(queue_);
+        std::vector<double> seconds;
+        Stopwatch since_asked;
+        for (int i = 0; i < settings_.runs; ++i) {
+            timer.start();
+            trace();
+            timer.stop();
+            seconds.push_back(timer.seconds());
+            if (since_asked.seconds() > kAskAfter_s) {
+                progress(doing);
+                since_asked.restart();
+            }
+        }
+        const RunTimes times = summarize_runs(std::move(seconds));
         run.median_s = times.median, run.least_s = times.least, run.largest_s = times.greatest;
     }
 
     void count(const CombinationFigures& c, const TracedSet& set, const BuiltStructure& built, RunFigures& run) {
-        Combination plain = c.combination; // what a ray tests does not depend on how it came to its thread
-        if (const WalkKernel* own = find_kernel(plain, set.figures.any_hit, queue_.is_cuda()); own->count == nullptr) {
+        const WalkKernel* own = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
+        const WalkKernel* counting = own;
+        if (own->count == nullptr) { // what a ray tests does not depend on how it came to its thread
+            Combination plain = c.combination;
             plain.distribution = Distribution::OneAThread;
+            counting = find_kernel(plain, set.figures.any_hit, queue_.is_cuda());
         }
-        const WalkKernel* kernel = find_kernel(plain, set.figures.any_hit, queue_.is_cuda());
-        const double rays = static_cast<double>(set.rays.size());
-        if (kernel != nullptr && kernel->count != nullptr) {
+        if (counting != nullptr && counting->count != nullptr) {
+            const double rays = static_cast<double>(set.rays.size());
             const Buffer<RayWork> on_device(queue_, set.rays.size(), "ray work");
-            kernel->count(queue_, built.trees(), batch_of(set), on_device.data());
+            counting->count(queue_, built.trees(), batch_of(set), on_device.data());
             const std::vector<RayWork> work = on_device.download();
             uint64_t nodes = 0, triangles = 0;
             for (const RayWork& w : work) nodes += w.nodes, triangles += w.triangles;
             run.nodes = static_cast<double>(nodes) / rays, run.triangles = static_cast<double>(triangles) / rays;
             if (settings_.heat_maps && set.figures.depth == 1) add_heat_map(c, work);
         }
-        kernel = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
-        if (!queue_.is_cuda() || kernel->count_lanes == nullptr) return;
+        if (queue_.is_cuda() && own->count_lanes != nullptr) count_lanes(*own, set, built, run);
+    }
+
+    void count_lanes(const WalkKernel& kernel, const TracedSet& set, const BuiltStructure& built, RunFigures& run) {
         Buffer<LaneCounts> on_device(queue_, 1, "lane counts");
         on_device.zero();
-        kernel->count_lanes(queue_, built.trees(), batch_of(set), on_device.data());
-        const LaneCounts work = on_device.download().front();
+        kernel.count_lanes(queue_, built.trees(), batch_of(set), on_device.data());
+        const LaneCounts counts = on_device.download().front();
         const auto ratio = [](uint64_t a, uint64_t b) {
-            return b > 0 ? static_cast<double>(a) / static_cast<double>(b) : 0.0;
+            return b > 0 ? std::optional(static_cast<double>(a) / static_cast<double>(b)) : std::nullopt;
         };
-        run.node_lanes = ratio(work.node_lanes, work.node_steps);
-        run.triangle_lanes = ratio(work.triangle_lanes, work.triangle_steps);
-        run.sectors = ratio(work.node_sectors, work.node_requests);
+        run.node_lanes = ratio(counts.node_lanes, counts.node_steps);
+        run.triangle_lanes = ratio(counts.triangle_lanes, counts.triangle_steps);
+        run.node_sectors = ratio(counts.node_sectors, counts.node_requests);
+        run.triangle_sectors = ratio(counts.triangle_sectors, counts.triangle_requests);
     }
 
     /// One for each structure and walk, with all its switches on.
@@ -257,11 +327,6 @@ private:
     bool find_kernel_with_order(Combination c) const {
         c.options.near_first = true;
         return find_kernel(c, false, queue_.is_cuda()) != nullptr;
-    }
-
-    /// Combinations that never came to their turn name no structure.
-    void drop_doubtful_structures() {
-        if (report_.structures.empty()) report_.structures.push_back({.name = "none", .failed = "nothing was built"});
     }
 
     Queue& queue_;

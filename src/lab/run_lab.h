@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/messages.h"
 #include "device/queue.h"
 #include "lab/lab_report.h"
 #include "scene/scene.h"
@@ -16,6 +15,7 @@
 namespace pertev {
 
 struct LabSettings {
+    std::string scene; // its name in the report
     std::vector<StructureKind> structures;
     std::vector<WalkKind> walks;
     std::vector<WalkOptions> options; // each is tried with every structure and walk
@@ -37,7 +37,8 @@ inline constexpr uint32_t kOracleRays = 2000, kOracleNastyRays = 200;
 struct LabProgress {
     double share = 0; // done, [0, 1]
     std::string doing;
-    double seconds = 0; // since the start
+    double seconds = 0;                // since the start
+    const LabReport* so_far = nullptr; // after each structure: what has been measured, to be kept
 };
 
 /// Stops early, with `interrupted` set, when keep_going returns false. Throws Error(BadInput) for a scene without

@@ -32,7 +32,8 @@ struct WalkKernel {
     void (*count)(Queue&, const AnyTrees&, const RayBatch&, RayWork*) = nullptr;
     /// Null where there are no warps to look at.
     void (*count_lanes)(Queue&, const AnyTrees&, const RayBatch&, LaneCounts*) = nullptr;
-    KernelLimits (*limits)() = nullptr;
+    /// Of the kernel for scenes of one tree, or of that for scenes with instances. Null where there is no kernel.
+    KernelLimits (*limits)(bool has_instances) = nullptr;
 };
 
 /// Null where there is none: the combination makes no sense, or nobody compiled it.

@@ -101,7 +101,11 @@ void walk_packet(const BvhNode* nodes, uint32_t root, const PacketBoxes& boxes, 
             link = pop();
             continue;
         }
-        counter.add_node(nodes + link);
+        if constexpr (requires { counter.add_packet_node(mask); }) { // a counter of each ray's own work
+            counter.add_packet_node(mask);
+        } else {
+            counter.add_node(nodes + link);
+        }
         const BvhNode& node = nodes[link];
         __m256 entry[2];
         const __m256 limit = _mm256_load_ps(limits);
@@ -165,17 +169,25 @@ private:
         alignas(32) float t_max[kPacketRays] = {};
         for_each(mask, [&](std::size_t k) { t_max[k] = rays[k].t_max; });
         unsigned here = mask; // those of the packet that came into this mesh and are not done
-        walk_packet<kNear>(
-            bvh.nodes, bvh.root, boxes, kOptions.rta ? limits_ : t_max, here, counter_,
-            [&](uint32_t link, unsigned in_leaf) {
-                for_each(in_leaf, [&](std::size_t k) {
-                    if (test_leaf<Tests>(bvh.triangles, link, rays[k], prepared[k], instance, visitors_[k], counter_)) {
-                        alive_ &= ~(1u << k);
-                        here &= ~(1u << k);
-                    }
-                    limits_[k] = visitors_[k].limit();
-                });
-            });
+        walk_packet<kNear>(bvh.nodes, bvh.root, boxes, kOptions.rta ? limits_ : t_max, here, counter_,
+                           [&](uint32_t link, unsigned in_leaf) {
+                               for_each(in_leaf, [&](std::size_t k) {
+                                   if (test_leaf<Tests>(bvh.triangles, link, rays[k], prepared[k], instance,
+                                                        visitors_[k], counter_of_ray(k))) {
+                                       alive_ &= ~(1u << k);
+                                       here &= ~(1u << k);
+                                   }
+                                   limits_[k] = visitors_[k].limit();
+                               });
+                           });
+    }
+
+    auto counter_of_ray(std::size_t k) const {
+        if constexpr (requires { counter_.of_ray(k); }) {
+            return counter_.of_ray(k);
+        } else {
+            return counter_;
+        }
     }
 
     const SceneBvhView& scene_;

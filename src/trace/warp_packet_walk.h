@@ -53,7 +53,7 @@ struct WarpPacketWalk {
                 link = pop();
                 continue;
             }
-            counter.add_node(bvh.nodes + link);
+            if (takes_part) counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
             const float limit = skip_beyond<kOptions>(visitor, ray);
             float entry0, entry1;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "accel/kd_tree/nearest_points.h"
+#include "accel/nearest_points.h"
 #include "tests/support/random.h"
 
 namespace pertev::test {

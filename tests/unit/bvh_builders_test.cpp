@@ -50,11 +50,6 @@ std::optional<std::string> fault_of(BvhBuilder builder, const Bvh& bvh, const st
 
 } // namespace
 
-TEST_CASE("every builder has a name of its own") {
-    for (const BvhBuilder builder : kBvhBuilders) CHECK(find_bvh_builder(bvh_builder_name(builder)) == builder);
-    CHECK(!find_bvh_builder("no such builder"));
-}
-
 TEST_CASE("every builder gives a sound tree on every nasty mesh") {
     for (const NastyMesh& mesh : nasty_meshes()) {
         CAPTURE(mesh.name);

@@ -9,7 +9,7 @@
 #include "accel/clip_triangle.h"
 #include "accel/kd_tree/build_kd_tree.h"
 #include "accel/kd_tree/check_kd_tree.h"
-#include "accel/kd_tree/triangle_points.h"
+#include "accel/triangle_points.h"
 #include "base/parallel_for.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"

@@ -16,7 +16,7 @@ const char* bvh_builder_name(BvhBuilder builder) {
     case BvhBuilder::EqualCounts:
         return "equal-counts";
     case BvhBuilder::SpatialSplits:
-        return "spatial-splits";
+        return "sbvh";
     case BvhBuilder::Ploc:
         return "ploc";
     case BvhBuilder::Insertion:
@@ -25,13 +25,6 @@ const char* bvh_builder_name(BvhBuilder builder) {
         return "reinsertion";
     }
     PERTEV_CHECK(false);
-}
-
-std::optional<BvhBuilder> find_bvh_builder(std::string_view name) {
-    for (const BvhBuilder builder : kBvhBuilders) {
-        if (name == bvh_builder_name(builder)) return builder;
-    }
-    return std::nullopt;
 }
 
 bool cuts_triangles(BvhBuilder builder) { return builder == BvhBuilder::SpatialSplits; }

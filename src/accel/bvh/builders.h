@@ -5,8 +5,6 @@
 // Vertices are finite, |coordinate| <= kMaxCoordinate. Of the settings, max_leaf and the two costs count for all;
 // `bins` and max_depth for Binned alone. Throw Error(OverLimit) for too many triangles.
 
-#include <optional>
-#include <string_view>
 #include <vector>
 
 #include "accel/bvh/build_tree.h"
@@ -30,7 +28,6 @@ inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned,      BvhBuilde
 
 /// As on the command line: "binned", "equal-counts".
 const char* bvh_builder_name(BvhBuilder builder);
-std::optional<BvhBuilder> find_bvh_builder(std::string_view name);
 
 /// Whether the builder cuts triangles: a tree may then hold one more than once, in boxes that hold but a part of it.
 /// find_split_fault checks such a tree, find_fault all others.

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "accel/clip_triangle.h"
-#include "accel/kd_tree/triangle_points.h"
+#include "accel/triangle_points.h"
 #include "base/parallel_for.h"
 
 namespace pertev {

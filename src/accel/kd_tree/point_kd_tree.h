@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "accel/kd_tree/nearest_points.h"
+#include "accel/nearest_points.h"
 #include "base/host_device.h"
 #include "math/vec3.h"
 

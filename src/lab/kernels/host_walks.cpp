@@ -1,5 +1,6 @@
 // The walks that only a CPU has: eight boxes of one ray, and one box of eight rays, at a time.
 
+#include <algorithm>
 #include <array>
 
 #include "base/parallel_for.h"
@@ -53,19 +54,30 @@ void trace_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayHit*
                  [&](uint64_t packet) { trace_packet<kOptions, kAny>(scene, batch, packet, hits, NoWalkCounter{}); });
 }
 
-/// What a packet tests is its eight rays' together: each of them gets an equal part.
+/// Counts a node for each ray of the packet that takes part in its test, and a triangle for the ray that tests it.
+struct PacketWorkCounter {
+    struct OfRay {
+        RayWork* work;
+        void add_node(const void*) const { ++work->nodes; }
+        void add_triangle(const void*) const { ++work->triangles; }
+    };
+    RayWork* work; // [kPacketRays]
+
+    void add_packet_node(unsigned mask) const {
+        for (; mask != 0; mask &= mask - 1) ++work[__builtin_ctz(mask)].nodes;
+    }
+    OfRay of_ray(std::size_t k) const { return {work + k}; }
+};
+
 template <WalkOptions kOptions, bool kAny>
 void count_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
     const auto& scene = std::get<SceneBvhView>(trees);
     std::vector<RayHit> hits(batch.count);
     parallel_for(packets_of(batch), kGrain / kPacketRays, [&](uint64_t packet) {
-        uint64_t nodes = 0, triangles = 0;
-        trace_packet<kOptions, kAny>(scene, batch, packet, hits.data(), WalkCounter{&nodes, &triangles});
+        std::array<RayWork, kPacketRays> counts{};
+        trace_packet<kOptions, kAny>(scene, batch, packet, hits.data(), PacketWorkCounter{counts.data()});
         const uint64_t first = packet * kPacketRays, count = std::min<uint64_t>(kPacketRays, batch.count - first);
-        for (uint64_t k = 0; k < count; ++k) { // so that the sum is exact
-            work[first + k] = {static_cast<uint32_t>((nodes + k) / count),
-                               static_cast<uint32_t>((triangles + k) / count)};
-        }
+        std::copy_n(counts.begin(), count, work + first);
     });
 }
 

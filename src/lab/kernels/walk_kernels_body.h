@@ -81,27 +81,56 @@ void count_lanes_of_batch(Queue& queue, const AnyTrees& trees, const RayBatch& b
     launch(queue, "lab lanes", batch.count, CountLanes<Walk, kAny, Scene>{std::get<Scene>(trees), batch.rays, counts});
 }
 
+template <class Walk, bool kAny>
+void count_lanes_persistent(Queue& queue, const AnyTrees& trees, const RayBatch& batch, LaneCounts* counts) {
+    using Scene = SingleTree<typename Walk::Tree>;
+    launch_persistent(queue, "lab lanes", batch.count,
+                      CountLanes<Walk, kAny, Scene>{single_tree<Walk>(trees), batch.rays, counts}, batch.pool);
+}
+
+/// For launch_dynamic_fetch, where hits are not wanted.
+struct BatchIn {
+    const Ray* rays;
+
+    HD Ray load(uint32_t i) const { return load_ray(rays, i); }
+    HD void store(uint32_t, const Hit&) const {}
+};
+
+template <class Walk, bool kAny>
+void count_lanes_dynamic(Queue& queue, const AnyTrees& trees, const RayBatch& batch, LaneCounts* counts) {
+    launch_dynamic_fetch<Walk, kAny>(queue, "lab lanes", single_tree<Walk>(trees).baked, BatchIn{batch.rays},
+                                     batch.count, batch.pool, LaneCounter{counts});
+}
+
+template <class Walk, bool kAny>
+KernelLimits limits_one_a_thread(bool has_instances) {
+    return has_instances ? limits_of(run_stage<TraceRays<Walk, kAny>>) : limits_of(run_stage<SingleStage<Walk, kAny>>);
+}
+
 #endif
 
-/// Closest or any hit of one set of switches: one ray a thread, and in CUDA from a pool too. Lanes are counted with all
-/// switches on alone: each counting kernel takes as long to compile as a walk.
-template <class Walk, bool kAny, bool kDynamic>
+/// Closest or any hit of one set of switches: one ray a thread, and in CUDA from a pool too. Lanes are counted with the
+/// exact tests and near children first: each counting kernel takes as long to compile as a walk.
+template <class Walk, bool kAny, bool kDynamic, bool kLanes>
 void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>& rows) {
     WalkKernel row = {kind, options, Distribution::OneAThread, kAny, true, kind != WalkKind::Packet};
     row.trace = trace_batch<Walk, kAny>;
     row.count = count_batch<Walk, kAny>;
 #if defined(__CUDACC__)
-    row.limits = [] { return limits_of(run_stage<SingleStage<Walk, kAny>>); };
+    if constexpr (kLanes) row.count_lanes = count_lanes_of_batch<Walk, kAny>;
+    row.limits = limits_one_a_thread<Walk, kAny>;
     rows.push_back(row);
     row.distribution = Distribution::Persistent;
     row.trace = trace_batch_persistent<Walk, kAny>;
     row.count = nullptr; // as one ray a thread
-    row.limits = [] { return limits_of(run_stage_persistent<SingleStage<Walk, kAny>>); };
+    if constexpr (kLanes) row.count_lanes = count_lanes_persistent<Walk, kAny>;
+    row.limits = [](bool) { return limits_of(run_stage_persistent<SingleStage<Walk, kAny>>); };
     if constexpr (kDynamic) {
         rows.push_back(row);
         row.distribution = Distribution::DynamicFetch;
         row.trace = trace_batch_dynamic<Walk, kAny>;
-        row.limits = [] { return limits_of(run_dynamic_fetch<Walk, kAny, BatchInOut, NoWalkCounter>); };
+        if constexpr (kLanes) row.count_lanes = count_lanes_dynamic<Walk, kAny>;
+        row.limits = [](bool) { return limits_of(run_dynamic_fetch<Walk, kAny, BatchInOut, NoWalkCounter>); };
     }
 #endif
     rows.push_back(row);
@@ -109,19 +138,10 @@ void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>
 
 template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kDynamic>
 void add_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
-    using W = Walk<kOptions>;
-    [[maybe_unused]] const std::size_t first = rows.size();
-    add_rows<W, false, kDynamic>(kind, kOptions, rows);
+    constexpr bool kLanes = kOptions.near_first && kOptions.exact;
+    add_rows<Walk<kOptions>, false, kDynamic, kLanes>(kind, kOptions, rows);
     // An any-hit search has no nearest hit to skip beyond, so RTA changes nothing there.
-    if constexpr (kOptions.rta) add_rows<W, true, kDynamic>(kind, kOptions, rows);
-#if defined(__CUDACC__)
-    if constexpr (kOptions.rta && kOptions.near_first && kOptions.exact) {
-        for (std::size_t i = first; i < rows.size(); ++i) {
-            if (rows[i].distribution != Distribution::OneAThread) continue;
-            rows[i].count_lanes = rows[i].any_hit ? count_lanes_of_batch<W, true> : count_lanes_of_batch<W, false>;
-        }
-    }
-#endif
+    if constexpr (kOptions.rta) add_rows<Walk<kOptions>, true, kDynamic, kLanes>(kind, kOptions, rows);
 }
 
 /// Every useful set of switches: fast tests only with everything else on.

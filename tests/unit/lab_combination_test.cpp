@@ -1,0 +1,66 @@
+#include "lab/combination.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+
+using namespace pertev;
+
+TEST_CASE("every structure and walk of the laboratory has a name of its own, by which it is found") {
+    std::set<std::string> names;
+    for (const StructureKind kind : all_structures()) {
+        CHECK(structure_named(name_of(kind)) == kind);
+        CHECK(names.insert(name_of(kind)).second);
+    }
+    CHECK(names.size() == 11);
+    CHECK(!structure_named("no such structure"));
+    names.clear();
+    for (const WalkKind kind : all_walks()) {
+        CHECK(walk_named(name_of(kind)) == kind);
+        CHECK(names.insert(name_of(kind)).second);
+    }
+    CHECK(names.size() == 15);
+    CHECK(!walk_named(""));
+}
+
+TEST_CASE("names of combinations differ wherever their switches do") {
+    std::set<std::string> names;
+    for (const bool rta : {true, false}) {
+        for (const bool near_first : {true, false}) {
+            for (const bool exact : {true, false}) {
+                for (const Distribution d :
+                     {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
+                    CHECK(names.insert(name_of({StructureKind::Ploc, WalkKind::IfIf, {rta, near_first, exact}, d})).second);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("each structure has a walk and each walk a structure; kd-trees and octrees have none but their own") {
+    for (const StructureKind structure : all_structures()) {
+        const auto walks = std::ranges::count_if(all_walks(), [&](WalkKind walk) { return !why_not(structure, walk); });
+        CHECK(walks == (builder_of(structure) ? 13 : 1));
+    }
+    for (const WalkKind walk : all_walks()) {
+        CHECK(std::ranges::any_of(all_structures(), [&](StructureKind s) { return !why_not(s, walk); }));
+    }
+}
+
+TEST_CASE("a combination that makes no sense says why") {
+    const LabMachine cpu = {.is_cuda = false, .has_instances = false}, gpu = {.is_cuda = true, .has_instances = false};
+    const LabMachine instanced = {.is_cuda = true, .has_instances = true};
+    const WalkOptions on;
+    const auto reason = [](const Combination& c, const LabMachine& m) { return why_not(c, m).value_or(""); };
+    using enum Distribution;
+    CHECK(reason({StructureKind::Binned, WalkKind::WhileWhile, on, OneAThread}, cpu).empty());
+    CHECK(reason({StructureKind::Binned, WalkKind::WhileWhile, on, Persistent}, gpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::WhileWhile, on, Persistent}, cpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::WhileWhile, on, Persistent}, instanced).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::Kd, on, OneAThread}, cpu).empty());
+    CHECK_FALSE(reason({StructureKind::KdSah, WalkKind::IfIf, on, OneAThread}, cpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::Wide8Simd, on, OneAThread}, gpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::SkipLinks, {true, false, true}, OneAThread}, cpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::RestartTrail, on, DynamicFetch}, gpu).empty());
+}
