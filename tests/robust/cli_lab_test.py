@@ -1,0 +1,401 @@
+#!/usr/bin/env python3
+"""`pertev lab`: what it refuses and how it says so, that all combinations find the same hits, and what it writes.
+
+Most scenes here are closed boxes with the eye inside: every camera ray and every bounce hits, whatever the walk, and no
+shadow ray does where the box stands alone. No figure of time is compared with anything but 0.
+"""
+
+import base64
+import csv
+import glob
+import json
+import os
+import re
+import signal
+import struct
+import subprocess
+import time
+
+from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, main, write
+
+# A closed box from -1 to 1, two triangles a side, and an eye for it.
+CORNERS = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+SIDES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+INSIDE = ["--eye", "0.1,0.2,0.3", "--target", "0,0,-1"]
+
+BOX = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(
+    "f " + " ".join(str(corner + 1) for corner in side) + "\n" for side in SIDES)
+
+FRAME_SETS = ["primary", "shadow", "diffuse1", "diffuse2"]
+SMALL = ["--structures", "binned", "--walks", "if-if,wide8"]
+
+
+def gltf_of_nested_boxes():
+    """One mesh, the box above, in two nodes: one three times as large as the other."""
+    indices = [side[k] for side in SIDES for k in (0, 1, 2, 0, 2, 3)]
+    data = b"".join(struct.pack("<3f", *corner) for corner in CORNERS) + struct.pack(f"<{len(indices)}H", *indices)
+    positions = 12 * len(CORNERS)
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0, "name": "inner"}, {"mesh": 0, "name": "outer", "scale": [3, 3, 3]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(CORNERS), "type": "VEC3",
+                       "min": [-1, -1, -1], "max": [1, 1, 1]},
+                      {"bufferView": 1, "componentType": 5123, "count": len(indices), "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": positions},
+                        {"buffer": 0, "byteOffset": positions, "byteLength": len(data) - positions}],
+        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64,"
+                     + base64.b64encode(data).decode()}]})
+
+
+def read_text(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return file.read()
+
+
+class LabTest(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.environment.pop("PERTEV_SCENES", None)
+        write(self.path("box.obj"), BOX)
+
+    def lab(self, *arguments, runs=1, device="cpu", size="16x12"):
+        """A command line of lab, small where it does not say otherwise."""
+        arguments = [str(argument) for argument in arguments]
+        given = [("--runs", runs), ("--device", device), ("--size", size)]
+        return ["lab", *arguments, *(str(part) for pair in given if pair[0] not in arguments for part in pair)]
+
+    def report(self, *arguments):
+        """The last JSON line of a run that succeeds."""
+        last = self.succeed(*self.lab(*arguments, "--json")).events()[-1]
+        self.assertEqual((last["event"], last["interrupted"]), ("lab", False))
+        return last
+
+    def refuse_unmeasured(self, status, *arguments, says=(), **options):
+        """Refused as `refuse` has it, and before any work began."""
+        outcome = self.refuse(status, *self.lab(*arguments, "--json"), says=says, **options)
+        self.assertEqual([event for event in outcome.events() if event["event"] in ("progress", "lab")], [], outcome)
+
+    def names_of(self, flag):
+        """What a flag may be given, by its own word."""
+        outcome = self.refuse(2, *self.lab("box.obj", flag, "nonsense"), says=[flag, "nonsense is not one of"])
+        names = re.search("is not one of (.*)", outcome.stderr).group(1).split(", ")
+        self.assertGreater(len(names), 3, outcome)
+        return names
+
+    def check_hits(self, report, allowed_refusals=()):
+        """Every combination that is not refused has figures for closest hits, and its hits are the right ones."""
+        self.assertGreater(len(report["combinations"]), 0)
+        self.assertEqual({rest["name"] for rest in report["structures"] if rest["failed"]}, set())
+        for of in report["combinations"]:
+            if of["refused"]:
+                self.assertTrue(any(text in of["refused"] for text in allowed_refusals), of)
+                self.assertEqual(of["runs"], [])
+                continue
+            # Some walks are for closest hits alone.
+            wanted = {known["name"] for known in report["sets"]}
+            self.assertLessEqual({run["set"] for run in of["runs"]}, wanted, of)
+            self.assertLessEqual(wanted - {run["set"] for run in of["runs"]}, {"shadow"}, of)
+            for run in of["runs"]:
+                self.assertEqual(run["different"], 0, of)
+                self.assertGreater(run["rays_per_second"], 0)
+                self.assertGreater(run["least_seconds"], 0)
+                self.assertLessEqual(run["least_seconds"], run["median_seconds"])
+                self.assertLessEqual(run["median_seconds"], run["largest_seconds"])
+                self.assertGreater((run["nodes_per_ray"] or 0) + run["triangles_per_ray"], 0)
+
+
+class WhatIsRefused(LabTest):
+    def test_a_bad_flag_or_value_ends_with_2_and_shows_what_would_be_right(self):
+        wanted = {"--structures sah": "binned", "--structures binned,sah": "octree", "--walks x": "while-while",
+                  "--rays x": "diffuse", "--rta x": "both", "--order x": "both", "--tests x": "exact",
+                  "--persistent x": "both", "--runs 0": "whole number from 1", "--runs 1.5": "whole number from 1",
+                  "--count 0": "whole number from 1", "--threads 0": "whole number from 1", "--device gpu": "cpu",
+                  "--foo": "--help"}
+        wanted.update({f"--depths {bad}": "1-8" for bad in ["0", "9-3", "1-99", "x", "-3", "1-", "1-2-3", "1.5"]})
+        wanted.update({f"--size {bad}": "WIDTHxHEIGHT" for bad in ["0x10", "10", "x", "10x", "-1x10", "10x10x10"]})
+        for flag, right in wanted.items():
+            with self.subTest(flag=flag):
+                self.refuse(2, *self.lab("cornell-box", *flag.split()), says=[flag.split()[0], right])
+        for size in ["70000x1", "65536x65536"]:
+            self.refuse(3, *self.lab("cornell-box", "--size", size), says=["--size", "limit"])
+
+    def test_the_environments_flags_are_not_labs(self):
+        for flag in ["--environment 1,1,1", "--environment-rotation 90", "--environment-scale 2"]:
+            with self.subTest(flag=flag):
+                self.refuse(2, *self.lab("cornell-box", *flag.split()), says=[flag.split()[0]])
+
+    def test_a_scene_is_required_and_must_have_triangles(self):
+        self.refuse(2, *self.lab(), says=["SCENE"])
+        write(self.path("points.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\n")
+        write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        for name in ["points.obj", "flat.obj"]:
+            self.refuse(2, *self.lab(name), says=[name, "triangle"])
+        self.refuse(2, *self.lab("nowhere.obj"), says=["nowhere.obj"])
+
+    def test_a_scene_of_the_record_without_its_file_says_where_that_belongs(self):
+        for folder in [None, self.path("nowhere")]:
+            environment = dict(self.environment, **({"PERTEV_SCENES": folder} if folder else {}))
+            for name, file in [("sponza", "crytek-sponza/sponza.obj"), ("bunny", "stanford/bunny.obj")]:
+                self.refuse_unmeasured(2, name, env=environment, says=["PERTEV_SCENES", file])
+
+    def test_an_output_folder_that_cannot_be_made_ends_with_6_before_anything_is_measured(self):
+        for folder in ["/proc/x", "/proc", "box.obj", "box.obj/x", "a" * 300]:
+            with self.subTest(folder=folder):
+                self.refuse_unmeasured(6, "cornell-box", *SMALL, "-o", folder, says=[folder])
+        self.refuse_unmeasured(6, "--thesis", "box.obj", "-o", "box.obj", says=["box.obj"])
+
+    def test_the_output_folder_is_not_made_for_a_scene_that_cannot_be_read(self):
+        write(self.path("points.obj"), "v 0 0 0\n")
+        for k, scene in enumerate([["nowhere.obj"], ["points.obj"], ["sponza"], [], ["--thesis", "nowhere.obj"],
+                                   ["--thesis", "points.obj"], ["--thesis"]]):
+            with self.subTest(scene=scene):
+                self.refuse(2, *self.lab(*scene, "-o", f"out{k}"))
+
+    def test_diffuse_rays_alone_need_a_depth_of_2(self):
+        outcome = self.refuse(2, *self.lab("box.obj", *INSIDE, *SMALL, "--rays", "diffuse", "--depths", "1"),
+                              says=["diffuse"])
+        self.assertRegex(outcome.stderr, r"depth.*\b2\b")
+        report = self.report("box.obj", *INSIDE, *SMALL, "--rays", "diffuse", "--depths", "2")
+        self.assertEqual([rays["name"] for rays in report["sets"]], ["diffuse1"])
+
+    def test_a_cpu_is_said_to_have_no_persistent_threads(self):
+        outcome = self.run_pertev(*self.lab("box.obj", *INSIDE, *SMALL, "--persistent", "on"))
+        self.assertIn(outcome.status, [0, 2], outcome)
+        self.assertRegex(outcome.stderr, "(?i)persistent")
+        self.assertRegex(outcome.stderr, "CPU|CUDA")
+        self.assertNotRegex(outcome.stdout, r"(?m)^binned (if-if|wide8) .*\d\.\d", "measured as something else")
+
+    def test_the_thesis_takes_no_choice_of_combinations_or_rays(self):
+        for flag in ["--structures binned", "--walks packet", "--rta on", "--order off", "--tests fast",
+                     "--rays primary", "--rta both"]:
+            with self.subTest(flag=flag):
+                self.refuse_unmeasured(2, "--thesis", "box.obj", *flag.split(), says=["--thesis", flag.split()[0]])
+
+    def test_the_thesis_without_its_second_scene_ends_with_2_before_anything_is_measured(self):
+        for folder in [None, self.path("nowhere")]:
+            environment = dict(self.environment, **({"PERTEV_SCENES": folder} if folder else {}))
+            self.refuse_unmeasured(2, "--thesis", env=environment, says=["SCENE", "PERTEV_SCENES", "sibenik"])
+
+
+class WhatIsMeasured(LabTest):
+    def test_a_plain_run_prints_a_table_with_every_structure_and_walk(self):
+        outcome = self.succeed(*self.lab("cornell-box"))
+        self.assertNotIn("WRONG", outcome.stdout + outcome.stderr)
+        structures, rates = outcome.stdout.split("million rays a second")
+        for name in self.names_of("--structures"):
+            self.assertRegex(structures, rf"(?m)^{name} +[\d.]+ +\d+ +\d+ ")
+        for name in self.names_of("--walks"):
+            if name != "brute-force":  # only when named
+                self.assertRegex(rates, rf"(?m)^[a-z-]+ {name} (no-)?rta.* \d+\.\d")
+        self.assertNotIn("brute-force", rates)
+
+    def test_quiet_says_nothing(self):
+        outcome = self.succeed(*self.lab("cornell-box", *SMALL, "-q"))
+        self.assertEqual((outcome.stdout, outcome.stderr), ("", ""))
+
+    def test_json_ends_with_the_report_and_nothing_there_is_wrong(self):
+        events = self.succeed(*self.lab("cornell-box", "--json")).events()
+        self.assertEqual([event["event"] for event in events].count("lab"), 1)
+        report = events[-1]
+        self.assertEqual((report["event"], report["scene"], report["triangles"]), ("lab", "cornell-box", 38))
+        self.assertEqual((report["width"], report["height"], report["runs"]), (16, 12, 1))
+        self.assertEqual([rays["name"] for rays in report["sets"]], FRAME_SETS)
+        self.check_hits(report)
+        names = [of["name"] for of in report["combinations"]]
+        self.assertEqual(sorted(set(names)), sorted(names))
+        self.assertGreater(len(names), 100)
+        for structure in self.names_of("--structures"):
+            self.assertIn(structure, [of["structure"] for of in report["combinations"]])
+
+    def test_the_rays_and_the_work_do_not_depend_on_the_number_of_threads(self):
+        reports = [self.report("cornell-box", *SMALL, "--threads", threads) for threads in [1, 3]]
+        for report in reports:
+            self.check_hits(report)
+        self.assertEqual(reports[0]["sets"], reports[1]["sets"])
+        work = [[(run["nodes_per_ray"], run["triangles_per_ray"]) for of in report["combinations"]
+                 for run in of["runs"]] for report in reports]
+        self.assertEqual(work[0], work[1])
+
+    def test_in_a_closed_box_every_ray_hits_and_brute_force_tests_every_triangle(self):
+        report = self.report("box.obj", *INSIDE, "--structures", "binned", "--walks", "brute-force,if-if", "--rta",
+                             "on")
+        self.check_hits(report)
+        self.assertEqual([(rays["name"], rays["rays"], rays["hit_share"]) for rays in report["sets"]],
+                         [("primary", 192, 1), ("shadow", 192, 0), ("diffuse1", 192, 1), ("diffuse2", 192, 1)])
+        brute = next(of for of in report["combinations"] if of["walk"] == "brute-force")
+        self.assertEqual([run["triangles_per_ray"] for run in brute["runs"]], [12] * len(brute["runs"]))
+
+    def test_depths_and_kinds_of_rays_are_those_asked_for(self):
+        report = self.report("box.obj", *INSIDE, *SMALL, "--depths", "2-4", "--rays", "primary,diffuse")
+        self.assertEqual([rays["name"] for rays in report["sets"]], ["primary", "diffuse1", "diffuse2", "diffuse3"])
+        for of in report["combinations"]:
+            self.assertEqual(len(of["frame_seconds"]), 3)
+            self.assertEqual(of["frame_seconds"], sorted(of["frame_seconds"]))
+            self.assertGreater(of["frame_seconds"][0], 0)
+        report = self.report("box.obj", *INSIDE, *SMALL, "--rays", "primary", "--depths", "1")
+        self.assertEqual([rays["name"] for rays in report["sets"]], ["primary"])
+
+    def test_the_records_five_sets_can_be_traced_in_a_small_file(self):
+        report = self.report("box.obj", *INSIDE, *SMALL, "--rays", "record", "--count", "500")
+        self.check_hits(report)
+        self.assertEqual([(rays["name"], rays["rays"], rays["hit_share"]) for rays in report["sets"]],
+                         [("primary", 500, 1), ("shadow", 500, 0), ("diffuse1", 500, 1), ("diffuse2", 500, 1),
+                          ("diffuse3", 500, 1)])
+
+    def test_every_walk_runs_in_a_scene_of_shared_meshes(self):
+        write(self.path("boxes.gltf"), gltf_of_nested_boxes())
+        walks = self.names_of("--walks")
+        self.assertIn("brute-force", walks)
+        # Between the boxes: the inner one or else the outer one is hit.
+        report = self.report("boxes.gltf", "--eye", "0.3,0.2,2.5", "--target", "0,0,0", "--walks", ",".join(walks),
+                             "--structures", "binned,sbvh,kd-sah,octree")
+        self.assertEqual((report["instances"], report["triangles"]), (2, 12))  # the mesh counts once
+        self.check_hits(report, ["without nodes there is no redundant traversal", "split planes", "cells", "planes"])
+        self.assertEqual({rays["name"]: rays["hit_share"] for rays in report["sets"] if not rays["any_hit"]},
+                         {"primary": 1, "diffuse1": 1, "diffuse2": 1})
+        self.assertEqual({of["walk"] for of in report["combinations"] if of["runs"]}, set(walks))
+
+    def test_a_pair_that_makes_no_sense_says_why_by_its_name(self):
+        for structure, walk, reason in [("octree", "while-while", "octree"), ("binned", "kd", "kd-sah"),
+                                        ("kd-sah", "while-while", "kd"), ("sbvh", "octree", "octree")]:
+            with self.subTest(structure=structure, walk=walk):
+                pair = ["box.obj", *INSIDE, "--structures", structure, "--walks", walk]
+                outcome = self.succeed(*self.lab(*pair))
+                self.assertRegex(outcome.stderr, rf"(?m)^(note: )?{structure} {walk} .*: .*{reason}")
+                report = self.report(*pair)
+                self.assertGreater(len(report["combinations"]), 0)
+                for of in report["combinations"]:
+                    self.assertIn(reason, of["refused"])
+                    self.assertEqual(of["runs"], [])
+        report = self.report("box.obj", *INSIDE, "--structures", "octree,binned", "--walks", "while-while")
+        self.assertEqual({of["structure"] for of in report["combinations"] if of["runs"]}, {"binned"})
+
+    def test_what_is_named_twice_is_measured_once(self):
+        once = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--walks", "if-if,octree")
+        for twice in [["--structures", "binned,octree,binned", "--walks", "if-if,octree"],
+                      ["--structures", "binned,octree", "--structures", "binned", "--walks", "if-if,octree"],
+                      ["--structures", "binned,octree", "--walks", "if-if,octree,if-if"]]:
+            report = self.report("box.obj", *INSIDE, *twice)
+            for key in ["structures", "combinations"]:
+                self.assertEqual([of["name"] for of in report[key]], [of["name"] for of in once[key]], twice)
+
+
+class WhatIsWritten(LabTest):
+    def check_html(self, path):
+        """Opens without the network and is not cut short."""
+        html = re.sub(r"data:image/png;base64,[A-Za-z0-9+/=]+", "data:", read_text(path))
+        self.assertNotIn("http", html.replace('"http://www.w3.org/2000/svg"', ""))
+        self.assertNotRegex(html, r"@import|url\(|<link|<script[^>]*src")
+        self.assertEqual(set(re.findall(r'\b(?:src|href)="([^"]*)"', html)) - {"data:"}, set())
+        self.assertTrue(html.lstrip().lower().startswith("<!doctype html"))
+        self.assertTrue(html.rstrip().endswith("</html>"))
+        for tag in ["html", "body", "table", "tr", "td", "th", "svg"]:
+            self.assertEqual(len(re.findall(rf"<{tag}[ >]", html)), html.count(f"</{tag}>"), tag)
+        return html
+
+    def read_csv(self, path):
+        rows = list(csv.DictReader(read_text(path).splitlines(), restkey="too many", restval=None))
+        for row in rows:
+            self.assertNotIn("too many", row)
+            self.assertNotIn(None, row.values())
+        return rows
+
+    def test_tables_report_and_heat_maps_are_written_and_agree(self):
+        for _ in range(2):  # into a new folder, then over what is there
+            report = self.report("cornell-box", *SMALL, "-o", "new/out")
+        with open(self.path("new/out/report.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), report)
+        rows = self.read_csv(self.path("new/out/report.csv"))
+        self.assertEqual([(row["combination"], row["set"]) for row in rows],
+                         [(of["name"], run["set"]) for of in report["combinations"] for run in of["runs"]])
+        for row in rows:
+            self.assertEqual((row["scene"], row["scene_triangles"], row["refused"]), ("cornell-box", "38", ""))
+            self.assertGreater(float(row["rays_per_second"]), 0)
+        html = self.check_html(self.path("new/out/report.html"))
+        for of in report["combinations"]:
+            self.assertIn(of["name"], html)
+        pictures = glob.glob(self.path("new/out/*.png"))
+        for kind in ["nodes", "triangles"]:
+            for walk in ["if-if", "wide8"]:
+                self.assertIn(self.path(f"new/out/{kind}-binned-{walk}-rta-near.png"), pictures)
+        for picture in pictures:
+            with open(picture, "rb") as file:
+                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+            self.info(picture)
+
+    def test_no_heat_maps_means_no_pictures(self):
+        self.report("cornell-box", *SMALL, "--no-heat-maps", "-o", "out")
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["report.csv", "report.html", "report.json"])
+
+    def test_a_scenes_name_is_text_in_every_file(self):
+        name = 'a,"b" <i>&amp;'
+        write(self.path(name + ".obj"), BOX)
+        report = self.report(name + ".obj", *INSIDE, *SMALL, "-o", "out")
+        self.assertEqual(report["scene"], name)
+        self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {name})
+        html = self.check_html(self.path("out/report.html"))
+        self.assertNotIn("<i>", html)
+        self.assertIn("&lt;i&gt;&amp;amp;", html)
+
+    def test_the_thesis_writes_a_report_and_a_table_for_each_scene_even_of_one_name(self):
+        os.mkdir(self.path("mine"))
+        write(self.path("mine/cornell-box.obj"), BOX)
+        for scene in ["box.obj", "mine/cornell-box.obj"]:
+            with self.subTest(scene=scene):
+                outcome = self.succeed(*self.lab("--thesis", scene, *INSIDE, "--depths", "1-2", "-o", "out", "--json"))
+                self.assertEqual([event["triangles"] for event in outcome.events("lab")], [38, 12])
+                for report in outcome.events("lab"):
+                    for of in report["combinations"]:
+                        self.assertEqual(of["refused"], "")
+                        self.assertEqual(len(of["frame_seconds"]), 2)
+                html = self.check_html(self.path("out/thesis.html"))
+                self.assertEqual(html.count("<img"), 4)
+                tables = glob.glob(self.path("out/*.csv"))
+                counts = [{row["scene_triangles"] for row in self.read_csv(table)} for table in tables]
+                self.assertCountEqual(counts, [{"38"}, {"12"}])
+                for file in glob.glob(self.path("out/*")):
+                    os.remove(file)
+
+    def interrupt(self, line):
+        """Sends SIGINT in the middle of the first runs that are timed; gives the report, which is the last line."""
+        with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
+            for text in program.stdout:
+                if json.loads(text).get("doing", "").startswith("binned ") and b": primary" in text:
+                    break
+            time.sleep(0.2)
+            program.send_signal(signal.SIGINT)
+            begin = time.monotonic()
+            try:
+                stdout, stderr = program.communicate(timeout=PATIENCE_S if SANITIZED else 10)
+            except subprocess.TimeoutExpired:
+                program.kill()
+                program.communicate()
+                self.fail("10 s after an interrupt it still runs")
+        self.assertEqual(program.returncode, 75, stderr)
+        if not SANITIZED:
+            self.assertLess(time.monotonic() - begin, 5)
+        report = json.loads(stdout.splitlines()[-1])
+        self.assertEqual((report["event"], report["interrupted"]), ("lab", True))
+        for of in report["combinations"]:
+            self.assertTrue(of["runs"] or of["refused"], of)
+        self.assertIn("interrupt", report["combinations"][-1]["refused"])
+        return report
+
+    def test_an_interrupt_in_the_middle_of_a_long_set_keeps_what_was_measured_and_ends_with_75(self):
+        # One of these sets takes a minute for its runs.
+        report = self.interrupt(self.lab("cornell-box", *SMALL, "--depths", "2", "--size", "256x192", "-o", "out",
+                                         "--json", runs=10000))
+        with open(self.path("out/report.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), report)
+        self.read_csv(self.path("out/report.csv"))
+        self.check_html(self.path("out/report.html"))
+
+    def test_an_interrupted_thesis_writes_what_it_has_and_ends_with_75(self):
+        self.interrupt(self.lab("--thesis", "box.obj", *INSIDE, "-o", "out", "--json", runs=10000))
+        self.check_html(self.path("out/thesis.html"))
+
+
+if __name__ == "__main__":
+    main()
