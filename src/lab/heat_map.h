@@ -16,7 +16,8 @@ struct FalseColor {
 };
 FalseColor false_color(float t);
 
-/// A picture of `counts` ([height * width], row 0 on top); white at `most` and above. 16 rows of scale stand below.
+/// A picture of `counts` ([height * width], row 0 on top); pale yellow at `most` and above. 16 rows of scale stand
+/// below.
 Rgba8Image draw_heat_map(std::span<const uint32_t> counts, uint32_t width, uint32_t height, uint32_t most);
 
 /// The count that one pixel in two hundred exceeds: what a scale should end at.

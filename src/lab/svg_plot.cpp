@@ -10,6 +10,15 @@ namespace {
 
 constexpr const char* kColors[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e",
                                    "#17becf", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22"};
+static_assert(std::size(kColors) == kBarColors);
+
+/// Room for the longest of the labels, in the font of svg().
+template <class Labelled>
+double label_width(const std::vector<Labelled>& all, double least) {
+    std::size_t longest = 0;
+    for (const Labelled& one : all) longest = std::max(longest, one.label.size());
+    return std::max(least, 16 + 6.0 * static_cast<double>(longest));
+}
 
 std::string text_at(double x, double y, const char* anchor, const std::string& text) {
     return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>)", x, y, anchor, html_text(text));
@@ -17,6 +26,15 @@ std::string text_at(double x, double y, const char* anchor, const std::string& t
 
 std::string line(double x0, double y0, double x1, double y1, const char* color) {
     return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"/>)", x0, y0, x1, y1, color);
+}
+
+std::string rect(double x, double y, double width, double height, const BarStyle& style, const std::string& tip) {
+    const char* color = kColors[style.color % kBarColors];
+    return fmt::format(
+        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}"{}><title>{}</title></rect>)", x, y,
+        width, height, color,
+        style.is_hollow ? fmt::format(R"( fill-opacity="0.2" stroke="{}" stroke-dasharray="3 2")", color) : "",
+        html_text(tip));
 }
 
 std::string svg(double width, double height, const std::string& title, const std::string& content) {
@@ -62,12 +80,14 @@ double axis_step(double most, int count) {
     return step;
 }
 
-std::string svg_bars(const std::string& title, const std::string& unit, const std::vector<Bar>& bars) {
-    constexpr double width = 900, left = 330, right = 80, top = 40, row = 17;
+std::string svg_bars(const std::string& title, const std::string& unit, const std::vector<Bar>& bars,
+                     const std::vector<BarLegend>& legend) {
+    constexpr double length = 490, right = 80, top = 40, row = 17;
     double most = 0;
     for (const Bar& bar : bars) most = std::max({most, bar.value, bar.largest});
     if (!(most > 0) || !std::isfinite(most)) return {};
-    const double scale = (width - left - right) / most, bottom = top + row * static_cast<double>(bars.size());
+    const double left = label_width(bars, 100), width = left + length + right, scale = length / most;
+    const double bottom = top + row * static_cast<double>(bars.size());
     std::string content;
     const double step = axis_step(most, 6);
     for (double at = 0; at <= most; at += step) {
@@ -78,9 +98,8 @@ std::string svg_bars(const std::string& title, const std::string& unit, const st
     double y = top;
     for (const Bar& bar : bars) {
         const double middle = y + row / 2;
-        content += fmt::format(
-            R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}"><title>{}: {:g}</title></rect>)",
-            left, y + 2, bar.value * scale, row - 4, kColors[0], html_text(bar.label), bar.value);
+        content +=
+            rect(left, y + 2, bar.value * scale, row - 4, bar.style, fmt::format("{}: {:g}", bar.label, bar.value));
         if (bar.largest > bar.least) {
             content += line(left + bar.least * scale, middle, left + bar.largest * scale, middle, "#000");
         }
@@ -90,12 +109,19 @@ std::string svg_bars(const std::string& title, const std::string& unit, const st
                    '\n';
         y += row;
     }
-    return svg(width, bottom + 10, title, content);
+    double x = 12;
+    for (const BarLegend& entry : legend) {
+        const double entry_width = 30 + 6.0 * static_cast<double>(entry.label.size());
+        if (x > 12 && x + entry_width > width) x = 12, y += row;
+        content += rect(x, y + 8, 12, 10, entry.style, entry.label) + text_at(x + 16, y + 17, "start", entry.label);
+        x += entry_width;
+    }
+    return svg(width, y + (legend.empty() ? 10 : 26), title, content + '\n');
 }
 
 std::string svg_curves(const std::string& title, const std::string& x_label, const std::string& y_label,
                        const std::vector<Curve>& curves) {
-    constexpr double width = 900, height = 380, left = 70, right = 330, top = 40, bottom = 45;
+    constexpr double plot_width = 500, height = 380, left = 70, top = 40, bottom = 45;
     double most_x = 0, most_y = 0, least_x = 1e300;
     for (const Curve& curve : curves) {
         for (const auto& [x, y] : curve.points) {
@@ -103,7 +129,8 @@ std::string svg_curves(const std::string& title, const std::string& x_label, con
         }
     }
     if (!(most_y > 0) || !std::isfinite(most_y) || !(most_x > least_x)) return {};
-    const double plot_width = width - left - right, plot_height = height - top - bottom;
+    const double right = 40 + label_width(curves, 100), width = left + plot_width + right;
+    constexpr double plot_height = height - top - bottom;
     const auto at_x = [&](double x) { return left + (x - least_x) / (most_x - least_x) * plot_width; };
     const auto at_y = [&](double y) { return top + (1 - y / most_y) * plot_height; };
     std::string content;

@@ -2,6 +2,7 @@
 
 // Bars and curves as SVG elements that stand in an HTML page by themselves: no script, no font, no style from outside.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,20 +13,33 @@ namespace pertev {
 /// With & < > " written so that HTML and SVG show them.
 std::string html_text(std::string_view text);
 
+/// How a bar looks. There are kBarColors colours; more repeat them.
+struct BarStyle {
+    uint32_t color = 0;
+    bool is_hollow = false; // a dashed outline, hardly filled
+};
+inline constexpr uint32_t kBarColors = 10;
+
 struct Bar {
     std::string label;
     double value = 0, least = 0, largest = 0; // least and largest are drawn as a whisker
+    BarStyle style = {};
+};
+struct BarLegend {
+    std::string label;
+    BarStyle style;
 };
 
-/// Horizontal bars, in the order given.
-std::string svg_bars(const std::string& title, const std::string& unit, const std::vector<Bar>& bars);
+/// Horizontal bars, in the order given, and beneath them what their looks mean. Nothing where no bar has a length.
+std::string svg_bars(const std::string& title, const std::string& unit, const std::vector<Bar>& bars,
+                     const std::vector<BarLegend>& legend = {});
 
 struct Curve {
     std::string label;
     std::vector<std::pair<double, double>> points; // x rising
 };
 
-/// At most ten curves show well. The vertical axis starts at 0.
+/// At most ten curves show well. The vertical axis starts at 0. Nothing where all points have one x, or no height.
 std::string svg_curves(const std::string& title, const std::string& x_label, const std::string& y_label,
                        const std::vector<Curve>& curves);
 

@@ -1,11 +1,11 @@
 #include "lab/thesis.h"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
 #include "lab/svg_plot.h"
+#include "lab/text_table.h"
 #include "lab/write_html.h"
 
 namespace pertev {
@@ -22,6 +22,8 @@ Combination packet(const WalkOptions& options, Distribution distribution) {
     return {StructureKind::Binned, WalkKind::Packet, options, distribution};
 }
 
+bool on_cuda(const ThesisReport& thesis) { return !thesis.scenes.empty() && thesis.scenes.front().device != "CPU"; }
+
 const CombinationFigures* find(const LabReport& report, const Combination& wanted) {
     const std::string name = name_of(wanted);
     const auto at =
@@ -29,36 +31,41 @@ const CombinationFigures* find(const LabReport& report, const Combination& wante
     return at == report.combinations.end() ? nullptr : &*at;
 }
 
+/// None where the variant has no figures of a frame so deep.
+std::optional<double> seconds_of(const LabReport& report, const ThesisVariant& v, int depth) {
+    const CombinationFigures* c = find(report, v.combination);
+    return c != nullptr && !c->wrong ? frame_seconds(report, *c, depth) : std::nullopt;
+}
+
 struct Table {
     std::string title;
-    std::vector<std::string> head;
-    std::vector<std::vector<std::string>> rows;
+    std::vector<std::vector<std::string>> rows; // the first is the head
 };
 
-/// Of one scene: frames a second and seconds a frame (quantity 0), or million rays a second (quantity 1).
-Table make_table(const LabReport& report, bool is_cuda, const std::string& title, int quantity) {
-    Table table = {title, {"depth"}, {}};
+enum class Quantity { Frames, Rays };
+
+std::string figure_text(const LabReport& report, int depth, double seconds, Quantity quantity) {
+    if (quantity == Quantity::Frames) return fmt::format("{:.2f} ({:.5f})", 1 / seconds, seconds);
+    return fmt::format("{:.2f}", static_cast<double>(frame_rays(report, depth)) / seconds * 1e-6);
+}
+
+/// Of one scene: a row a depth, a column a variant.
+Table make_table(const LabReport& report, bool is_cuda, const std::string& title, Quantity quantity) {
+    Table table = {title, {{"depth"}}};
     const std::vector<ThesisVariant> variants = thesis_variants(is_cuda);
-    for (const ThesisVariant& v : variants) table.head.emplace_back(v.name);
+    for (const ThesisVariant& v : variants) table.rows[0].emplace_back(v.name);
     for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
         std::vector<std::string> row = {fmt::format("{}", depth)};
         for (const ThesisVariant& v : variants) {
             const CombinationFigures* c = find(report, v.combination);
-            const double seconds = c != nullptr ? frame_seconds(report, *c, depth) : 0;
-            if (!(seconds > 0)) {
-                row.emplace_back("-");
-            } else if (quantity == 0) {
-                row.push_back(fmt::format("{:.2f} ({:.5f})", 1 / seconds, seconds));
-            } else {
-                row.push_back(fmt::format("{:.2f}", static_cast<double>(frame_rays(report, depth)) / seconds * 1e-6));
-            }
+            const std::optional<double> seconds = seconds_of(report, v, depth);
+            row.push_back(seconds ? figure_text(report, depth, *seconds, quantity)
+                                  : (c != nullptr && c->wrong ? "WRONG" : "-"));
         }
         table.rows.push_back(row);
     }
     return table;
 }
-
-bool on_cuda(const ThesisReport& thesis) { return !thesis.scenes.empty() && thesis.scenes.front().device != "CPU"; }
 
 std::vector<Table> tables_of(const ThesisReport& thesis) {
     std::vector<Table> tables;
@@ -66,41 +73,105 @@ std::vector<Table> tables_of(const ThesisReport& thesis) {
     for (const LabReport& report : thesis.scenes) {
         tables.push_back(
             make_table(report, on_cuda(thesis),
-                       fmt::format("Table 6.{}: {}, frames a second (seconds a frame)", number++, report.scene), 0));
+                       fmt::format("Table 6.{}: {}, frames a second (seconds a frame)", number++, report.scene),
+                       Quantity::Frames));
         tables.push_back(make_table(report, on_cuda(thesis),
-                                    fmt::format("Table 6.{}: {}, million rays a second", number++, report.scene), 1));
+                                    fmt::format("Table 6.{}: {}, million rays a second", number++, report.scene),
+                                    Quantity::Rays));
     }
     return tables;
 }
 
-/// Frames a second over depth of the variants that begin with `prefix`, in all scenes.
+/// Why a variant has no figures, or not all; empty: it has them.
+std::string missing(const LabReport& report, const ThesisVariant& v) {
+    const CombinationFigures* c = find(report, v.combination);
+    if (c == nullptr) return "it is not in the report";
+    if (c->wrong) return c->refused.starts_with("WRONG") ? c->refused : "WRONG: " + c->refused;
+    if (!c->refused.empty()) return c->refused;
+    for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
+        if (frame_seconds(report, *c, depth)) continue;
+        return report.interrupted ? fmt::format("interrupted before depth {}", depth)
+                                  : fmt::format("not timed at depth {}", depth);
+    }
+    return {};
+}
+
+/// What stands below the tables, a line each: interruptions, what is missing, what fast tests lose.
+std::vector<std::string> notes_of(const ThesisReport& thesis) {
+    std::vector<std::string> notes;
+    for (const LabReport& report : thesis.scenes) {
+        if (report.interrupted) {
+            notes.push_back(fmt::format("{}: interrupted; this is what had been measured.", report.scene));
+        }
+        for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
+            const std::string why = missing(report, v);
+            if (!why.empty()) notes.push_back(fmt::format("{}, {}: {}", report.scene, v.name, why));
+            const CombinationFigures* c = find(report, v.combination);
+            if (v.combination.options.exact || c == nullptr) continue;
+            for (const RunFigures& run : c->runs) {
+                const SetFigures& set = report.sets[run.set];
+                notes.push_back(fmt::format("{}, {}: {} of {} {} rays differ from the exact result.", report.scene,
+                                            v.name, run.different, set.rays, set.name));
+            }
+        }
+    }
+    if (thesis.scenes.empty()) notes.emplace_back("Nothing was measured.");
+    return notes;
+}
+
+/// Frames a second over depth of the variants of these names, in all scenes; where there is nothing to draw, the
+/// reason.
 std::string figure_of(const ThesisReport& thesis, const std::string& title, const std::vector<std::string>& names) {
     std::vector<Curve> curves;
-    for (const LabReport& report : thesis.scenes) {
-        for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
-            if (std::ranges::find(names, v.name) == names.end()) continue;
-            const CombinationFigures* c = find(report, v.combination);
+    bool has_variant = false;
+    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
+        if (std::ranges::find(names, v.name) == names.end()) continue;
+        has_variant = true;
+        for (const LabReport& report : thesis.scenes) {
             Curve curve = {fmt::format("{}: {}", report.scene, v.name), {}};
-            for (int depth = report.first_depth; c != nullptr && depth <= largest_depth(report); ++depth) {
-                const double seconds = frame_seconds(report, *c, depth);
-                if (seconds > 0) curve.points.emplace_back(depth, 1 / seconds);
+            for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
+                if (const auto seconds = seconds_of(report, v, depth)) curve.points.emplace_back(depth, 1 / *seconds);
             }
             if (!curve.points.empty()) curves.push_back(std::move(curve));
         }
     }
-    return svg_curves(title, "depth", "frames/s", curves);
+    const std::string svg = svg_curves(title, "depth", "frames/s", curves);
+    if (!svg.empty()) return svg;
+    const char* why = !has_variant     ? "needs a GPU"
+                      : curves.empty() ? "was not measured; the notes say why"
+                                       : "needs more than one depth; the tables have what there is";
+    return fmt::format("<p>{}: {}.</p>\n", html_text(title), why);
 }
 
 std::string html_of(const Table& table) {
-    std::string rows = "<tr>";
-    for (const std::string& name : table.head) rows += "<th>" + html_text(name) + "</th>";
-    rows += "</tr>\n";
-    for (const auto& row : table.rows) {
+    std::string rows;
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        const char* tag = i == 0 ? "th" : "td";
         rows += "<tr>";
-        for (const std::string& text : row) rows += "<td>" + html_text(text) + "</td>";
+        for (const std::string& text : table.rows[i]) rows += fmt::format("<{0}>{1}</{0}>", tag, html_text(text));
         rows += "</tr>\n";
     }
     return fmt::format("<h2>{}</h2>\n<table>{}</table>\n", html_text(table.title), rows);
+}
+
+std::string pictures_of(const ThesisReport& thesis) {
+    std::string html;
+    for (std::size_t i = 0; i < std::max(thesis.local.size(), thesis.global.size()); ++i) {
+        html += fmt::format("<h2>Figure 6.{}: local and global illumination</h2>\n", 7 + i);
+        for (const auto* pictures : {&thesis.local, &thesis.global}) {
+            if (i < pictures->size()) html += html_image((*pictures)[i].image, (*pictures)[i].caption, 512);
+        }
+    }
+    return html;
+}
+
+std::string about(const LabReport& report) {
+    std::string text =
+        fmt::format("{}: {} triangles, {}x{}, {} runs after {} for warming up, on {}", report.scene, report.triangles,
+                    report.width, report.height, report.runs, report.warm_ups, report.device);
+    if (report.device == "CPU" && report.threads > 0) text += fmt::format(" with {} threads", report.threads);
+    if (!report.camera.empty()) text += ", camera " + report.camera;
+    return text + fmt::format(", pertev {}.", report.commit);
 }
 
 } // namespace
@@ -108,11 +179,15 @@ std::string html_of(const Table& table) {
 std::vector<ThesisVariant> thesis_variants(bool is_cuda) {
     using enum Distribution;
     if (!is_cuda) {
-        return {{"SWW", "speculative while-while", speculative(kWithRta, OneAThread)},
-                {"SWW-R", "without RTA", speculative(kWithoutRta, OneAThread)},
+        return {{"SWW", "speculative while-while; on a CPU no lanes wait for each other, so it is plain while-while",
+                 speculative(kWithRta, OneAThread)},
+                {"SWW-R", "the same without RTA", speculative(kWithoutRta, OneAThread)},
                 {"Packet", "eight rays share a stack", packet(kWithRta, OneAThread)},
-                {"Packet-R", "without RTA", packet(kWithoutRta, OneAThread)},
-                {"A", "the tests of Aila and Laine, which leak at edges", speculative(kFast, OneAThread)}};
+                {"Packet-R", "the same without RTA", packet(kWithoutRta, OneAThread)},
+                {"A",
+                 "SWW with Moeller-Trumbore's triangle test and boxes without growth, which lose rays at edges; Aila "
+                 "and Laine's dynamic fetch needs a GPU, and their own triangle test is Woop's unit-triangle transform",
+                 speculative(kFast, OneAThread)}};
     }
     return {{"SWW", "speculative while-while, one ray a thread", speculative(kWithRta, OneAThread)},
             {"SWW-R", "the same without RTA", speculative(kWithoutRta, OneAThread)},
@@ -120,47 +195,48 @@ std::vector<ThesisVariant> thesis_variants(bool is_cuda) {
             {"PSWW-R", "the same without RTA", speculative(kWithoutRta, Persistent)},
             {"PPacket", "persistent packets: a warp shares a stack", packet(kWithRta, Persistent)},
             {"PPacket-R", "the same without RTA", packet(kWithoutRta, Persistent)},
-            {"A", "Aila and Laine: dynamic fetch, tests that leak at edges", speculative(kFast, DynamicFetch)}};
+            {"A",
+             "after Aila and Laine: speculative while-while with dynamic fetch, Moeller-Trumbore's triangle test and "
+             "boxes without growth, which lose rays at edges; their own triangle test is Woop's unit-triangle "
+             "transform",
+             speculative(kFast, DynamicFetch)}};
 }
 
 std::string text_of(const ThesisReport& thesis) {
     std::string text;
-    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis)))
+    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
         text += fmt::format("{:10} {}\n", v.name, v.meaning);
-    for (const Table& table : tables_of(thesis)) {
-        text += '\n' + table.title + '\n';
-        for (const std::string& name : table.head) text += fmt::format("{:>20}", name);
-        text += '\n';
-        for (const auto& row : table.rows) {
-            for (const std::string& cell : row) text += fmt::format("{:>20}", cell);
-            text += '\n';
-        }
     }
+    for (const Table& table : tables_of(thesis)) text += '\n' + table.title + '\n' + align_columns(table.rows);
+    text += '\n';
+    for (const std::string& note : notes_of(thesis)) text += note + '\n';
     return text;
 }
 
 std::string html_of(const ThesisReport& thesis) {
     std::string body =
         "<p>Chapter 6 of Bellek 2014, measured anew. A frame of depth d is one camera ray a pixel and its "
-        "d - 1 diffuse bounces; traversal alone.</p>\n<ul>\n";
+        "d - 1 diffuse bounces; traversal alone. RTA: redundant traversal avoidance.</p>\n<ul>\n";
     for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
         body += fmt::format("<li>{}: {}</li>\n", html_text(v.name), html_text(v.meaning));
     }
     body += "</ul>\n";
     for (const Table& table : tables_of(thesis)) body += html_of(table);
-    for (std::size_t i = 0; i < thesis.local.size() && i < thesis.global.size(); ++i) {
-        body += fmt::format("<h2>Figure 6.{}: local and global illumination</h2>\n", 7 + i);
-        body += html_image(thesis.local[i].image, thesis.local[i].caption, 512);
-        body += html_image(thesis.global[i].image, thesis.global[i].caption, 512);
+    const std::vector<std::string> notes = notes_of(thesis);
+    if (!notes.empty()) {
+        body += "<h2>Notes</h2>\n<ul>\n";
+        for (const std::string& note : notes) {
+            const bool is_alarm =
+                note.find("WRONG") != std::string::npos || note.find("interrupted") != std::string::npos;
+            body += fmt::format("<li{}>{}</li>\n", is_alarm ? " class=\"wrong\"" : "", html_text(note));
+        }
+        body += "</ul>\n";
     }
+    body += pictures_of(thesis);
     body += figure_of(thesis, "Figure 6.9: RTA with persistent speculative while-while", {"PSWW", "PSWW-R"});
     body += figure_of(thesis, "Figure 6.10: speculative while-while, with and without RTA", {"SWW", "SWW-R"});
     body += figure_of(thesis, "Figure 6.11: RTA with packets", {"PPacket", "PPacket-R", "Packet", "Packet-R"});
-    for (const LabReport& report : thesis.scenes) {
-        body += fmt::format("<p>{}: {} triangles, {}x{}, {} runs after {} for warming up, on {}, pertev {}.</p>\n",
-                            html_text(report.scene), report.triangles, report.width, report.height, report.runs,
-                            report.warm_ups, html_text(report.device), html_text(report.commit));
-    }
+    for (const LabReport& report : thesis.scenes) body += "<p>" + html_text(about(report)) + "</p>\n";
     return html_page("Realtime photo-realistic rendering using modern GPU systems, chapter 6, measured anew", body);
 }
 

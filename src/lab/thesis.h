@@ -3,7 +3,8 @@
 // Chapter 6 of Bellek, "Realtime photo-realistic rendering using modern GPU systems", M.Sc. thesis, ITU 2014, measured
 // anew: tables 6.3 to 6.6 (frames a second, seconds a frame and rays a second over the depth of paths, in the Cornell
 // box and in Sibenik cathedral at 1024x768) and figures 6.7 to 6.11. P = persistent threads, R = without redundant
-// traversal avoidance, A = the kernel of Aila and Laine.
+// traversal avoidance, A = a kernel after Aila and Laine's: dynamic fetch and fast tests, Moeller-Trumbore in place of
+// their unit triangles.
 
 #include <string>
 #include <vector>
@@ -23,12 +24,14 @@ struct ThesisVariant {
 std::vector<ThesisVariant> thesis_variants(bool is_cuda);
 
 /// Reports of Cornell box and Sibenik, in this order, of exactly the variants' combinations; `local` and `global` are
-/// pictures of the two scenes.
+/// pictures of the two scenes. Captions are the caller's, notes on pictures that were cut short included. The device
+/// is a GPU where a report's is not "CPU".
 struct ThesisReport {
     std::vector<LabReport> scenes;
     std::vector<Picture> local, global;
 };
 
+/// Tables, and below them what has no figures and why, and how many rays A loses.
 std::string text_of(const ThesisReport& thesis);
 std::string html_of(const ThesisReport& thesis);
 

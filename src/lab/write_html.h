@@ -1,6 +1,7 @@
 #pragma once
 
-// The report as one HTML file that needs nothing else: tables, bars, curves over depth, heat maps and pictures inside.
+// The report as one HTML file that needs nothing else: what differs from the proven walk first, then the tables of
+// html_tables.h and the pictures of html_plots.h.
 
 #include <string>
 

@@ -1,13 +1,13 @@
 #include "lab/write_tables.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "base/json_text.h"
 
 namespace pertev {
 namespace {
+
+using Cells = std::vector<std::string>;
 
 std::string csv_text(const std::string& text) {
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
@@ -19,71 +19,184 @@ std::string csv_text(const std::string& text) {
     return quoted + '"';
 }
 
-/// Empty where there is no figure.
-std::string measured(double value, const char* format) {
+std::string csv_line(const Cells& cells) {
+    std::string line;
+    for (const std::string& cell : cells) line += (&cell == cells.data() ? "" : ",") + csv_text(cell);
+    return line + '\n';
+}
+
+template <class T>
+std::string number(const T& value) {
+    return fmt::format("{}", value);
+}
+std::string number(bool value) { return value ? "1" : "0"; }
+
+template <class T>
+std::string optional(const std::optional<T>& value, const char* format) {
+    return value ? fmt::format(fmt::runtime(format), *value) : "";
+}
+/// Seconds, and what follows from them; no time is 0.
+std::string timed(double value, const char* format) {
     return value > 0 ? fmt::format(fmt::runtime(format), value) : "";
 }
 
-std::string csv_head_of(const LabReport& report, const CombinationFigures& c) {
-    const WalkOptions& o = c.combination.options;
-    const StructureFigures& s = report.structures[c.structure];
-    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.4f},{:.3f},{},{},{},{}", csv_text(report.scene),
-                       csv_text(report.device), report.triangles, csv_text(c.name), name_of(c.combination.structure),
-                       name_of(c.combination.walk), o.rta ? 1 : 0, o.near_first ? 1 : 0, o.exact ? 1 : 0,
-                       name_of(c.combination.distribution), c.registers > 0 ? fmt::format("{}", c.registers) : "",
-                       measured(c.occupancy, "{:.3f}"), s.nodes, s.triangles, s.build_s, s.sah_cost, s.depth, s.bytes,
-                       report.runs, csv_text(c.refused));
+/// Null where it never came to its turn or could not be built.
+const StructureFigures* structure_of(const LabReport& report, const CombinationFigures& c) {
+    if (!c.structure || *c.structure >= report.structures.size()) return nullptr;
+    const StructureFigures& s = report.structures[*c.structure];
+    return s.failed.empty() ? &s : nullptr;
 }
+
+// Each part has its head beside its cells, in one order.
+
+Cells report_head() {
+    return {"scene", "device", "commit", "threads",  "scene_triangles",
+            "width", "height", "runs",   "warm_ups", "interrupted"};
+}
+Cells report_cells(const LabReport& r) {
+    return {r.scene,         r.device,         r.commit,       number(r.threads),  number(r.triangles),
+            number(r.width), number(r.height), number(r.runs), number(r.warm_ups), number(r.interrupted)};
+}
+
+Cells combination_head() {
+    return {"combination", "structure", "walk", "rta", "near_first", "exact", "distribution", "refused", "wrong"};
+}
+Cells combination_cells(const CombinationFigures& c) {
+    const WalkOptions& o = c.combination.options;
+    return {c.name,
+            name_of(c.combination.structure),
+            name_of(c.combination.walk),
+            number(o.rta),
+            number(o.near_first),
+            number(o.exact),
+            name_of(c.combination.distribution),
+            c.refused,
+            number(c.wrong)};
+}
+
+Cells kernel_head() { return {"registers", "local_bytes", "occupancy"}; }
+Cells kernel_cells(const CombinationFigures& c) {
+    return {optional(c.registers, "{}"), optional(c.local_bytes, "{}"), optional(c.occupancy, "{:.3f}")};
+}
+
+Cells structure_head() { return {"nodes", "leaf_triangles", "build_seconds", "sah_cost", "depth", "bytes"}; }
+Cells structure_cells(const StructureFigures& s) {
+    return {number(s.nodes),
+            number(s.triangles),
+            fmt::format("{:.4f}", s.build_s),
+            s.nodes > 0 ? fmt::format("{:.3f}", s.sah_cost) : "",
+            number(s.depth),
+            number(s.bytes)};
+}
+
+Cells run_head() {
+    return {"set",
+            "rays",
+            "hit_share",
+            "rays_per_second",
+            "median_seconds",
+            "least_seconds",
+            "largest_seconds",
+            "frames_per_second",
+            "seconds_per_frame",
+            "nodes_per_ray",
+            "triangles_per_ray",
+            "node_lanes",
+            "triangle_lanes",
+            "node_sectors",
+            "triangle_sectors",
+            "different_rays",
+            "is_copy",
+            "price_of_exactness"};
+}
+Cells run_cells(const LabReport& report, const CombinationFigures& c, const RunFigures& run) {
+    const SetFigures& set = report.sets[run.set];
+    const std::optional<double> frame_s = set.depth > 0 ? frame_seconds(report, c, set.depth) : std::nullopt;
+    return {set.name,
+            number(set.rays),
+            fmt::format("{:.5f}", set.hit_share),
+            timed(mrays(report, run) * 1e6, "{:.0f}"),
+            timed(run.median_s, "{:.9f}"),
+            timed(run.least_s, "{:.9f}"),
+            timed(run.largest_s, "{:.9f}"),
+            frame_s ? fmt::format("{:.3f}", 1 / *frame_s) : "",
+            optional(frame_s, "{:.9f}"),
+            optional(run.nodes, "{:.3f}"),
+            optional(run.triangles, "{:.3f}"),
+            optional(run.node_lanes, "{:.2f}"),
+            optional(run.triangle_lanes, "{:.2f}"),
+            optional(run.node_sectors, "{:.2f}"),
+            optional(run.triangle_sectors, "{:.2f}"),
+            number(run.different),
+            number(run.is_copy),
+            optional(price_of_exactness(report, c, run.set), "{:.4f}")};
+}
+
+void append(Cells& to, const Cells& cells) { to.insert(to.end(), cells.begin(), cells.end()); }
+
+template <class T>
+std::string json_optional(const std::optional<T>& value) {
+    return value ? json_number(static_cast<double>(*value)) : "null";
+}
+std::string json_timed(double value) { return value > 0 ? json_number(value) : "null"; }
 
 std::string json_of(const StructureFigures& s) {
+    if (!s.failed.empty()) {
+        return fmt::format(
+            R"({{"name":{},"failed":{},"build_seconds":null,"nodes":null,"triangles":null,"bytes":null,"sah_cost":null,"depth":null}})",
+            json_string(s.name), json_string(s.failed));
+    }
     return fmt::format(
-        R"({{"name":{},"failed":{},"build_seconds":{},"nodes":{},"triangles":{},"bytes":{},"sah_cost":{},"depth":{}}})",
-        json_string(s.name), json_string(s.failed), json_number(s.build_s), s.nodes, s.triangles, s.bytes,
-        json_number(s.sah_cost), s.depth);
+        R"({{"name":{},"failed":null,"build_seconds":{},"nodes":{},"triangles":{},"bytes":{},"sah_cost":{},"depth":{}}})",
+        json_string(s.name), json_number(s.build_s), s.nodes, s.triangles, s.bytes,
+        s.nodes > 0 ? json_number(s.sah_cost) : "null", s.depth);
 }
 
-std::string json_of(const LabReport& report, const RunFigures& run) {
+std::string json_of(const LabReport& report, const CombinationFigures& c, const RunFigures& run) {
     return fmt::format(
-        R"({{"set":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"largest_seconds":{},"nodes_per_ray":{},"triangles_per_ray":{},"node_lanes":{},"triangle_lanes":{},"sectors_per_request":{},"different":{}}})",
-        json_string(report.sets[run.set].name), json_number(mrays(report, run) * 1e6), json_number(run.median_s),
-        json_number(run.least_s), json_number(run.largest_s), json_number(run.nodes), json_number(run.triangles),
-        json_number(run.node_lanes), json_number(run.triangle_lanes), json_number(run.sectors), run.different);
+        R"({{"set":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"largest_seconds":{},"nodes_per_ray":{},"triangles_per_ray":{},"node_lanes":{},"triangle_lanes":{},"node_sectors":{},"triangle_sectors":{},"different":{},"is_copy":{},"price_of_exactness":{}}})",
+        json_string(report.sets[run.set].name), json_timed(mrays(report, run) * 1e6), json_timed(run.median_s),
+        json_timed(run.least_s), json_timed(run.largest_s), json_optional(run.nodes), json_optional(run.triangles),
+        json_optional(run.node_lanes), json_optional(run.triangle_lanes), json_optional(run.node_sectors),
+        json_optional(run.triangle_sectors), run.different, run.is_copy,
+        json_optional(price_of_exactness(report, c, run.set)));
 }
 
 std::string json_of(const LabReport& report, const CombinationFigures& c) {
     std::string runs, frames;
-    for (const RunFigures& run : c.runs) runs += (runs.empty() ? "" : ",") + json_of(report, run);
+    for (const RunFigures& run : c.runs) runs += (runs.empty() ? "" : ",") + json_of(report, c, run);
     for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
-        frames += (frames.empty() ? "" : ",") + json_number(frame_seconds(report, c, depth));
+        frames += (frames.empty() ? "" : ",") + json_optional(frame_seconds(report, c, depth));
     }
+    const StructureFigures* structure = structure_of(report, c);
     return fmt::format(
-        R"({{"name":{},"structure":"{}","walk":"{}","rta":{},"near_first":{},"exact":{},"distribution":"{}","refused":{},"registers":{},"occupancy":{},"frame_seconds":[{}],"runs":[{}]}})",
-        json_string(c.name), name_of(c.combination.structure), name_of(c.combination.walk), c.combination.options.rta,
+        R"({{"name":{},"structure":{},"structure_kind":"{}","walk":"{}","rta":{},"near_first":{},"exact":{},"distribution":"{}","refused":{},"wrong":{},"registers":{},"local_bytes":{},"occupancy":{},"frame_seconds":[{}],"runs":[{}]}})",
+        json_string(c.name), structure != nullptr ? json_string(structure->name) : "null",
+        name_of(c.combination.structure), name_of(c.combination.walk), c.combination.options.rta,
         c.combination.options.near_first, c.combination.options.exact, name_of(c.combination.distribution),
-        json_string(c.refused), c.registers, json_number(c.occupancy), frames, runs);
+        c.refused.empty() ? "null" : json_string(c.refused), c.wrong, json_optional(c.registers),
+        json_optional(c.local_bytes), json_optional(c.occupancy), frames, runs);
 }
 
 } // namespace
 
 std::string csv_of(const LabReport& report) {
-    std::string csv = "scene,device,scene_triangles,combination,structure,walk,rta,near_first,exact,distribution,"
-                      "registers,occupancy,nodes,leaf_triangles,build_seconds,sah_cost,depth,bytes,runs,refused,set,"
-                      "rays,hit_share,rays_per_second,median_seconds,least_seconds,largest_seconds,frames_per_second,"
-                      "seconds_per_frame,nodes_per_ray,triangles_per_ray,node_lanes,triangle_lanes,"
-                      "sectors_per_request,different_rays\n";
+    Cells head = report_head();
+    for (const Cells& part : {combination_head(), kernel_head(), structure_head(), run_head()}) append(head, part);
+    std::string csv = csv_line(head);
     for (const CombinationFigures& c : report.combinations) {
-        const std::string head = csv_head_of(report, c);
-        if (c.runs.empty()) csv += head + ",,,,,,,,,,,,,,,\n";
-        for (const RunFigures& run : c.runs) {
-            const SetFigures& set = report.sets[run.set];
-            const double frame_s = set.depth > 0 ? frame_seconds(report, c, set.depth) : 0;
-            csv +=
-                fmt::format("{},{},{},{:.5f},{:.0f},{:.7f},{:.7f},{:.7f},{},{},{:.3f},{:.3f},{},{},{},{}\n", head,
-                            set.name, set.rays, set.hit_share, mrays(report, run) * 1e6, run.median_s, run.least_s,
-                            run.largest_s, measured(frame_s > 0 ? 1 / frame_s : 0, "{:.3f}"),
-                            measured(frame_s, "{:.7f}"), run.nodes, run.triangles, measured(run.node_lanes, "{:.2f}"),
-                            measured(run.triangle_lanes, "{:.2f}"), measured(run.sectors, "{:.2f}"), run.different);
-        }
+        const StructureFigures* structure = structure_of(report, c);
+        const auto line = [&](const RunFigures* run) {
+            const bool of_kernel = run == nullptr || !report.sets[run->set].any_hit;
+            Cells cells = report_cells(report);
+            append(cells, combination_cells(c));
+            append(cells, of_kernel ? kernel_cells(c) : Cells(kernel_head().size()));
+            append(cells, structure != nullptr ? structure_cells(*structure) : Cells(structure_head().size()));
+            append(cells, run != nullptr ? run_cells(report, c, *run) : Cells(run_head().size()));
+            return csv_line(cells);
+        };
+        if (c.runs.empty()) csv += line(nullptr);
+        for (const RunFigures& run : c.runs) csv += line(&run);
     }
     return csv;
 }
@@ -100,49 +213,10 @@ std::string json_of(const LabReport& report) {
         combinations += (combinations.empty() ? "" : ",") + json_of(report, c);
     }
     return fmt::format(
-        R"({{"event":"lab","scene":{},"device":{},"commit":{},"triangles":{},"instances":{},"width":{},"height":{},"first_depth":{},"runs":{},"warm_ups":{},"interrupted":{},"sets":[{}],"structures":[{}],"combinations":[{}]}})",
-        json_string(report.scene), json_string(report.device), json_string(report.commit), report.triangles,
-        report.instances, report.width, report.height, report.first_depth, report.runs, report.warm_ups,
-        report.interrupted, sets, structures, combinations);
-}
-
-std::string text_of(const LabReport& report) {
-    std::string text = fmt::format("{:24} {:>9} {:>10} {:>10} {:>9} {:>8} {:>5}\n", "structure", "build s", "nodes",
-                                   "triangles", "MiB", "SAH cost", "depth");
-    for (const StructureFigures& s : report.structures) {
-        if (!s.failed.empty()) {
-            text += fmt::format("{:24} {}\n", s.name, s.failed);
-            continue;
-        }
-        text += fmt::format("{:24} {:9.3f} {:10} {:10} {:9.1f} {:8.2f} {:5}\n", s.name, s.build_s, s.nodes, s.triangles,
-                            static_cast<double>(s.bytes) / 1048576.0, s.sah_cost, s.depth);
-    }
-    std::vector<const CombinationFigures*> order;
-    for (const CombinationFigures& c : report.combinations) {
-        if (!c.runs.empty()) order.push_back(&c);
-    }
-    const auto total_s = [](const CombinationFigures* c) {
-        double seconds = 0;
-        for (const RunFigures& run : c->runs) seconds += run.median_s;
-        return seconds;
-    };
-    // Complete ones first: one that was interrupted has spent less time for less work.
-    std::ranges::stable_sort(order, [&](const CombinationFigures* a, const CombinationFigures* b) {
-        return a->runs.size() != b->runs.size() ? a->runs.size() > b->runs.size() : total_s(a) < total_s(b);
-    });
-    text += fmt::format("\nmillion rays a second on {} (nodes + triangles tested a ray)\n{:52}", report.device,
-                        "combination");
-    for (const SetFigures& set : report.sets) text += fmt::format(" {:>20}", set.name);
-    text += '\n';
-    for (const CombinationFigures* c : order) {
-        text += fmt::format("{:52}", c->name);
-        for (const RunFigures& run : c->runs) {
-            text += fmt::format(" {:>20}",
-                                fmt::format("{:.2f} ({:.1f} + {:.1f})", mrays(report, run), run.nodes, run.triangles));
-        }
-        text += '\n';
-    }
-    return text;
+        R"({{"event":"lab","scene":{},"device":{},"commit":{},"threads":{},"camera":{},"triangles":{},"instances":{},"width":{},"height":{},"first_depth":{},"runs":{},"warm_ups":{},"interrupted":{},"sets":[{}],"structures":[{}],"combinations":[{}]}})",
+        json_string(report.scene), json_string(report.device), json_string(report.commit), report.threads,
+        json_string(report.camera), report.triangles, report.instances, report.width, report.height, report.first_depth,
+        report.runs, report.warm_ups, report.interrupted, sets, structures, combinations);
 }
 
 } // namespace pertev
