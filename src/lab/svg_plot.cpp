@@ -30,11 +30,10 @@ std::string line(double x0, double y0, double x1, double y1, const char* color) 
 
 std::string rect(double x, double y, double width, double height, const BarStyle& style, const std::string& tip) {
     const char* color = kColors[style.color % kBarColors];
+    const std::string outline = fmt::format(R"( stroke="{}" stroke-dasharray="3 2")", color);
     return fmt::format(
         R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}"{}><title>{}</title></rect>)", x, y,
-        width, height, color,
-        style.is_hollow ? fmt::format(R"( fill-opacity="0.2" stroke="{}" stroke-dasharray="3 2")", color) : "",
-        html_text(tip));
+        width, height, style.is_hollow ? "#fff" : color, style.is_hollow ? outline : "", html_text(tip));
 }
 
 std::string svg(double width, double height, const std::string& title, const std::string& content) {

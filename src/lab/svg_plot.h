@@ -16,7 +16,7 @@ std::string html_text(std::string_view text);
 /// How a bar looks. There are kBarColors colours; more repeat them.
 struct BarStyle {
     uint32_t color = 0;
-    bool is_hollow = false; // a dashed outline, hardly filled
+    bool is_hollow = false; // a dashed outline, white inside
 };
 inline constexpr uint32_t kBarColors = 10;
 

@@ -15,7 +15,9 @@ using Rows = std::vector<std::vector<std::string>>;
 std::string wrong_lines(const LabReport& report) {
     std::string lines;
     for (const CombinationFigures& c : report.combinations) {
-        if (c.wrong) lines += fmt::format("WRONG {}: {}\n", c.name, c.refused);
+        if (!c.wrong) continue;
+        const bool says_so = c.refused.starts_with("WRONG: ");
+        lines += fmt::format("WRONG {}: {}\n", c.name, says_so ? c.refused.substr(7) : c.refused);
     }
     return lines.empty() ? lines : lines + '\n';
 }

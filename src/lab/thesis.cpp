@@ -116,6 +116,7 @@ std::vector<std::string> notes_of(const ThesisReport& thesis) {
         }
     }
     if (thesis.scenes.empty()) notes.emplace_back("Nothing was measured.");
+    if (thesis.scenes.size() == 1) notes.emplace_back("The second scene was not measured.");
     return notes;
 }
 

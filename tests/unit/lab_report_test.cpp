@@ -2,46 +2,44 @@
 
 #include <algorithm>
 
-#include "lab/heat_map.h"
-#include "lab/svg_plot.h"
+#include "lab/html_tables.h"
+#include "lab/text_table.h"
 #include "lab/write_html.h"
 #include "lab/write_tables.h"
+#include "tests/support/small_lab_report.h"
 
 using namespace pertev;
+using namespace pertev::test;
 
 namespace {
 
-LabReport small_report() {
-    LabReport report;
-    report.scene = "a \"quoted\", scene <&>";
-    report.device = "CPU";
-    report.triangles = 1000, report.width = 4, report.height = 2, report.runs = 20, report.warm_ups = 1;
-    report.sets = {{.name = "primary", .depth = 1, .rays = 8'000'000, .hit_share = 0.5},
-                   {.name = "shadow", .any_hit = true, .rays = 4'000'000},
-                   {.name = "diffuse1", .depth = 2, .rays = 2'000'000}};
-    report.structures = {{.name = "binned",
-                          .build_s = 0.25,
-                          .nodes = 999,
-                          .triangles = 1000,
-                          .bytes = 64'000,
-                          .sah_cost = 12,
-                          .depth = 9}};
-    CombinationFigures fast = {.combination = {}, .structure = 0, .name = "binned while-while rta near", .refused = ""};
-    fast.runs = {{.set = 0, .median_s = 2, .least_s = 1, .largest_s = 4, .nodes = 10, .triangles = 2},
-                 {.set = 1, .median_s = 1, .least_s = 1, .largest_s = 1},
-                 {.set = 2, .median_s = 0.5, .least_s = 0.5, .largest_s = 0.5}};
-    CombinationFigures refused = {
-        .combination = {.walk = WalkKind::Kd}, .structure = 0, .name = "binned kd", .refused = "no <planes>, none"};
-    report.combinations = {fast, refused};
-    HeatMap map = {"binned while-while rta near", 4, 2, {0, 1, 2, 3, 4, 5, 6, 7}, {7, 6, 5, 4, 3, 2, 1, 0}};
-    report.heat_maps.push_back(map);
-    return report;
+/// Fields by line, quotes taken off.
+std::vector<std::vector<std::string>> parse_csv(const std::string& csv) {
+    std::vector<std::vector<std::string>> lines(1, std::vector<std::string>(1));
+    bool quoted = false;
+    for (std::size_t i = 0; i < csv.size(); ++i) {
+        const char c = csv[i];
+        std::string& field = lines.back().back();
+        if (c == '"' && quoted && i + 1 < csv.size() && csv[i + 1] == '"') {
+            field += c, ++i;
+        } else if (c == '"') {
+            quoted = !quoted;
+        } else if (!quoted && c == ',') {
+            lines.back().emplace_back();
+        } else if (!quoted && c == '\n') {
+            lines.emplace_back(1);
+        } else {
+            field += c;
+        }
+    }
+    lines.pop_back(); // what follows the last line feed
+    return lines;
 }
 
-std::size_t count(const std::string& text, const std::string& part) {
-    std::size_t n = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-    return n;
+std::string field(const std::vector<std::vector<std::string>>& csv, std::size_t line, const std::string& name) {
+    const auto at = std::ranges::find(csv[0], name);
+    REQUIRE_MESSAGE(at != csv[0].end(), name);
+    return csv[line][static_cast<std::size_t>(at - csv[0].begin())];
 }
 
 } // namespace
@@ -49,90 +47,153 @@ std::size_t count(const std::string& text, const std::string& part) {
 TEST_CASE("a frame of depth d is the sets of depths 1 to d, and needs all of them") {
     LabReport report = small_report();
     const CombinationFigures& c = report.combinations[0];
-    CHECK(frame_seconds(report, c, 1) == doctest::Approx(2));
-    CHECK(frame_seconds(report, c, 2) == doctest::Approx(2.5));
-    CHECK(frame_seconds(report, c, 3) == 0);
-    CHECK(frame_seconds(report, report.combinations[1], 1) == 0);
+    CHECK(frame_seconds(report, c, 1).value() == doctest::Approx(2));
+    CHECK(frame_seconds(report, c, 2).value() == doctest::Approx(2.5));
+    CHECK(!frame_seconds(report, c, 3));
+    CHECK(!frame_seconds(report, report.combinations[1], 1));
     CHECK(frame_rays(report, 2) == 10'000'000);
     CHECK(largest_depth(report) == 2);
     CHECK(mrays(report, c.runs[0]) == doctest::Approx(4));
 }
 
-TEST_CASE("every line of the CSV has as many fields as its head, quoted ones included") {
-    const std::string csv = csv_of(small_report());
-    std::size_t fields = 0, lines = 0;
-    std::size_t wanted = 0;
-    bool quoted = false;
-    for (const char c : csv) {
-        if (c == '"') quoted = !quoted;
-        if (!quoted && (c == ',' || c == '\n')) ++fields;
-        if (!quoted && c == '\n') {
-            if (lines++ == 0) wanted = fields;
-            CHECK(fields == wanted);
-            fields = 0;
-        }
-    }
-    CHECK(lines == 1 + 3 + 1);
-    CHECK(csv.find("\"a \"\"quoted\"\", scene <&>\"") != std::string::npos);
-    CHECK(csv.find("\"no <planes>, none\"") != std::string::npos);
-}
-
-TEST_CASE("the HTML report stands alone, escapes names, and shows bars, curves, refusals and pictures") {
-    const std::string html = html_of(small_report());
-    CHECK(html.starts_with("<!DOCTYPE html>"));
-    CHECK(html.find("http://") == html.find("http://www.w3.org/2000/svg")); // nothing is fetched
-    CHECK(html.find("https://") == std::string::npos);
-    CHECK(html.find("<script") == std::string::npos);
-    CHECK(html.find("scene &lt;&amp;&gt;") != std::string::npos);
-    CHECK(html.find("no &lt;planes&gt;") != std::string::npos);
-    CHECK(count(html, "<svg") == 3 + 2); // a bar chart a set, two curves
-    CHECK(count(html, "data:image/png;base64,iVBORw0KGgo") == 2);
-    for (const char* tag : {"table", "svg", "figure", "tr", "td", "text", "h2"}) {
-        CAPTURE(tag);
-        CHECK(count(html, std::string("<") + tag + ">") + count(html, std::string("<") + tag + " ") ==
-              count(html, std::string("</") + tag + ">"));
+TEST_CASE("every line of the CSV has as many fields as its head, and quotes come back") {
+    const auto csv = parse_csv(csv_of(small_report()));
+    REQUIRE(csv.size() == 1 + 3 + 1);
+    for (const auto& line : csv) CHECK(line.size() == csv[0].size());
+    CHECK(field(csv, 1, "scene") == "a \"quoted\", scene <&>");
+    CHECK(field(csv, 4, "refused") == "no <planes>, none");
+    for (const auto& [name, value] : {std::pair{"threads", "7"},
+                                      {"width", "4"},
+                                      {"height", "2"},
+                                      {"commit", "1.0 abc"},
+                                      {"warm_ups", "1"},
+                                      {"interrupted", "0"}}) {
+        CAPTURE(name);
+        CHECK(field(csv, 1, name) == value);
     }
 }
 
-TEST_CASE("JSON has the figures and null for what is not a number") {
+TEST_CASE("in the CSV a 0 is a figure, and what was not measured is empty") {
+    LabReport report = small_report();
+    report.combinations[0].registers = 40, report.combinations[0].local_bytes = 0;
+    report.combinations[0].runs[1].is_copy = true;
+    report.combinations[1].wrong = true;
+    const auto csv = parse_csv(csv_of(report));
+    CHECK(field(csv, 1, "triangles_per_ray") == "0.000"); // measured: none
+    CHECK(field(csv, 2, "triangles_per_ray").empty());
+    CHECK(field(csv, 1, "different_rays") == "0");
+    CHECK(field(csv, 1, "node_lanes").empty());
+    CHECK(field(csv, 1, "triangle_sectors").empty());
+    CHECK(field(csv, 1, "registers") == "40");
+    CHECK(field(csv, 1, "local_bytes") == "0");
+    CHECK(field(csv, 2, "registers").empty()); // any hit: another kernel
+    CHECK(field(csv, 1, "wrong") == "0");
+    CHECK(field(csv, 4, "wrong") == "1");
+    CHECK(field(csv, 1, "is_copy") == "0");
+    CHECK(field(csv, 2, "is_copy") == "1");
+    CHECK(field(csv, 2, "frames_per_second").empty()); // shadow rays are no frame
+    for (const char* name : {"nodes", "leaf_triangles", "build_seconds", "sah_cost", "depth", "bytes"}) {
+        CAPTURE(name);
+        CHECK(!field(csv, 1, name).empty());
+        CHECK(field(csv, 4, name).empty()); // it never came to its structure
+    }
+    CHECK(field(csv, 4, "structure") == "binned");
+}
+
+TEST_CASE("the price of exactness stands with the exact combination alone") {
+    LabReport report = small_report();
+    report.combinations.push_back(figures({.options = kFastTests}, {timed(0, 1)}));
+    report.combinations.back().runs[0].different = 17;
+    const auto csv = parse_csv(csv_of(report));
+    CHECK(field(csv, 1, "price_of_exactness") == "2.0000");
+    CHECK(field(csv, 2, "price_of_exactness").empty());
+    CHECK(field(csv, 5, "price_of_exactness").empty());
+    CHECK(field(csv, 5, "different_rays") == "17");
+    CHECK(has(json_of(report), R"("price_of_exactness":2})"));
+    CHECK(has(html_ratios(report), "The price of exactness"));
+    CHECK(has(html_ratios(report), "<td>2.000</td><td></td><td></td>"));
+    CHECK(has(html_figures(report), "<td>17</td>"));
+}
+
+TEST_CASE("JSON has the figures and null for what is not there") {
     LabReport report = small_report();
     report.structures[0].sah_cost = 1.0 / 0.0;
     const std::string json = json_of(report);
-    CHECK(json.find(R"("frame_seconds":[2,2.5])") != std::string::npos);
-    CHECK(json.find(R"("sah_cost":null)") != std::string::npos);
+    CHECK(has(json, R"("frame_seconds":[2,2.5])"));
+    CHECK(has(json, R"("frame_seconds":[null,null])"));
+    CHECK(has(json, R"("sah_cost":null)"));
+    CHECK(count(json, R"("registers":null,"local_bytes":null,"occupancy":null)") == 2);
+    CHECK(count(json, R"("node_lanes":null)") == 3);
+    CHECK(has(json, R"("nodes_per_ray":10,"triangles_per_ray":0,)"));
+    CHECK(has(json, R"("structure":"binned","structure_kind":"binned")"));
+    CHECK(has(json, R"("structure":null,"structure_kind":"binned","walk":"kd")"));
+    CHECK(has(json, R"("threads":7,"camera":"at <1, 2, 3>")"));
     CHECK(count(json, "{") == count(json, "}"));
+    CHECK(count(json, "[") == count(json, "]"));
 }
 
-TEST_CASE("an axis has at most the steps asked for, at 1, 2 or 5 times a power of ten") {
-    for (const double most : {0.003, 0.9, 1.0, 7.0, 12.0, 99.0, 2e6}) {
-        const double step = axis_step(most, 6);
-        CAPTURE(most);
-        CHECK(step * 6 >= most);
-        CHECK(step * 6 / 6 < most * 1.0001);
-        double mantissa = step;
-        while (mantissa < 0.99) mantissa *= 10;
-        while (mantissa > 9.9) mantissa /= 10;
-        const bool round =
-            std::abs(mantissa - 1) < 1e-9 || std::abs(mantissa - 2) < 1e-9 || std::abs(mantissa - 5) < 1e-9;
-        CHECK(round);
-    }
+TEST_CASE("columns of text are as wide as their longest cell, counted in characters") {
+    CHECK(align_columns({{"name", "a"}, {"longer name", "±1%"}, {"x"}}) == "name           a\nlonger name  ±1%\nx\n");
+    CHECK(align_columns({}).empty());
 }
 
-TEST_CASE("a heat map gets lighter as counts rise, and carries its scale below") {
-    const auto light = [](FalseColor c) { return 2 * c.r + 7 * c.g + c.b; };
-    for (int i = 1; i <= 50; ++i) {
-        CHECK(light(false_color(static_cast<float>(i) / 50)) >= light(false_color(static_cast<float>(i - 1) / 50)));
+TEST_CASE("the terminal's table places figures by set, gaps included, and spread beside the median") {
+    LabReport report = small_report();
+    // Interrupted: its diffuse rays are there and its shadow rays are not.
+    const Combination gap = {
+        .structure = StructureKind::EqualCounts, .walk = WalkKind::RestartTrail, .options = kNoRta};
+    report.combinations.push_back(figures(gap, {timed(0, 4), timed(2, 2)}));
+    report.interrupted = true;
+    const std::string text = text_of(report);
+    const std::string table = text.substr(text.find("million rays"));
+    CHECK(has(line_with(table, "binned while-while"), "4.00 ±75% (10.0 + 0.0)"));
+    const std::string head = line_with(table, "primary"), row = line_with(table, name_of(gap));
+    const auto characters = [](const std::string& line) { return line.size() - count(line, "±"); }; // "±" is two bytes
+    CHECK(head.ends_with("diffuse1"));
+    CHECK(row.ends_with("1.00 ±0%"));
+    CHECK(characters(head) == characters(row)); // below it, not below shadow
+    CHECK(has(row, "2.00 ±0%            "));    // nothing below shadow
+    CHECK(count(row, "±") == 2);
+    const std::string frames = text.substr(text.find("frames a second by depth"));
+    CHECK(has(line_with(frames, "binned while-while"), "0.50     0.40"));
+    CHECK(text.ends_with("interrupted: this is what had been measured\n"));
+    CHECK(!has(text, "lanes"));
+    CHECK(!has(text, "occupancy"));
+}
+
+TEST_CASE("what warps make of it is shown where it was measured") {
+    LabReport report = small_report();
+    report.combinations[0].registers = 48, report.combinations[0].occupancy = 0.625;
+    RunFigures& run = report.combinations[0].runs[1];
+    run.node_lanes = 21.5, run.triangle_lanes = 7.25, run.node_sectors = 16.0, run.triangle_sectors = 30.5;
+    const std::string text = text_of(report), html = html_figures(report);
+    CHECK(has(text, "shadow lanes"));
+    CHECK(!has(text, "primary lanes"));
+    CHECK(has(text, "21.5 / 7.2"));
+    CHECK(has(text, "16.0 / 30.5"));
+    CHECK(has(text, "62%"));
+    CHECK(has(html, "21.5"));
+    CHECK(has(html, "16 (neighbours, perfect) to 32"));
+    CHECK(has(html, "not measured"));
+    const std::string any_hit = line_with(html, "<td>shadow</td>"), closest = line_with(html, "<td>primary</td>");
+    CHECK(has(closest, "<td>48</td>"));
+    CHECK(has(closest, "<td>62 %</td>"));
+    CHECK(!has(any_hit, "<td>48</td>")); // they are of the closest-hit kernel
+    CHECK(!has(any_hit, "62 %"));
+    CHECK(!has(html_figures(small_report()), "occupancy"));
+}
+
+TEST_CASE("combinations that were checked and not timed have no speed") {
+    LabReport report = small_report();
+    report.runs = 0;
+    for (RunFigures& run : report.combinations[0].runs) run = {.set = run.set};
+    const auto csv = parse_csv(csv_of(report));
+    for (const char* name : {"median_seconds", "least_seconds", "rays_per_second", "frames_per_second"}) {
+        CHECK(field(csv, 1, name).empty());
     }
-    std::vector<uint32_t> counts(64 * 32, 5);
-    counts[64 * 31 + 63] = 1'000'000;
-    CHECK(scale_end(counts) == 5); // one mad pixel does not darken the rest
-    CHECK(scale_end({}) == 1);
-    const Rgba8Image image = draw_heat_map(counts, 64, 32, 10);
-    CHECK(image.width == 64);
-    CHECK(image.height == 48);
-    const FalseColor middle = false_color(0.5f);
-    CHECK(image.pixels[0] == middle.r);
-    CHECK(image.pixels[1] == middle.g);
-    const std::size_t bottom = std::size_t(4) * 64 * 47;
-    CHECK(image.pixels[bottom + 4 * 63] > image.pixels[bottom]);
+    CHECK(field(csv, 1, "different_rays") == "0");
+    CHECK(has(json_of(report), R"("rays_per_second":null)"));
+    CHECK(!has(html_of(report), "<svg"));
+    CHECK(has(html_of(report), "checked alone"));
+    CHECK(has(line_with(text_of(report), name_of(Combination{})), "right"));
 }
