@@ -48,8 +48,8 @@ for part in "${parts[@]}"; do
             compressed:CompressedWalk; do
             walk=${pair%:*}
             # Five launches a set (one checked, three to warm up, one timed), five sets, each way of handing out rays.
-            ncu --csv --kernel-name-base demangled --launch-count 75 \
-                --kernel-name "regex:run_(stage|stage_persistent|dynamic_fetch).*(TraceRays|${pair#*:}.*BatchInOut)" \
+            ncu --csv --clock-control none --kernel-name-base demangled --launch-count 75 \
+                --kernel-name "regex:(TraceRays<|run_dynamic_fetch<).*${pair#*:}" \
                 --section SpeedOfLight --section Occupancy --section WarpStateStats --section MemoryWorkloadAnalysis --section SchedulerStats \
                 "$bin/pertev" lab sponza "${record[@]}" --structures sbvh --walks "$walk" --rta on --runs 1 \
                 --device cuda -q >"$out/profile-$walk.csv" || status=1

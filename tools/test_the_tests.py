@@ -93,7 +93,7 @@ MUTATIONS = [
                    "lo[k] = static_cast<float>(at + off), hi[k] = static_cast<float>(at - off);")],
              ["unit/bvh_builders"]),
     Mutation("the laboratory takes every hit for right",
-             [edit("src/lab/traced_set.cpp", "here += hits[i] == wanted[i] ? 0 : 1;", "here += 0;")],
+             [edit("src/lab/traced_set.cpp", "here += differs(hits[i], wanted[i], exact) ? 1 : 0;", "here += 0;")],
              ["consistency/lab"]),
     Mutation("an instance's ray is renormalised",
              [edit("src/trace/scene_bvh.h", "transform_vector(local_from_world, ray.direction),",

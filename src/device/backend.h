@@ -34,7 +34,7 @@ public:
     virtual void free(void* memory) noexcept = 0;
     virtual void copy_to_device(void* device, const void* host, std::size_t bytes) = 0;
     virtual void copy_to_host(void* host, const void* device, std::size_t bytes) = 0;
-    virtual void zero(void* device, std::size_t bytes) = 0;
+    virtual void fill(void* device, unsigned char value, std::size_t bytes) = 0;
     /// Waits for all work given so far. Throws Error(DeviceFault) that names `stage`, the last one launched.
     virtual void wait(const char* stage) = 0;
     /// Throws Error(DeviceFault) when the launch just made was refused.

@@ -58,8 +58,10 @@ public:
         copy = download();
         return copy;
     }
-    void zero() {
-        if (count_ > 0) queue_->zero(data_, count_ * sizeof(T));
+    void zero() { fill(0); }
+    /// Every byte.
+    void fill(unsigned char value) {
+        if (count_ > 0) queue_->fill(data_, value, count_ * sizeof(T));
     }
 
 private:

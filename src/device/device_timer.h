@@ -38,19 +38,34 @@ inline RunTimes summarize_runs(std::vector<double> seconds) {
     return {seconds[seconds.size() / 2], seconds.front(), seconds.back(), static_cast<int>(seconds.size())};
 }
 
-/// Gives run() to the queue `warm_ups` times, then `runs` times, each timed on its own.
-template <class Run>
-RunTimes time_runs(Queue& queue, int warm_ups, int runs, const Run& run) {
+// Runs that are given to the queue before the first is waited for, so that the device is never idle when one begins:
+// else what the host does on the way to a launch would count.
+inline constexpr int kRunsAtOnce = 5;
+
+/// Gives run() to the queue `warm_ups` times, then `runs` times, each timed on its own. `between()` is asked after
+/// every few runs.
+template <class Run, class Between>
+RunTimes time_runs(Queue& queue, int warm_ups, int runs, const Run& run, const Between& between) {
     for (int i = 0; i < warm_ups; ++i) run();
-    DeviceTimer timer(queue);
+    std::vector<DeviceTimer> timers;
+    for (int i = 0; i < kRunsAtOnce; ++i) timers.emplace_back(queue);
     std::vector<double> seconds;
-    for (int i = 0; i < runs; ++i) {
-        timer.start();
-        run();
-        timer.stop();
-        seconds.push_back(timer.seconds());
+    while (static_cast<int>(seconds.size()) < runs) {
+        const auto now = std::min<std::size_t>(timers.size(), static_cast<std::size_t>(runs) - seconds.size());
+        for (std::size_t i = 0; i < now; ++i) {
+            timers[i].start();
+            run();
+            timers[i].stop();
+        }
+        for (std::size_t i = 0; i < now; ++i) seconds.push_back(timers[i].seconds());
+        between();
     }
     return summarize_runs(std::move(seconds));
+}
+
+template <class Run>
+RunTimes time_runs(Queue& queue, int warm_ups, int runs, const Run& run) {
+    return time_runs(queue, warm_ups, runs, run, [] {});
 }
 
 } // namespace pertev

@@ -45,7 +45,7 @@ public:
         std::memcpy(device, host, bytes);
     }
     void copy_to_host(void* host, const void* device, std::size_t bytes) override { std::memcpy(host, device, bytes); }
-    void zero(void* device, std::size_t bytes) override { std::memset(device, 0, bytes); }
+    void fill(void* device, unsigned char value, std::size_t bytes) override { std::memset(device, value, bytes); }
     void wait(const char*) override {}
     void check_launch(const char*) override {}
     std::unique_ptr<TimeMark> make_time_mark() override { return std::make_unique<CpuTimeMark>(); }

@@ -39,7 +39,9 @@ public:
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
         backend_->copy_to_host(host, device, bytes);
     }
-    void zero(void* device, std::size_t bytes) { backend_->zero(device, bytes); }
+    void zero(void* device, std::size_t bytes) { backend_->fill(device, 0, bytes); }
+    /// Every byte.
+    void fill(void* device, unsigned char value, std::size_t bytes) { backend_->fill(device, value, bytes); }
 
     std::size_t allocated_bytes() const { return allocated_; }
     std::size_t peak_bytes() const { return peak_; }

@@ -27,12 +27,13 @@ public:
     /// Of the last trace().
     std::vector<RayHit> hits() const { return hits_.download(); }
 
+    /// Where all triangles are baked, by the kernel that has no top level in it.
     template <class Walk>
     void trace(const SceneTrees<typename Walk::Tree>& scene) {
-        if (any_hit_) {
-            launch(queue_, "trace rays", count(), TraceRays<Walk, true>{scene, rays_.data(), hits_.data()});
+        if (scene.top_root == kNoLink) {
+            trace_in<Walk>(SingleTree<typename Walk::Tree>{scene.baked});
         } else {
-            launch(queue_, "trace rays", count(), TraceRays<Walk, false>{scene, rays_.data(), hits_.data()});
+            trace_in<Walk>(scene);
         }
     }
 
@@ -54,6 +55,15 @@ public:
     }
 
 private:
+    template <class Walk, class Scene>
+    void trace_in(const Scene& scene) {
+        if (any_hit_) {
+            launch(queue_, "trace rays", count(), TraceRays<Walk, true, Scene>{scene, rays_.data(), hits_.data()});
+        } else {
+            launch(queue_, "trace rays", count(), TraceRays<Walk, false, Scene>{scene, rays_.data(), hits_.data()});
+        }
+    }
+
     Queue& queue_;
     bool any_hit_;
     Buffer<Ray> rays_;

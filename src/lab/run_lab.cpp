@@ -19,8 +19,6 @@
 namespace pertev {
 namespace {
 
-constexpr double kAskAfter_s = 0.2; // how long runs go on without asking whether to
-
 /// Thrown when keep_going says no; what has been measured is kept.
 struct Stopped {};
 
@@ -61,6 +59,13 @@ public:
             for (const StructureKind structure : structures_) measure_structure(structure);
         } catch (const Stopped&) {
             report_.interrupted = true;
+        } catch (const Error& error) { // the device is dead, what was measured is not
+            if (error.code() != ErrorCode::DeviceFault || measuring_ == nullptr) throw;
+            report_.interrupted = true;
+            measuring_->wrong = true;
+            measuring_->refused = error.what();
+        }
+        if (report_.interrupted) {
             for (CombinationFigures& c : report_.combinations) {
                 if (c.runs.size() < sets_.size() && c.refused.empty()) {
                     c.refused = c.runs.empty() ? "interrupted before its turn" : "interrupted";
@@ -194,6 +199,7 @@ private:
     }
 
     void measure(CombinationFigures& c, const BuiltStructure& built) {
+        measuring_ = &c;
         for (uint32_t k = 0; k < sets_.size(); ++k) {
             const TracedSet& set = sets_[k];
             const std::string doing = fmt::format("{}: {}", c.name, set.figures.name);
@@ -242,10 +248,10 @@ private:
     bool check(CombinationFigures& c, const TracedSet& set, const WalkKernel& kernel, const BuiltStructure& built,
                RunFigures& run) {
         Buffer<RayHit> hits(queue_, set.rays.size(), "hits");
-        hits.zero(); // a ray that was forgotten must not find an old result
+        hits.fill(0xff); // a ray that was forgotten has no result that could be right
         kernel.trace(queue_, built.trees(), batch_of(set), hits.data());
         std::vector<RayHit> copy;
-        run.different = count_different(hits.read(copy), set.wanted);
+        run.different = count_different(hits.read(copy), set.wanted, c.combination.options.exact);
         if (run.different == 0 || !c.combination.options.exact) return true;
         c.wrong = true;
         c.refused = fmt::format("WRONG: {} of {} {} rays differ from the proven walk; please report it", run.different,
@@ -257,28 +263,16 @@ private:
               RunFigures& run) {
         const Buffer<RayHit> hits(queue_, set.rays.size(), "hits");
         const auto trace = [&] { kernel.trace(queue_, built.trees(), batch_of(set), hits.data()); };
-        for (int i = 0; i < settings_.warm_ups; ++i) trace();
-        DeviceTimer timer(queue_);
-        std::vector<double> seconds;
-        Stopwatch since_asked;
-        for (int i = 0; i < settings_.runs; ++i) {
-            timer.start();
-            trace();
-            timer.stop();
-            seconds.push_back(timer.seconds());
-            if (since_asked.seconds() > kAskAfter_s) {
-                progress(doing);
-                since_asked.restart();
-            }
-        }
-        const RunTimes times = summarize_runs(std::move(seconds));
+        const RunTimes times = time_runs(queue_, settings_.warm_ups, settings_.runs, trace, [&] { progress(doing); });
         run.median_s = times.median, run.least_s = times.least, run.largest_s = times.greatest;
     }
 
     void count(const CombinationFigures& c, const TracedSet& set, const BuiltStructure& built, RunFigures& run) {
         const WalkKernel* own = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
         const WalkKernel* counting = own;
-        if (own->count == nullptr) { // what a ray tests does not depend on how it came to its thread
+        // What a ray tests does not depend on how it came to its thread, unless its warp has a say in it.
+        const bool company = c.combination.walk == WalkKind::Speculative || c.combination.walk == WalkKind::Packet;
+        if (own->count == nullptr && !company) {
             Combination plain = c.combination;
             plain.distribution = Distribution::OneAThread;
             counting = find_kernel(plain, set.figures.any_hit, queue_.is_cuda());
@@ -340,6 +334,7 @@ private:
     std::vector<TracedSet> sets_;
     LabReport report_;
     Stopwatch watch_;
+    CombinationFigures* measuring_ = nullptr;
     double work_ = 0, work_done_ = 0; // combinations
 };
 

@@ -63,6 +63,10 @@ std::string text_of(const Ray& r) {
                        r.direction.x, r.direction.y, r.direction.z, r.t_min, r.t_max);
 }
 
+bool differs(const RayHit& a, const RayHit& b, bool exact) {
+    return exact ? !(a == b) : a.instance != b.instance || (a.is_hit() && a.primitive != b.primitive);
+}
+
 std::vector<RayHit> trace_proven(Queue& queue, const SceneBvhView& proven, bool any_hit, const Buffer<Ray>& rays) {
     const Buffer<RayHit> hits(queue, rays.size(), "hits");
     const auto count = static_cast<uint32_t>(rays.size());
@@ -112,12 +116,12 @@ TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven,
     return traced;
 }
 
-uint64_t count_different(std::span<const RayHit> hits, std::span<const RayHit> wanted) {
+uint64_t count_different(std::span<const RayHit> hits, std::span<const RayHit> wanted, bool exact) {
     PERTEV_CHECK(hits.size() == wanted.size());
     std::atomic<uint64_t> different{0};
     parallel_for_ranges(hits.size(), 1 << 14, [&](uint64_t begin, uint64_t end) {
         uint64_t here = 0;
-        for (uint64_t i = begin; i < end; ++i) here += hits[i] == wanted[i] ? 0 : 1;
+        for (uint64_t i = begin; i < end; ++i) here += differs(hits[i], wanted[i], exact) ? 1 : 0;
         different += here;
     });
     return different;

@@ -29,7 +29,7 @@ std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, u
 TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle,
                     const LabTriangles& triangles, uint32_t oracle_count, uint32_t nasty_count);
 
-/// Rays whose result is not the one wanted.
-uint64_t count_different(std::span<const RayHit> hits, std::span<const RayHit> wanted);
+/// Rays whose result is not the one wanted: in any bit, or, where `exact` is false, in what they meet.
+uint64_t count_different(std::span<const RayHit> hits, std::span<const RayHit> wanted, bool exact);
 
 } // namespace pertev

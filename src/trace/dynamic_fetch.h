@@ -109,7 +109,8 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const BvhView& bvh, co
     const Queue::Scope scope(queue, name);
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
-        const uint32_t blocks = blocks_that_fit(run_dynamic_fetch<Walk, kAny, Rays, Counter>, count);
+        static const KernelLimits limits = limits_of(run_dynamic_fetch<Walk, kAny, Rays, Counter>);
+        const uint32_t blocks = blocks_that_fit(limits, count);
         queue.zero(pool, sizeof *pool);
         run_dynamic_fetch<Walk, kAny>
             <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(bvh, rays, count, pool, counter);

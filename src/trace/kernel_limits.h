@@ -40,9 +40,7 @@ KernelLimits limits_of(Kernel* kernel) {
 }
 
 /// Blocks that fill the GPU, or fewer where `count` threads do with them; at least 1.
-template <class Kernel>
-uint32_t blocks_that_fit(Kernel* kernel, uint32_t count) {
-    const KernelLimits limits = limits_of(kernel);
+inline uint32_t blocks_that_fit(const KernelLimits& limits, uint32_t count) {
     const uint32_t fit = static_cast<uint32_t>(limits.blocks * limits.multiprocessors);
     const uint32_t needed = (count - 1) / kWalkThreads + 1;
     return fit == 0 ? 1 : (fit < needed ? fit : needed);

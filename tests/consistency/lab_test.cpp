@@ -151,6 +151,11 @@ TEST_CASE("CUDA: every combination gives the same hits") {
     if (!cuda_requested()) return;
     Queue queue = make_cuda_queue();
     check_nasty_meshes(queue, static_cast<uint32_t>(effort(64, 256)));
+    const Scene mixed = make_mixed_scene(); // has instances
+    LabSettings settings = all_combinations(true, true);
+    settings.width = 64, settings.height = 48, settings.depth = 3;
+    settings.runs = 1; // timed and counted too
+    check(run_lab(queue, mixed, mixed_scene_camera(), settings, {}));
     for (const char* file : {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"}) {
         if (const auto path = test_scene(file)) check_file(*path, queue, 1'000'000);
     }

@@ -31,7 +31,8 @@ TEST_CASE("names of combinations differ wherever their switches do") {
             for (const bool exact : {true, false}) {
                 for (const Distribution d :
                      {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
-                    CHECK(names.insert(name_of({StructureKind::Ploc, WalkKind::IfIf, {rta, near_first, exact}, d})).second);
+                    CHECK(names.insert(name_of({StructureKind::Ploc, WalkKind::IfIf, {rta, near_first, exact}, d}))
+                              .second);
                 }
             }
         }

@@ -77,7 +77,9 @@ public:
         check(cudaMemcpyAsync(host, device, bytes, cudaMemcpyDeviceToHost, stream_), "copy to host");
         wait("copy to host");
     }
-    void zero(void* device, std::size_t bytes) override { check(cudaMemsetAsync(device, 0, bytes, stream_), "zero"); }
+    void fill(void* device, unsigned char value, std::size_t bytes) override {
+        check(cudaMemsetAsync(device, value, bytes, stream_), "fill");
+    }
     void wait(const char* stage) override { check(cudaStreamSynchronize(stream_), stage); }
     void check_launch(const char* stage) override { check(cudaGetLastError(), stage); }
     std::unique_ptr<TimeMark> make_time_mark() override { return std::make_unique<CudaTimeMark>(stream_); }

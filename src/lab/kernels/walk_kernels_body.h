@@ -77,8 +77,9 @@ struct CountLanes {
 
 template <class Walk, bool kAny>
 void count_lanes_of_batch(Queue& queue, const AnyTrees& trees, const RayBatch& batch, LaneCounts* counts) {
-    using Scene = SceneTrees<typename Walk::Tree>;
-    launch(queue, "lab lanes", batch.count, CountLanes<Walk, kAny, Scene>{std::get<Scene>(trees), batch.rays, counts});
+    with_scene<Walk>(trees, [&]<class Scene>(const Scene& scene) {
+        launch(queue, "lab lanes", batch.count, CountLanes<Walk, kAny, Scene>{scene, batch.rays, counts});
+    });
 }
 
 template <class Walk, bool kAny>
