@@ -140,12 +140,18 @@ HD inline uint32_t spread_slots(uint32_t mask) {
     return mask * 7;
 }
 
-/// Bit s of the mask goes to bit s ^ flip.
-HD inline uint32_t flip_slots(uint32_t mask, uint32_t flip) {
-    if (flip & 1) mask = (mask & 0x55u) << 1 | (mask >> 1 & 0x55u);
-    if (flip & 2) mask = (mask & 0x33u) << 2 | (mask >> 2 & 0x33u);
-    if (flip & 4) mask = (mask & 0x0fu) << 4 | (mask >> 4 & 0x0fu);
-    return mask;
+/// The bit of the slot that comes first for a ray with 1 / direction `inv`: least s ^ the ray's octant. `slots` is not
+/// 0. At each axis the half that lies nearer is kept, unless it is empty.
+HD inline uint32_t nearest_slot(uint32_t slots, Vec3 inv) {
+    const auto keep_nearer = [&slots](float along, uint32_t lower_half) {
+        const uint32_t backwards = 0u - (bits_of(along) >> 31);
+        const uint32_t nearer = slots & (backwards ^ lower_half);
+        slots = nearer != 0 ? nearer : slots;
+    };
+    keep_nearer(inv.z, 0x0f);
+    keep_nearer(inv.y, 0x33);
+    keep_nearer(inv.x, 0x55);
+    return slots;
 }
 
 } // namespace pertev

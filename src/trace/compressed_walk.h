@@ -34,9 +34,9 @@ inline constexpr int kTestTrianglesPercent = 40;
 /// The children of one node that are still to be entered.
 struct NodeGroup {
     uint32_t base; // CompressedBvhNode::child_base
-    uint32_t left; // bits 24 to 31: to be entered, highest first: bit 24 + (s ^ flip) is slot s; 0 to 7: inner slots
+    uint32_t left; // bits 0 to 7: slots to be entered; 24 to 31: all inner slots, at least one
 
-    HD bool is_empty() const { return left <= 0x00ffffffu; }
+    HD bool is_empty() const { return (left & 0xffu) == 0; }
 };
 
 /// The triangles of one node that are still to be tested.
@@ -63,7 +63,6 @@ struct CompressedPlace {
     int size = 0;
     NodeGroup nodes = {0, 0};
     TriangleGroup triangles = {0, 0, 0}; // found, and put off
-    uint32_t flip = 0;
     RayCompressedBoxes boxes = {};
     typename Tests::Triangles prepared = {};
 
@@ -82,9 +81,8 @@ struct CompressedPlace {
         while (nodes.is_empty() && size > 0) {
             const Slot top = slots[size - 1];
             const uint32_t lower = static_cast<uint32_t>(top), left = static_cast<uint32_t>(top >> 32);
-            const NodeGroup group = {lower, left};
-            if (!group.is_empty()) {
-                nodes = group;
+            if (left >= 1u << 24) {
+                nodes = {lower, left};
             } else if (triangles.is_empty()) {
                 triangles = {bvh.nodes[lower].triangle_base, bvh.nodes[lower].triangles, left};
             } else {
@@ -118,11 +116,8 @@ struct CompressedWalk {
     HD static void start(const CompressedBvhView& bvh, const Ray& ray, Place& place) {
         place.boxes = make_ray_compressed_boxes<Tests>(ray, bvh.bounds_max_abs);
         place.prepared = Tests::make_triangles(ray);
-        const Vec3 inv = place.boxes.inv;
-        const uint32_t octant = (inv.x < 0 ? 1u : 0u) | (inv.y < 0 ? 2u : 0u) | (inv.z < 0 ? 4u : 0u);
-        place.flip = kOptions.near_first && Visitor::kNearestFirst ? octant ^ 7u : 7u;
         place.size = 0;
-        place.nodes = {0, bvh.nodes == nullptr ? 0 : 1u << 24}; // slot `flip`, with no inner slot before it
+        place.nodes = {0, 1u << 24 | (bvh.nodes == nullptr ? 0u : 1u)}; // slot 0 of a node above
         place.triangles.left = 0;
     }
 
@@ -131,7 +126,8 @@ struct CompressedWalk {
     template <class Visitor, class Counter>
     HD static bool turn(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
                         const Counter& counter, LaneMask lanes) {
-        if (!place.nodes.is_empty()) step_down(bvh, ray, skip_beyond<kOptions>(visitor, ray), place, counter);
+        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
+        if (!place.nodes.is_empty()) step_down<kNear>(bvh, ray, skip_beyond<kOptions>(visitor, ray), place, counter);
         const int enough = (kTestTrianglesPercent * count_lanes(lanes) + 99) / 100; // at least 1
         bool ended = false;
         while (count_lanes(ballot(lanes, !place.triangles.is_empty())) >= enough) { // all of `lanes` come to each vote
@@ -147,25 +143,25 @@ struct CompressedWalk {
 
 private:
     /// Tests the boxes of the next node. Its children come before what is left of its group.
-    template <class Counter>
+    template <bool kNear, class Counter>
     HD static void step_down(const CompressedBvhView& bvh, const Ray& ray, float limit, Place& place,
                              const Counter& counter) {
         NodeGroup group = place.nodes;
-        const uint32_t bit = highest_bit(group.left), slot = (bit - 24) ^ place.flip;
-        group.left ^= 1u << bit;
-        const uint32_t index = group.base + count_ones(group.left & 0xffu & ((1u << slot) - 1));
+        const uint32_t slots = group.left & 0xffu;
+        const uint32_t slot = kNear ? nearest_slot(slots, place.boxes.inv) : slots & (0u - slots); // one bit
+        const uint32_t index = group.base + count_ones(group.left & (slot * (1u << 24) - (1u << 24)));
+        group.left ^= slot;
         if (!group.is_empty()) place.push(group.base, group.left);
         counter.add_node(bvh.nodes + index);
         const CompressedBvhNode node = load_aligned(bvh.nodes + index);
         const uint32_t entered = enters_slots(ray, place.boxes, node, limit);
-        const uint32_t inner = inner_slots(node);
         const uint32_t found = spread_slots(entered) & node.triangles;
         if (place.triangles.is_empty()) {
             place.triangles = {node.triangle_base, node.triangles, found};
         } else if (found != 0) {
             place.push(index, found);
         }
-        place.nodes = {node.child_base, flip_slots(entered & inner, place.flip) << 24 | inner};
+        place.nodes = {node.child_base, (node.exponents_and_inner & 0xff000000u) | (entered & inner_slots(node))};
     }
 
     template <class Visitor, class Counter>
