@@ -115,18 +115,16 @@ HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, con
             return fma(float_of_byte(word, byte), step, add);
         };
         const float entry =
-            box_max(greatest_bits(at(x.near_planes[w], k, x.step, x.near), at(y.near_planes[w], k, y.step, y.near),
-                                  at(z.near_planes[w], k, z.step, z.near)),
-                    ray.t_min);
-        const float exit =
-            box_min(least_bits(at(x.far_planes[w], k, x.step, x.far), at(y.far_planes[w], k, y.step, y.far),
-                               at(z.far_planes[w], k, z.step, z.far)),
-                    t_limit);
-        // The sign of a difference of floats is that of the comparison; equal gives +0. Entries are finite.
+            greatest_bits(at(x.near_planes[w], k, x.step, x.near), at(y.near_planes[w], k, y.step, y.near),
+                          at(z.near_planes[w], k, z.step, z.near));
+        const float exit = least_bits(at(x.far_planes[w], k, x.step, x.far), at(y.far_planes[w], k, y.step, y.far),
+                                      at(z.far_planes[w], k, z.step, z.far));
+        // The sign of a difference of floats is that of the comparison; equal gives +0. Entries and exits are finite.
+        const uint32_t missed = bits_of(exit - entry) | bits_of(exit - ray.t_min) | bits_of(t_limit - entry);
 #if PERTEV_ON_DEVICE
-        mask = __funnelshift_l(bits_of(exit - entry), mask, 1);
+        mask = __funnelshift_l(missed, mask, 1);
 #else
-        mask = mask << 1 | bits_of(exit - entry) >> 31;
+        mask = mask << 1 | missed >> 31;
 #endif
     }
     return ~mask & 0xffu;
