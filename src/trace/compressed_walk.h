@@ -4,8 +4,8 @@
 // of a node that are still to be entered, nearest octant first without any sorting.
 //
 // Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
-// section 4, with its postponing of triangles: a warp tests them only while enough of its lanes have some, and the
-// others' lanes go on down. Unlike theirs, the triangles that are put off stay in registers until the ray finds more,
+// section 4, with its postponing of triangles: a warp tests them only while enough of its lanes have some, and goes on
+// down otherwise. Unlike theirs, the triangles that are put off stay in registers until the ray finds more,
 // and only those go to the stack. How long they are put off is a matter of the warp; the hits are not. On the host,
 // where a warp is one ray, nothing is put off.
 //
@@ -27,8 +27,10 @@
 
 namespace pertev {
 
-// Triangles are tested while at least this share of the lanes that run together have some. Theirs is 20, where lanes
-// that have some hardly ever run full.
+// Triangles are tested while at least this share of the lanes that run together have some; theirs is 20. Counted for
+// warps of 32, not timed, on the second diffuse bounce in Sponza: 2.7 lanes test a triangle together where none are put
+// off, 7.4 by their rule at 20, 13 by this one at 40, while 25 of 32 test a node. From 35 to 50 the instructions a ray
+// takes change by 2 %.
 inline constexpr int kTestTrianglesPercent = 40;
 
 /// The children of one node that are still to be entered.
@@ -59,7 +61,9 @@ struct CompressedPlace {
     static constexpr int kSlots = 2 * kMaxBvhDepth;
     static constexpr int kRefillBelow = 24; // for dynamic fetch
 
-    Slot* slots; // [kSlots], an array of its own: see WalkStack
+    // [kSlots], an array of its own: see WalkStack. In local memory on the device: pushes are few, and a top of the
+    // stack in shared memory, as theirs, would be taken from the L1 cache that all nodes are gathered through.
+    Slot* slots;
     int size = 0;
     NodeGroup nodes = {0, 0};
     TriangleGroup triangles = {0, 0, 0}; // found, and put off

@@ -7,9 +7,10 @@
 // device/launch_body.h).
 //
 // Such a walk has, besides what all have (trace/walk_scene.h),
-//   Place(Place::Slot[Place::kSlots])               where a ray stands; is_done(), stop()
-//   start<Visitor>(tree, ray, place)                puts it at the root
-//   turn(tree, ray, instance, place, visitor, counter)    takes it further; true when the visitor ended the walk
+//   Place(Place::Slot[Place::kSlots])                  where a ray stands, done at first; is_done(), stop()
+//   start<Visitor>(tree, ray, place)                   puts the ray at the root
+//   turn(tree, ray, instance, place, visitor, counter, lanes)    takes it further; true when the visitor ended the
+//                                                      walk. `lanes` are those that come to this turn together
 //
 // Source: Aila, Laine, Karras, "Understanding the Efficiency of Ray Traversal on GPUs - Kepler and Fermi Addendum",
 // 2012.
