@@ -151,8 +151,8 @@ std::optional<std::string> why_not(const Combination& c, const LabMachine& machi
         return "rays from a pool are compiled for scenes of one tree, and this one has shared meshes";
     }
     if (c.distribution == Distribution::DynamicFetch && c.walk != WalkKind::WhileWhile &&
-        c.walk != WalkKind::Speculative) {
-        return "rays are refilled inside the walk: there is one for while-while and one for speculative";
+        c.walk != WalkKind::Speculative && c.walk != WalkKind::Compressed) {
+        return "rays are refilled inside the walk: while-while, speculative and compressed are made for that";
     }
     return std::nullopt;
 }

@@ -4,18 +4,19 @@
 //
 // A plane of the node is p + q s: p its origin, q a byte, s its quantum, a power of two. The byte is laid into a
 // float's mantissa, 0x4700qq00, which is exactly 2^15 + q, so that no conversion is needed (one byte permutation on the
-// device). With a = s / d and base = fma(p, 1/d, lo or hi of RayBoxes) the plane's parameter is
-//   fma(2^15 + q, a, fma(-(2^15 +- 2^-8), a, base))
-// which takes the 2^15 off again and moves the plane out by 2^-8 of a quantum.
+// device). With a = s / d and m = (e + 2^-8 s) |1/d|, the plane's parameter is
+//   fma(2^15 + q, a, fma(-2^15, a, fma(p - o, 1/d, -+m)))
+// which takes the 2^15 off again and moves the plane out by e and by 2^-8 of a quantum, towards less where the ray
+// enters and towards more where it leaves, whichever way it goes.
 //
-// Why that never misses (written as a shift of the plane; u = 2^-24; S = |origin|max + |bounds|max; RayBoxes moves
-// planes out by e = 16 u S). a is exact: s is within [2^-80, 2^34] and 1/d within [2^-40, 2^72]. Roundings, at most: of
-// 1/d, of o +- e, of its product with 1/d, of base and of the last fma u S each (a plane passes the bounds by less than
-// a quantum, which is under 4/255 S, or covered below); of the inner fma u (S + (2^15 + 1) s). Together 6 u S and a
-// little, and 2^-9 s. The triangle test's own error is at most 6 u S. 16 u S + 2^-8 s hold them all. The guard: |d| <
-// 2^-72 counts as 2^-72 here, not 2^-80, so that 2^15 a stays finite (2^121). A ray with |d_i| < 2^-72 moves along axis
-// i, up to a hit, by less than 2^-72 t <= 2^-72 2^41 S = 2^-31 S, far less than e; so a plane that the ray truly
-// reaches only beyond the hit is not put before it.
+// Why that never misses (written as a shift of the plane; u = 2^-24; S = |origin|max + |bounds|max; e = 16 u S as in
+// ray_boxes.h). a is exact: s is within [2^-80, 2^34] and 1/d within [2^-40, 2^72]. Roundings, at most: of p - o, of
+// 1/d, of the innermost fma and of the last one u S each (a plane passes the bounds by less than a quantum, which is
+// under 4/255 S, or covered below); of the fma between them u (S + (2^15 + 1) s). Together 5 u S and a little, and
+// 2^-9 s. m is right to 2^-21 of itself, even where it is denormal. The triangle test's own error is at most 6 u S.
+// 16 u S + 2^-8 s hold them all. The guard: |d| < 2^-72 counts as 2^-72 here, not 2^-80, so that 2^15 a stays finite
+// (2^121). A ray with |d_i| < 2^-72 moves along axis i, up to a hit, by less than 2^-72 t <= 2^-72 2^41 S = 2^-31 S,
+// far less than e; so a plane that the ray truly reaches only beyond the hit is not put before it.
 //
 // Least and greatest of three are taken of the bits as integers, which the device does in one instruction. For numbers
 // that are not negative that is the same; among negative ones the order is reversed, so an entry may come out too small
@@ -64,20 +65,33 @@ HD inline float least_bits(float a, float b, float c) {
 #endif
 }
 
+/// What the tests of compressed boxes need of a ray besides its origin; less than RayBoxes, which would cost registers.
+struct RayCompressedBoxes {
+    Vec3 inv;   // 1 / direction, guarded
+    float grow; // by which planes move out, metres
+};
+
+template <class Tests>
+HD inline RayCompressedBoxes make_ray_compressed_boxes(const Ray& ray, float bounds_max_abs) {
+    const Ray guarded = guard_for_compressed(ray);
+    return {Tests::make_boxes(guarded, bounds_max_abs).inv, Tests::box_growth(ray, bounds_max_abs)};
+}
+
 /// One axis of a node, seen from a ray: what takes a byte to a parameter.
 struct CompressedAxis {
     float step, near, far; // near and far: what is added
     uint32_t near_planes[2], far_planes[2];
 };
 
-HD inline CompressedAxis make_compressed_axis(const CompressedBvhNode& node, int axis, float inv, float lo, float hi) {
+HD inline CompressedAxis make_compressed_axis(const CompressedBvhNode& node, int axis, float origin, float inv,
+                                              float grow) {
     const bool backwards = inv < 0;
+    const float s = quantum(node, axis), from = node.origin[axis] - origin;
+    const float out = fma(0x1p-8f, s, grow) * abs(inv);
     CompressedAxis r;
-    r.step = quantum(node, axis) * inv;
-    const float lower = fma(-(0x1p15f + 0x1p-8f), r.step, fma(node.origin[axis], inv, lo));
-    const float upper = fma(-(0x1p15f - 0x1p-8f), r.step, fma(node.origin[axis], inv, hi));
-    r.near = backwards ? upper : lower;
-    r.far = backwards ? lower : upper;
+    r.step = s * inv;
+    r.near = fma(-0x1p15f, r.step, fma(from, inv, -out));
+    r.far = fma(-0x1p15f, r.step, fma(from, inv, out));
     for (int w = 0; w < 2; ++w) {
         r.near_planes[w] = backwards ? node.planes[2 * axis + 1][w] : node.planes[2 * axis][w];
         r.far_planes[w] = backwards ? node.planes[2 * axis][w] : node.planes[2 * axis + 1][w];
@@ -85,12 +99,12 @@ HD inline CompressedAxis make_compressed_axis(const CompressedBvhNode& node, int
     return r;
 }
 
-/// Bit s: the box of slot s may hold a hit with t_min < t <= t_limit. Bits of empty slots mean nothing. `r` is of a
-/// guarded ray.
-HD inline uint32_t enters_slots(const RayBoxes& r, const CompressedBvhNode& node, float t_min, float t_limit) {
-    const CompressedAxis x = make_compressed_axis(node, 0, r.inv.x, r.lo.x, r.hi.x);
-    const CompressedAxis y = make_compressed_axis(node, 1, r.inv.y, r.lo.y, r.hi.y);
-    const CompressedAxis z = make_compressed_axis(node, 2, r.inv.z, r.lo.z, r.hi.z);
+/// Bit s: the box of slot s may hold a hit with ray.t_min < t <= t_limit. Bits of empty slots mean nothing.
+HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, const CompressedBvhNode& node,
+                                float t_limit) {
+    const CompressedAxis x = make_compressed_axis(node, 0, ray.origin.x, r.inv.x, r.grow);
+    const CompressedAxis y = make_compressed_axis(node, 1, ray.origin.y, r.inv.y, r.grow);
+    const CompressedAxis z = make_compressed_axis(node, 2, ray.origin.z, r.inv.z, r.grow);
     uint32_t mask = 0;
 #if PERTEV_ON_DEVICE
 #pragma unroll
@@ -101,18 +115,16 @@ HD inline uint32_t enters_slots(const RayBoxes& r, const CompressedBvhNode& node
             return fma(float_of_byte(word, byte), step, add);
         };
         const float entry =
-            box_max(greatest_bits(at(x.near_planes[w], k, x.step, x.near), at(y.near_planes[w], k, y.step, y.near),
-                                  at(z.near_planes[w], k, z.step, z.near)),
-                    t_min);
-        const float exit =
-            box_min(least_bits(at(x.far_planes[w], k, x.step, x.far), at(y.far_planes[w], k, y.step, y.far),
-                               at(z.far_planes[w], k, z.step, z.far)),
-                    t_limit);
-        // The sign of a difference of floats is that of the comparison; equal gives +0. Entries are finite.
+            greatest_bits(at(x.near_planes[w], k, x.step, x.near), at(y.near_planes[w], k, y.step, y.near),
+                          at(z.near_planes[w], k, z.step, z.near));
+        const float exit = least_bits(at(x.far_planes[w], k, x.step, x.far), at(y.far_planes[w], k, y.step, y.far),
+                                      at(z.far_planes[w], k, z.step, z.far));
+        // The sign of a difference of floats is that of the comparison; equal gives +0. Entries and exits are finite.
+        const uint32_t missed = bits_of(exit - entry) | bits_of(exit - ray.t_min) | bits_of(t_limit - entry);
 #if PERTEV_ON_DEVICE
-        mask = __funnelshift_l(bits_of(exit - entry), mask, 1);
+        mask = __funnelshift_l(missed, mask, 1);
 #else
-        mask = mask << 1 | bits_of(exit - entry) >> 31;
+        mask = mask << 1 | missed >> 31;
 #endif
     }
     return ~mask & 0xffu;
@@ -126,12 +138,18 @@ HD inline uint32_t spread_slots(uint32_t mask) {
     return mask * 7;
 }
 
-/// Bit s of the mask goes to bit s ^ flip.
-HD inline uint32_t flip_slots(uint32_t mask, uint32_t flip) {
-    if (flip & 1) mask = (mask & 0x55u) << 1 | (mask >> 1 & 0x55u);
-    if (flip & 2) mask = (mask & 0x33u) << 2 | (mask >> 2 & 0x33u);
-    if (flip & 4) mask = (mask & 0x0fu) << 4 | (mask >> 4 & 0x0fu);
-    return mask;
+/// The bit of the slot that comes first for a ray with 1 / direction `inv`: least s ^ the ray's octant. `slots` is not
+/// 0. At each axis the half that lies nearer is kept, unless it is empty.
+HD inline uint32_t nearest_slot(uint32_t slots, Vec3 inv) {
+    const auto keep_nearer = [&slots](float along, uint32_t lower_half) {
+        const uint32_t backwards = 0u - (bits_of(along) >> 31);
+        const uint32_t nearer = slots & (backwards ^ lower_half);
+        slots = nearer != 0 ? nearer : slots;
+    };
+    keep_nearer(inv.z, 0x0f);
+    keep_nearer(inv.y, 0x33);
+    keep_nearer(inv.x, 0x55);
+    return slots;
 }
 
 } // namespace pertev

@@ -1,9 +1,16 @@
 #pragma once
 
 // Persistent threads with dynamic fetch: lanes whose rays are done get new ones while the others are still on their
-// way, as soon as fewer than kRefillBelow of a warp's lanes are at work. The loop of the walk is the kernel, so this is
-// for walks that can be left between two turns (WhileWhileWalk, SpeculativeWalk) over one tree; a scene with instances
-// has more than one, and is for the caller to refuse. Included by .cu files alone (see device/launch_body.h).
+// way, as soon as fewer than Place::kRefillBelow of a warp's lanes are at work. The loop of the walk is the kernel, so
+// this is for walks that can be left between two turns (WhileWhileWalk, SpeculativeWalk, CompressedWalk) over one tree;
+// a scene with instances has more than one, and is for the caller to refuse. Included by .cu files alone (see
+// device/launch_body.h).
+//
+// Such a walk has, besides what all have (trace/walk_scene.h),
+//   Place(Place::Slot[Place::kSlots])                  where a ray stands, done at first; is_done(), stop()
+//   start<Visitor>(tree, ray, place)                   puts the ray at the root
+//   turn(tree, ray, instance, place, visitor, counter, lanes)    takes it further; true when the visitor ended the
+//                                                      walk. `lanes` are those that come to this turn together
 //
 // Source: Aila, Laine, Karras, "Understanding the Efficiency of Ray Traversal on GPUs - Kepler and Fermi Addendum",
 // 2012.
@@ -20,9 +27,6 @@
 #include "trace/warp_vote.h"
 
 namespace pertev {
-
-// The paper's; lanes of 32.
-inline constexpr int kRefillBelow = 20;
 
 /// The visitor of one kind of search, made anew for each ray, and what the search found.
 template <bool kAny>
@@ -51,15 +55,13 @@ struct RaySearch<true> {
 
 template <class Walk, bool kAny, class Rays, class Counter>
 __global__ void __launch_bounds__(kWalkThreads)
-    run_dynamic_fetch(BvhView bvh, Rays rays, uint32_t count, uint32_t* pool, Counter counter) {
+    run_dynamic_fetch(typename Walk::Tree tree, Rays rays, uint32_t count, uint32_t* pool, Counter counter) {
+    using Visitor = decltype(RaySearch<kAny>::visitor);
     constexpr LaneMask kWarp = 0xffffffffu;
     constexpr uint32_t kNoRay = 0xffffffffu;
-    const LaneMask lanes_before = (1u << (threadIdx.x % 32)) - 1;
     const AcceptAll accept;
-    typename Walk::Place::Slot slots[kMaxBvhDepth];
-    typename Walk::Place place = {{slots}, kNoLink};
-    typename Walk::Tests::Boxes boxes;
-    typename Walk::Tests::Triangles prepared;
+    typename Walk::Place::Slot slots[Walk::Place::kSlots];
+    typename Walk::Place place(slots); // done, as it is whenever there is no ray
     RaySearch<kAny> search(accept, 0);
     Ray ray;
     uint32_t index = kNoRay;
@@ -70,24 +72,22 @@ __global__ void __launch_bounds__(kWalkThreads)
             const uint32_t wanted = static_cast<uint32_t>(count_lanes(idle));
             const uint32_t first = fetch_from_pool(pool, wanted);
             pool_is_empty = first + wanted >= count;
-            const uint32_t next = first + static_cast<uint32_t>(count_lanes(idle & lanes_before));
+            const uint32_t next = first + static_cast<uint32_t>(count_lanes(idle & lanes_before()));
             if (index == kNoRay && next < count) {
                 index = next;
                 ray = rays.load(index);
-                boxes = Walk::Tests::make_boxes(ray, bvh.bounds_max_abs);
-                prepared = Walk::Tests::make_triangles(ray);
                 search.restart(ray.t_max);
-                place.stack.size = 0;
-                place.link = bvh.root;
+                Walk::template start<Visitor>(tree, ray, place);
             }
         }
         if (ballot(kWarp, index != kNoRay) == 0) return; // then the pool is empty too
-        while (place.link != kNoLink) {
-            if (Walk::turn(bvh, ray, boxes, prepared, kNoHit, place, search.visitor, counter)) place.link = kNoLink;
-            if (place.link == kNoLink) break;
-            if (!pool_is_empty && count_lanes(lanes_here()) < kRefillBelow) break;
+        LaneMask working = ballot(kWarp, !place.is_done());
+        while (!place.is_done()) {
+            if (Walk::turn(tree, ray, kNoHit, place, search.visitor, counter, working)) place.stop();
+            working = ballot(working, !place.is_done()); // the lanes of a turn come here together, and only then part
+            if (!pool_is_empty && count_lanes(working) < Walk::Place::kRefillBelow) break;
         }
-        if (index != kNoRay && place.link == kNoLink) {
+        if (index != kNoRay && place.is_done()) {
             rays.store(index, search.hit());
             index = kNoRay;
         }
@@ -102,8 +102,8 @@ __global__ void __launch_bounds__(kWalkThreads)
 /// hit's instance alone counts: kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. On the
 /// CPU this is one ray after the other.
 template <class Walk, bool kAny, class Rays, class Counter = NoWalkCounter>
-void launch_dynamic_fetch(Queue& queue, const char* name, const BvhView& bvh, const Rays& rays, uint32_t count,
-                          uint32_t* pool, const Counter& counter = {}) {
+void launch_dynamic_fetch(Queue& queue, const char* name, const typename Walk::Tree& tree, const Rays& rays,
+                          uint32_t count, uint32_t* pool, const Counter& counter = {}) {
     PERTEV_CHECK(count <= kMaxPoolCount);
     if (count == 0) return;
     const Queue::Scope scope(queue, name);
@@ -113,7 +113,7 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const BvhView& bvh, co
         const uint32_t blocks = blocks_that_fit(limits, count);
         queue.zero(pool, sizeof *pool);
         run_dynamic_fetch<Walk, kAny>
-            <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(bvh, rays, count, pool, counter);
+            <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(tree, rays, count, pool, counter);
         return queue.check_launch();
     }
 #endif
@@ -123,7 +123,7 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const BvhView& bvh, co
         const AcceptAll accept;
         const Ray ray = rays.load(i);
         RaySearch<kAny> search(accept, ray.t_max);
-        Walk::walk(bvh, ray, kNoHit, search.visitor, counter);
+        Walk::walk(tree, ray, kNoHit, search.visitor, counter);
         rays.store(i, search.hit());
     });
 }

@@ -33,9 +33,14 @@ struct RayBoxes {
 
 HD inline float guard_direction(float d) { return abs(d) < 0x1p-80f ? copysign(0x1p-80f, d) : d; }
 
+/// e: how far planes move out.
+HD inline float box_growth(Vec3 origin, float bounds_max_abs) {
+    return 0x1p-20f * (max_component(abs(origin)) + bounds_max_abs);
+}
+
 /// `bounds_max_abs` is of the whole tree; `growth` multiplies e (1 within a mesh).
 HD inline RayBoxes make_ray_boxes(Vec3 origin, Vec3 direction, float bounds_max_abs, float growth = 1.0f) {
-    const float e = 0x1p-20f * (max_component(abs(origin)) + bounds_max_abs) * growth;
+    const float e = box_growth(origin, bounds_max_abs) * growth;
     RayBoxes r;
     r.inv = {1.0f / guard_direction(direction.x), 1.0f / guard_direction(direction.y),
              1.0f / guard_direction(direction.z)};

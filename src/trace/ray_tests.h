@@ -20,6 +20,9 @@ struct ExactTests {
     HD static Boxes make_boxes(const Ray& ray, float bounds_max_abs) {
         return make_ray_boxes(ray.origin, ray.direction, bounds_max_abs);
     }
+    HD static float box_growth(const Ray& ray, float bounds_max_abs) {
+        return pertev::box_growth(ray.origin, bounds_max_abs);
+    }
     HD static Triangles make_triangles(const Ray& ray) { return make_ray_shear(ray.direction); }
     HD static bool intersect(const Ray& ray, const Triangles& shear, Vec3 a, Vec3 b, Vec3 c, TriangleHit& hit) {
         return intersect_triangle(ray.origin, shear, ray.t_min, ray.t_max, a, b, c, hit);
@@ -47,6 +50,7 @@ struct FastTests {
         r.hi = r.lo;
         return r;
     }
+    HD static float box_growth(const Ray&, float) { return 0; }
     HD static Triangles make_triangles(const Ray&) { return {}; }
     HD static bool intersect(const Ray& ray, Triangles, Vec3 a, Vec3 b, Vec3 c, TriangleHit& hit) {
         const auto dot_fma = [](Vec3 p, Vec3 q) { return fma(p.x, q.x, fma(p.y, q.y, p.z * q.z)); };

@@ -18,31 +18,34 @@ struct SpeculativeWalk {
     using Tests = TestsOf<kOptions>;
     using Place = WalkPlace<kOptions>;
 
+    template <class Visitor>
+    HD static void start(const BvhView& bvh, const Ray& ray, Place& place) {
+        place.start(bvh, ray);
+    }
+
     template <class Visitor, class Counter>
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
-        const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
-        const auto prepared = Tests::make_triangles(ray);
-        typename Place::Slot slots[kMaxBvhDepth];
-        Place place = {{slots}, bvh.root};
-        while (place.link != kNoLink) {
-            if (turn(bvh, ray, boxes, prepared, instance, place, visitor, counter)) return true;
+        typename Place::Slot slots[Place::kSlots];
+        Place place(slots);
+        start<Visitor>(bvh, ray, place);
+        while (!place.is_done()) {
+            if (turn(bvh, ray, instance, place, visitor, counter, lanes_here())) return true;
         }
         return false;
     }
 
     /// Down until all lanes that run together have found a leaf, and the leaves found. True when the visitor ended it.
     template <class Visitor, class Counter>
-    HD static bool turn(const BvhView& bvh, const Ray& ray, const typename Tests::Boxes& boxes,
-                        const typename Tests::Triangles& prepared, uint32_t instance, Place& place, Visitor& visitor,
-                        const Counter& counter) {
+    HD static bool turn(const BvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
+                        const Counter& counter, LaneMask) {
         constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
         uint32_t link = place.link, postponed = kNoLink;
         while (!(link & kLeafBit)) {
             counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
             const float limit = skip_beyond<kOptions>(visitor, ray);
-            link = step_down<kNear>(node, boxes, ray.t_min, limit, place.stack);
+            link = step_down<kNear>(node, place.boxes, ray.t_min, limit, place.stack);
             const bool at_leaf = (link & kLeafBit) && link != kNoLink;
             if (all_lanes_here(at_leaf || postponed != kNoLink)) break;
             if (at_leaf && postponed == kNoLink) {
@@ -54,7 +57,7 @@ struct SpeculativeWalk {
             const bool was_postponed = postponed != kNoLink;
             const uint32_t leaf = was_postponed ? postponed : link;
             if (!(leaf & kLeafBit) || leaf == kNoLink) break;
-            if (test_leaf<Tests>(bvh.triangles, leaf, ray, prepared, instance, visitor, counter)) return true;
+            if (test_leaf<Tests>(bvh.triangles, leaf, ray, place.prepared, instance, visitor, counter)) return true;
             postponed = kNoLink;
             if (!was_postponed) link = place.stack.pop(skip_beyond<kOptions>(visitor, ray));
         }

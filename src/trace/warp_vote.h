@@ -58,6 +58,17 @@ HD inline LaneMask ballot(LaneMask lanes, bool mine) {
 #endif
 }
 
+/// The lanes of the warp before this one. Asked of the hardware each time: kept, it would take a register.
+HD inline LaneMask lanes_before() {
+#if PERTEV_ON_DEVICE
+    LaneMask lanes;
+    asm volatile("mov.u32 %0, %%lanemask_lt;" : "=r"(lanes));
+    return lanes;
+#else
+    return 0;
+#endif
+}
+
 HD inline int count_lanes(LaneMask lanes) {
 #if PERTEV_ON_DEVICE
     return __popc(lanes);

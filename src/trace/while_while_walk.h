@@ -8,15 +8,34 @@
 #include "trace/test_leaf.h"
 #include "trace/walk_options.h"
 #include "trace/walk_stack.h"
+#include "trace/warp_vote.h"
 
 namespace pertev {
 
 /// Where a walk with a stack stands between two turns; dynamic fetch (trace/dynamic_fetch.h) may leave it there.
 template <WalkOptions kOptions>
 struct WalkPlace {
+    using Tests = TestsOf<kOptions>;
     using Slot = typename WalkStack<kOptions.rta>::Slot;
+    static constexpr int kSlots = kMaxBvhDepth;
+    static constexpr int kRefillBelow = 20; // for dynamic fetch: the source's, of 32 lanes
+
     WalkStack<kOptions.rta> stack;
-    uint32_t link; // where to go on; kNoLink: done
+    uint32_t link = kNoLink; // where to go on; kNoLink: done
+    typename Tests::Boxes boxes = {};
+    typename Tests::Triangles prepared = {};
+
+    HD explicit WalkPlace(Slot* slots) : stack{slots} {}
+
+    HD bool is_done() const { return link == kNoLink; }
+    HD void stop() { link = kNoLink; }
+    /// Puts the ray at the root.
+    HD void start(const BvhView& bvh, const Ray& ray) {
+        boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
+        prepared = Tests::make_triangles(ray);
+        stack.size = 0;
+        link = bvh.root;
+    }
 };
 
 template <WalkOptions kOptions>
@@ -25,33 +44,36 @@ struct WhileWhileWalk {
     using Tests = TestsOf<kOptions>;
     using Place = WalkPlace<kOptions>;
 
+    template <class Visitor>
+    HD static void start(const BvhView& bvh, const Ray& ray, Place& place) {
+        place.start(bvh, ray);
+    }
+
     template <class Visitor, class Counter>
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
-        const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
-        const auto prepared = Tests::make_triangles(ray);
-        typename Place::Slot slots[kMaxBvhDepth];
-        Place place = {{slots}, bvh.root};
-        while (place.link != kNoLink) {
-            if (turn(bvh, ray, boxes, prepared, instance, place, visitor, counter)) return true;
+        typename Place::Slot slots[Place::kSlots];
+        Place place(slots);
+        start<Visitor>(bvh, ray, place);
+        while (!place.is_done()) {
+            if (turn(bvh, ray, instance, place, visitor, counter, lanes_here())) return true;
         }
         return false;
     }
 
     /// Down to the next leaf, and its triangles. True when the visitor ended the walk.
     template <class Visitor, class Counter>
-    HD static bool turn(const BvhView& bvh, const Ray& ray, const typename Tests::Boxes& boxes,
-                        const typename Tests::Triangles& prepared, uint32_t instance, Place& place, Visitor& visitor,
-                        const Counter& counter) {
+    HD static bool turn(const BvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
+                        const Counter& counter, LaneMask) {
         constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
         uint32_t link = place.link;
         while (!(link & kLeafBit)) {
             counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
-            link = step_down<kNear>(node, boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray), place.stack);
+            link = step_down<kNear>(node, place.boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray), place.stack);
         }
         if (link != kNoLink) {
-            if (test_leaf<Tests>(bvh.triangles, link, ray, prepared, instance, visitor, counter)) return true;
+            if (test_leaf<Tests>(bvh.triangles, link, ray, place.prepared, instance, visitor, counter)) return true;
             link = place.stack.pop(skip_beyond<kOptions>(visitor, ray));
         }
         place.link = link;

@@ -5,9 +5,11 @@
 
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "accel/bvh/build_bvh.h"
+#include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/parent_links.h"
 #include "device/buffer.h"
 #include "tests/support/check_walk.h"
@@ -33,6 +35,22 @@ struct TreeOnDevice {
     TreeOnDevice(Queue& queue, const Bvh& bvh)
         : nodes(queue, std::span<const BvhNode>(bvh.nodes), "nodes"),
           triangles(queue, std::span<const BvhTriangle>(bvh.triangles), "triangles"), view(view_of(bvh)) {
+        view.nodes = nodes.data();
+        view.triangles = triangles.data();
+    }
+};
+
+struct CompressedOnDevice {
+    CompressedBvh bvh;
+    Buffer<CompressedBvhNode> nodes;
+    Buffer<BvhTriangle> triangles;
+    CompressedBvhView view;
+
+    CompressedOnDevice(Queue& queue, const Bvh& binary)
+        : bvh(make_compressed_bvh(binary)),
+          nodes(queue, std::span<const CompressedBvhNode>(bvh.nodes), "compressed nodes"),
+          triangles(queue, std::span<const BvhTriangle>(bvh.triangles), "compressed triangles"), view(view_of(bvh)) {
+        if (view.nodes == nullptr) return;
         view.nodes = nodes.data();
         view.triangles = triangles.data();
     }
@@ -79,7 +97,9 @@ TEST_CASE("each way of handing out rays gives each ray its hit") {
         CAPTURE(std::string(c.name));
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(333, 20011)), c, 43);
         const std::vector<Hit> expected = hits_by_brute_force(c.triangles, rays, AcceptAll{});
-        const TreeOnDevice tree(queue, linked_bvh(c.triangles));
+        const Bvh bvh = linked_bvh(c.triangles);
+        const TreeOnDevice tree(queue, bvh);
+        const CompressedOnDevice compressed(queue, bvh);
         for (const WalkLaunch& launch : walk_launches()) {
             CAPTURE(std::string(launch.walk));
             CAPTURE(std::string(launch.distribution));
@@ -87,7 +107,7 @@ TEST_CASE("each way of handing out rays gives each ray its hit") {
             CAPTURE(launch.rta);
             BatchOnDevice batch(queue, rays);
             batch.hits.zero();
-            launch.run(queue, tree.view, batch.view());
+            launch.run(queue, {tree.view, compressed.view}, batch.view());
             queue.wait();
             CHECK(count_wrong(batch.hits.download(), expected, rays, launch.any) == 0);
         }
@@ -98,19 +118,29 @@ TEST_CASE("so they do over instances, those that can, and packets whose rays par
     Queue queue = queue_asked_for();
     InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(300, 20011)));
     std::vector<TreeOnDevice> trees;
+    std::vector<CompressedOnDevice> compressed;
     std::vector<BvhView> views;
+    std::vector<CompressedBvhView> compressed_views;
     for (Bvh& tree : s.trees) {
         add_parent_links(tree);
         trees.emplace_back(queue, tree);
+        compressed.emplace_back(queue, tree);
         views.push_back(trees.back().view);
+        compressed_views.push_back(compressed.back().view);
     }
     add_parent_links(s.baked_tree);
     const TreeOnDevice baked(queue, s.baked_tree);
+    const CompressedOnDevice compressed_baked(queue, s.baked_tree);
     const Buffer<BvhNode> top_nodes(queue, std::span<const BvhNode>(s.top.nodes), "top nodes");
     const Buffer<InstanceRecord> instances(queue, std::span<const InstanceRecord>(s.top.instances), "instances");
     const Buffer<BvhView> meshes(queue, std::span<const BvhView>(views), "meshes");
-    const SceneBvhView scene = {baked.view, top_nodes.data(), instances.data(), meshes.data(),
-                                s.top.root, s.top.reach,      s.top.growth};
+    const Buffer<CompressedBvhView> compressed_meshes(queue, std::span<const CompressedBvhView>(compressed_views),
+                                                      "compressed meshes");
+    const auto scene_over = [&](const auto& tree, const auto& mesh_trees) {
+        return SceneTrees<std::remove_cvref_t<decltype(tree)>>{
+            tree, top_nodes.data(), instances.data(), mesh_trees.data(), s.top.root, s.top.reach, s.top.growth};
+    };
+    const WalkScenes scenes = {scene_over(baked.view, meshes), scene_over(compressed_baked.view, compressed_meshes)};
     std::vector<Hit> expected(s.rays.size());
     for (std::size_t i = 0; i < s.rays.size(); ++i) {
         trace_by_brute_force(s.baked, s.rays[i], kNoHit, AcceptAll{}, expected[i]);
@@ -127,12 +157,12 @@ TEST_CASE("so they do over instances, those that can, and packets whose rays par
         CAPTURE(launch.any);
         BatchOnDevice batch(queue, s.rays);
         batch.hits.zero();
-        launch.run_scene(queue, scene, batch.view());
+        launch.run_scene(queue, scenes, batch.view());
         queue.wait();
         CHECK(count_wrong(batch.hits.download(), expected, s.rays, launch.any) == 0);
         ++launches;
     }
-    CHECK(launches == 28); // seven walks, two ways, closest and any
+    CHECK(launches == 32); // eight walks, two ways, closest and any
 }
 
 TEST_CASE("live lanes add up to the visits of the rays") {

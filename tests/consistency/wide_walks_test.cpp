@@ -9,6 +9,7 @@
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "accel/bvh/wide_bvh.h"
+#include "math/random.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/options.h"
 #include "trace/compressed_walk.h"
@@ -71,6 +72,53 @@ TEST_CASE("walks of wide and compressed trees give the hits of testing every tri
         check_tree<Wide8Walk>(view_of(trees.wide8), expected);
         check_tree<Wide8SimdWalk>(view_of(trees.wide8), expected);
         check_tree<CompressedWalk>(view_of(trees.compressed), expected);
+    }
+}
+
+namespace {
+
+/// CompressedWalk as a ray of a warp sees it whose other lanes have no triangles: its own are put off, at random times
+/// or until it cannot go on without them.
+template <WalkOptions kOptions, bool kAlways>
+struct PostponingWalk {
+    using Walk = CompressedWalk<kOptions>;
+    using Tree = CompressedBvhView;
+    static inline int most_entries = 0; // on the stack
+
+    template <class Visitor, class Counter>
+    static bool walk(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
+                     const Counter& counter) {
+        constexpr LaneMask kAlone = 1, kWarp = 0xffffffffu;
+        typename Walk::Place::Slot slots[Walk::Place::kSlots];
+        typename Walk::Place place(slots);
+        Walk::template start<Visitor>(bvh, ray, place);
+        for (uint32_t turns = 0; !place.is_done(); ++turns) {
+            const bool waits = place.nodes.is_empty();
+            const bool alone = waits || (!kAlways && hash_word(bits_of(ray.direction.x) + turns) % 4 == 0);
+            if (Walk::turn(bvh, ray, instance, place, visitor, counter, alone ? kAlone : kWarp)) return true;
+            most_entries = max(most_entries, place.size);
+        }
+        return false;
+    }
+};
+template <WalkOptions kOptions>
+using WalkPostponedAtRandom = PostponingWalk<kOptions, false>;
+template <WalkOptions kOptions>
+using WalkPostponedAlways = PostponingWalk<kOptions, true>;
+
+} // namespace
+
+TEST_CASE("triangles that are put off, as for the sake of a warp, give the same hits") {
+    for (const NastyMesh& c : nasty_meshes()) {
+        CAPTURE(c.name);
+        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(700, 20'000)), c, 17);
+        const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
+                                   hits_by_brute_force(c.triangles, rays, AcceptSome{})};
+        const CompressedBvh tree = make_compressed_bvh(build_bvh(c.triangles));
+        check_tree<WalkPostponedAtRandom>(view_of(tree), expected);
+        check_tree<WalkPostponedAlways>(view_of(tree), expected);
+        CHECK(PostponingWalk<kBoth, true>::most_entries <= 2 * tree.depth);
+        PostponingWalk<kBoth, true>::most_entries = 0;
     }
 }
 

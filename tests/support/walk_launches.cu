@@ -1,6 +1,9 @@
 #include "tests/support/walk_launches.h"
 
+#include <type_traits>
+
 #include "device/launch_body.h"
+#include "trace/compressed_walk.h"
 #include "trace/dynamic_fetch.h"
 #include "trace/if_if_walk.h"
 #include "trace/parent_links_walk.h"
@@ -49,25 +52,41 @@ void run_stage_of(Queue& queue, const Scene& scene, const WalkBatch& batch) {
     }
 }
 
+/// The one of WalkTrees or WalkScenes that the walk is for.
+template <class Walk>
+const auto& pick(const auto& trees) {
+    if constexpr (std::is_same_v<typename Walk::Tree, CompressedBvhView>) {
+        return trees.compressed;
+    } else {
+        return trees.binary;
+    }
+}
+
 template <class Walk, bool kAny, bool kPersistent>
-void run_tree(Queue& queue, const BvhView& bvh, const WalkBatch& batch) {
-    run_stage_of<Walk, kAny, kPersistent>(queue, SingleTree<BvhView>{bvh}, batch);
+void run_tree(Queue& queue, const WalkTrees& trees, const WalkBatch& batch) {
+    run_stage_of<Walk, kAny, kPersistent>(queue, SingleTree<typename Walk::Tree>{pick<Walk>(trees)}, batch);
+}
+
+template <class Walk, bool kAny, bool kPersistent>
+void run_scene(Queue& queue, const WalkScenes& scenes, const WalkBatch& batch) {
+    run_stage_of<Walk, kAny, kPersistent>(queue, pick<Walk>(scenes), batch);
 }
 
 template <class Walk, bool kAny>
-void run_dynamic(Queue& queue, const BvhView& bvh, const WalkBatch& batch) {
-    launch_dynamic_fetch<Walk, kAny>(queue, "trace dynamic", bvh, BatchRays{batch}, batch.count, batch.pool);
+void run_dynamic(Queue& queue, const WalkTrees& trees, const WalkBatch& batch) {
+    launch_dynamic_fetch<Walk, kAny>(queue, "trace dynamic", pick<Walk>(trees), BatchRays{batch}, batch.count,
+                                     batch.pool);
 }
 
 template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, bool kDynamic>
 void add(const char* name, std::vector<WalkLaunch>& launches) {
     using W = Walk<kOptions>;
     WalkLaunch row = {name, "one a thread", kOptions.rta, kOptions.near_first, kAny, run_tree<W, kAny, false>, nullptr};
-    if constexpr (kOptions.rta) row.run_scene = run_stage_of<W, kAny, false, SceneBvhView>;
+    if constexpr (kOptions.rta) row.run_scene = run_scene<W, kAny, false>;
     launches.push_back(row);
     row.distribution = "persistent";
     row.run = run_tree<W, kAny, true>;
-    if constexpr (kOptions.rta) row.run_scene = run_stage_of<W, kAny, true, SceneBvhView>;
+    if constexpr (kOptions.rta) row.run_scene = run_scene<W, kAny, true>;
     launches.push_back(row);
     if constexpr (kDynamic) {
         row.distribution = "dynamic fetch";
@@ -96,6 +115,7 @@ std::vector<WalkLaunch> walk_launches() {
     add_all<ShortStackWalk, false>("short stack", launches);
     add_all<ParentLinksWalk, false>("parent links", launches);
     add_all<WarpPacketWalk, false>("warp packet", launches);
+    add_all<CompressedWalk, true>("compressed", launches);
     return launches;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
-// The laboratory's walks of binary trees as launches, by every way of handing out rays, for tests that run them on
-// either device.
+// The laboratory's walks of binary and compressed trees as launches, by every way of handing out rays, for tests that
+// run them on either device.
 
 #include <cstdint>
 #include <vector>
 
+#include "accel/bvh/compressed_bvh.h"
 #include "device/queue.h"
 #include "trace/lane_counter.h"
 #include "trace/ray.h"
@@ -21,12 +22,22 @@ struct WalkBatch {
     uint32_t* pool; // one number
 };
 
+/// Of the same triangles.
+struct WalkTrees {
+    BvhView binary;
+    CompressedBvhView compressed;
+};
+struct WalkScenes {
+    SceneBvhView binary;
+    SceneTrees<CompressedBvhView> compressed;
+};
+
 struct WalkLaunch {
     const char* walk;
     const char* distribution;
     bool rta, near_first, any;
-    void (*run)(Queue&, const BvhView&, const WalkBatch&);            // one tree
-    void (*run_scene)(Queue&, const SceneBvhView&, const WalkBatch&); // null: not for scenes
+    void (*run)(Queue&, const WalkTrees&, const WalkBatch&);        // one tree
+    void (*run_scene)(Queue&, const WalkScenes&, const WalkBatch&); // null: not for scenes
 };
 std::vector<WalkLaunch> walk_launches();
 

@@ -162,15 +162,16 @@ TEST_CASE("a slot's child is early for rays of the slot's octant") {
     }
 }
 
-TEST_CASE("masks of slots are flipped and spread bit by bit") {
-    for (uint32_t mask = 0; mask < 256; ++mask) {
+TEST_CASE("slots come in the order of the ray's octant, and masks of them are spread bit by bit") {
+    for (uint32_t mask = 1; mask < 256; ++mask) {
         uint32_t spread = 0;
         for (uint32_t s = 0; s < 8; ++s) spread |= (mask >> s & 1) * 7 << 3 * s;
         REQUIRE(spread_slots(mask) == spread);
-        for (uint32_t flip = 0; flip < 8; ++flip) {
-            uint32_t flipped = 0;
-            for (uint32_t s = 0; s < 8; ++s) flipped |= (mask >> s & 1) << (s ^ flip);
-            REQUIRE(flip_slots(mask, flip) == flipped);
+        for (uint32_t octant = 0; octant < 8; ++octant) {
+            const Vec3 inv = {octant & 1 ? -1.0f : 2.0f, octant & 2 ? -0x1p-40f : 0x1p72f, octant & 4 ? -3.0f : 1.0f};
+            uint32_t first = 0;
+            while (!(mask >> (first ^ octant) & 1)) ++first;
+            REQUIRE(nearest_slot(mask, inv) == 1u << (first ^ octant));
         }
     }
 }

@@ -4,7 +4,7 @@
 namespace pertev {
 
 void add_compressed_kernels(std::vector<WalkKernel>& rows) {
-    add_all_kernels<CompressedWalk>(WalkKind::Compressed, rows);
+    add_all_kernels<CompressedWalk, true>(WalkKind::Compressed, rows);
 }
 
 } // namespace pertev
