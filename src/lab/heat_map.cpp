@@ -47,7 +47,7 @@ FalseColor false_color(float t) {
     const int k = std::min(static_cast<int>(at), 5);
     const float f = at - static_cast<float>(k);
     const auto channel = [&](int c) {
-        return static_cast<uint8_t>(stops[k][c] + (stops[k + 1][c] - stops[k][c]) * f + 0.5f);
+        return static_cast<uint8_t>(floor(stops[k][c] + (stops[k + 1][c] - stops[k][c]) * f + 0.5f));
     };
     return {channel(0), channel(1), channel(2)};
 }

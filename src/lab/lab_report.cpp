@@ -38,8 +38,8 @@ std::optional<double> price_of_exactness(const LabReport& report, const Combinat
     Combination fast = combination.combination;
     fast.options.exact = false;
     const std::string name = name_of(fast);
-    const auto at =
-        std::ranges::find_if(report.combinations, [&](const CombinationFigures& c) { return c.name == name && !c.runs.empty(); });
+    const auto at = std::ranges::find_if(
+        report.combinations, [&](const CombinationFigures& c) { return c.name == name && !c.runs.empty(); });
     if (at == report.combinations.end()) return std::nullopt;
     const RunFigures *exact_run = find_run(combination, set), *fast_run = find_run(*at, set);
     if (exact_run == nullptr || fast_run == nullptr || !(fast_run->median_s > 0)) return std::nullopt;

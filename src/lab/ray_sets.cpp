@@ -112,9 +112,9 @@ std::vector<Ray> make_primary(const RaySetJob& job, uint32_t count, uint32_t fir
         uint32_t state = primary_state(in_frame, first_sample + static_cast<uint32_t>(i) / pixels);
         const float across = draw(state);
         const float down = draw(state);
-        rays[i] = make_camera_ray(
-            camera, {static_cast<float>(pixel % job.width) + across, static_cast<float>(pixel / job.width) + down},
-            {0.5f, 0.5f}); // the middle of the lens
+        const uint32_t x = pixel % job.width, y = pixel / job.width;
+        rays[i] = make_camera_ray(camera, {static_cast<float>(x) + across, static_cast<float>(y) + down},
+                                  {0.5f, 0.5f}); // the middle of the lens
         rays[i].t_max = kFarAway;
     });
     return rays;

@@ -103,11 +103,11 @@ private:
         }
         if (!settings_.only.empty()) return;
         structures_ = settings_.structures;
+        bool brute_force_listed = false;
         for (const StructureKind structure : settings_.structures) {
             for (const WalkKind walk : settings_.walks) {
-                // One array of triangles is as good as another.
-                const auto first = std::ranges::find_if(settings_.structures, is_binary);
-                if (walk == WalkKind::BruteForce && is_binary(structure) && structure != *first) continue;
+                if (walk == WalkKind::BruteForce && brute_force_listed) continue; // one array is as good as another
+                brute_force_listed = brute_force_listed || (walk == WalkKind::BruteForce && is_binary(structure));
                 if (!settings_.by_name && why_not(structure, walk)) continue;
                 for (const Distribution distribution : settings_.distributions) {
                     for (const WalkOptions& options : settings_.options) {

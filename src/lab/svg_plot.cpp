@@ -89,7 +89,8 @@ std::string svg_bars(const std::string& title, const std::string& unit, const st
     const double bottom = top + row * static_cast<double>(bars.size());
     std::string content;
     const double step = axis_step(most, 6);
-    for (double at = 0; at <= most; at += step) {
+    for (int i = 0; i * step <= most; ++i) {
+        const double at = i * step;
         content += line(left + at * scale, top - 4, left + at * scale, bottom, "#ddd");
         content += text_at(left + at * scale, top - 8, "middle", fmt::format("{:g}", at));
     }
@@ -134,11 +135,13 @@ std::string svg_curves(const std::string& title, const std::string& x_label, con
     const auto at_y = [&](double y) { return top + (1 - y / most_y) * plot_height; };
     std::string content;
     const double step_y = axis_step(most_y, 6), step_x = std::max(1.0, axis_step(most_x - least_x, 10));
-    for (double y = 0; y <= most_y; y += step_y) {
+    for (int i = 0; i * step_y <= most_y; ++i) {
+        const double y = i * step_y;
         content += line(left, at_y(y), left + plot_width, at_y(y), "#ddd");
         content += text_at(left - 6, at_y(y) + 4, "end", fmt::format("{:g}", y));
     }
-    for (double x = least_x; x <= most_x; x += step_x) {
+    for (int i = 0; least_x + i * step_x <= most_x; ++i) {
+        const double x = least_x + i * step_x;
         content += line(at_x(x), top + plot_height, at_x(x), top + plot_height + 4, "#000");
         content += text_at(at_x(x), top + plot_height + 16, "middle", fmt::format("{:g}", x));
     }

@@ -1,6 +1,7 @@
 #include "accel/bvh/binary_tree.h"
 
 #include <algorithm>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -92,9 +93,9 @@ std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSet
     std::vector<NodeSummary> summaries(tree.nodes.size());
     std::vector<uint32_t> held;
     const std::vector<uint32_t> order = nodes_downwards(tree, tree.root);
-    for (auto at = order.rbegin(); at != order.rend(); ++at) {
-        const BinaryNode& node = tree.nodes[*at];
-        NodeSummary& summary = summaries[*at];
+    for (const uint32_t at : std::views::reverse(order)) {
+        const BinaryNode& node = tree.nodes[at];
+        NodeSummary& summary = summaries[at];
         const float area = node.box.half_area();
         if (node.is_leaf()) {
             summary = {settings.leaf_cost * static_cast<float>(node.leaf_size()) * area, node.leaf_size(), true};
@@ -103,7 +104,7 @@ std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSet
         const NodeSummary &left = summaries[node.child[0]], &right = summaries[node.child[1]];
         summary = {settings.node_cost * area + left.cost + right.cost, left.size + right.size, false};
         if (summary.size > 2 * max_leaf) continue; // a triangle twice is common in trees by spatial splits, not thrice
-        collect_references(tree, *at, held);
+        collect_references(tree, at, held);
         const float cost = settings.leaf_cost * static_cast<float>(held.size()) * area;
         if (held.size() > max_leaf || cost > summary.cost) continue;
         summary = {cost, static_cast<uint32_t>(held.size()), true};
@@ -193,11 +194,13 @@ void limit_depth(BinaryTree& tree, int max_depth) {
     if (tree.root == kNoLink) return;
     std::vector<uint32_t> height(tree.nodes.size()), leaves(tree.nodes.size());
     const std::vector<uint32_t> order = nodes_downwards(tree, tree.root);
-    for (auto at = order.rbegin(); at != order.rend(); ++at) {
-        const BinaryNode& node = tree.nodes[*at];
+    for (const uint32_t at : std::views::reverse(order)) {
+        const BinaryNode& node = tree.nodes[at];
+        leaves[at] = 1;
+        if (node.is_leaf()) continue;
         const auto [left, right] = node.child;
-        height[*at] = node.is_leaf() ? 0 : 1 + std::max(height[left], height[right]);
-        leaves[*at] = node.is_leaf() ? 1 : leaves[left] + leaves[right];
+        height[at] = 1 + std::max(height[left], height[right]);
+        leaves[at] = leaves[left] + leaves[right];
     }
     PERTEV_CHECK(levels_needed(leaves[tree.root]) <= max_depth);
     struct Pending {

@@ -87,7 +87,8 @@ void CollapsedTree::join_runs() {
 
 float CollapsedTree::leaf_cost(const CollapseSettings& settings, uint32_t count) {
     const auto step = static_cast<uint32_t>(settings.triangles_at_once);
-    return settings.triangle_cost * static_cast<float>((count + step - 1) / step);
+    const uint32_t steps = (count + step - 1) / step;
+    return settings.triangle_cost * static_cast<float>(steps);
 }
 
 void CollapsedTree::plan() {

@@ -19,6 +19,7 @@ namespace pertev {
 
 class SahKdSplitter {
 public:
+    // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): of the compiler's own making
     struct Node : KdBuildNode {
         std::vector<uint32_t> triangles; // [count] their positions in the input
         std::vector<uint64_t> events[3]; // where one begins or ends along an axis, sorted; see make_event

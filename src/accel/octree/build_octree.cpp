@@ -176,7 +176,8 @@ int place_root(Octree& tree) {
         while (component(tree.corner, axis) + tree.side < component(tree.bounds.hi, axis)) tree.side *= 2;
     }
     int levels = 0;
-    for (float side = tree.side; side > least; side *= 0.5f) ++levels;
+    float side = tree.side;
+    while (side > least) side *= 0.5f, ++levels;
     return levels;
 }
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "accel/clip_triangle.h"
-#include "accel/triangle_points.h"
 #include "accel/octree/build_octree.h"
+#include "accel/triangle_points.h"
 #include "base/parallel_for.h"
 
 namespace pertev {
