@@ -12,6 +12,7 @@
 #include "base/stopwatch.h"
 #include "base/version.h"
 #include "device/device_timer.h"
+#include "lab/measure_rays.h"
 #include "lab/traced_set.h"
 #include "lab/walk_kernels.h"
 #include "render/tiled_pixel.h"
@@ -278,13 +279,11 @@ private:
             counting = find_kernel(plain, set.figures.any_hit, queue_.is_cuda());
         }
         if (counting != nullptr && counting->count != nullptr) {
-            const double rays = static_cast<double>(set.rays.size());
             const Buffer<RayWork> on_device(queue_, set.rays.size(), "ray work");
             counting->count(queue_, built.trees(), batch_of(set), on_device.data());
             const std::vector<RayWork> work = on_device.download();
-            uint64_t nodes = 0, triangles = 0;
-            for (const RayWork& w : work) nodes += w.nodes, triangles += w.triangles;
-            run.nodes = static_cast<double>(nodes) / rays, run.triangles = static_cast<double>(triangles) / rays;
+            const WorkSummary summary = summarize_work(work);
+            run.nodes = summary.nodes, run.triangles = summary.triangles;
             if (settings_.heat_maps && set.figures.depth == 1) add_heat_map(c, work);
         }
         if (queue_.is_cuda() && own->count_lanes != nullptr) count_lanes(*own, set, built, run);

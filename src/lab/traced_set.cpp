@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "lab/measure_rays.h"
 #include "math/transform.h"
 
 namespace pertev {
@@ -109,10 +110,7 @@ TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven,
     traced.wanted = trace_proven(queue, proven, set.any_hit, traced.rays);
     traced.figures = {
         .name = set.name, .any_hit = set.any_hit, .rays = set.rays.size(), .brute_force_rays = some.size()};
-    const auto hits = std::ranges::count_if(traced.wanted, [](const RayHit& hit) { return hit.is_hit(); });
-    if (!set.rays.empty()) {
-        traced.figures.hit_share = static_cast<double>(hits) / static_cast<double>(set.rays.size());
-    }
+    traced.figures.hit_share = hit_share(traced.wanted);
     return traced;
 }
 

@@ -22,6 +22,7 @@
 #include "math/bits.h"
 #include "trace/compressed_boxes.h"
 #include "trace/load_bvh.h"
+#include "trace/walk_by_turns.h"
 #include "trace/walk_options.h"
 #include "trace/warp_vote.h"
 
@@ -106,13 +107,7 @@ struct CompressedWalk {
     template <class Visitor, class Counter>
     HD static bool walk(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
-        typename Place::Slot slots[Place::kSlots];
-        Place place(slots);
-        start<Visitor>(bvh, ray, place);
-        while (!place.is_done()) {
-            if (turn(bvh, ray, instance, place, visitor, counter, lanes_here())) return true;
-        }
-        return false;
+        return walk_by_turns<CompressedWalk>(bvh, ray, instance, visitor, counter);
     }
 
     /// Puts the ray at the root.

@@ -7,6 +7,7 @@
 // leaf). How far lanes run ahead is a matter of the warp they are in; the hits are not. On the host, where a warp is
 // one ray, nothing is put off and the nodes tested are those of WhileWhileWalk.
 
+#include "trace/walk_by_turns.h"
 #include "trace/warp_vote.h"
 #include "trace/while_while_walk.h"
 
@@ -26,13 +27,7 @@ struct SpeculativeWalk {
     template <class Visitor, class Counter>
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
-        typename Place::Slot slots[Place::kSlots];
-        Place place(slots);
-        start<Visitor>(bvh, ray, place);
-        while (!place.is_done()) {
-            if (turn(bvh, ray, instance, place, visitor, counter, lanes_here())) return true;
-        }
-        return false;
+        return walk_by_turns<SpeculativeWalk>(bvh, ray, instance, visitor, counter);
     }
 
     /// Down until all lanes that run together have found a leaf, and the leaves found. True when the visitor ended it.

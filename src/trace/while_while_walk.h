@@ -6,6 +6,7 @@
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
 
 #include "trace/test_leaf.h"
+#include "trace/walk_by_turns.h"
 #include "trace/walk_options.h"
 #include "trace/walk_stack.h"
 #include "trace/warp_vote.h"
@@ -52,13 +53,7 @@ struct WhileWhileWalk {
     template <class Visitor, class Counter>
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
-        typename Place::Slot slots[Place::kSlots];
-        Place place(slots);
-        start<Visitor>(bvh, ray, place);
-        while (!place.is_done()) {
-            if (turn(bvh, ray, instance, place, visitor, counter, lanes_here())) return true;
-        }
-        return false;
+        return walk_by_turns<WhileWhileWalk>(bvh, ray, instance, visitor, counter);
     }
 
     /// Down to the next leaf, and its triangles. True when the visitor ended the walk.
