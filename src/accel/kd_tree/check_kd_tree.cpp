@@ -1,21 +1,15 @@
 #include "accel/kd_tree/check_kd_tree.h"
 
 #include <algorithm>
-#include <atomic>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "accel/clip_triangle.h"
-#include "accel/triangle_points.h"
-#include "base/parallel_for.h"
+#include "accel/check_cells.h"
 
 namespace pertev {
 namespace {
-
-bool holds(const Bounds3& outer, const Bounds3& inner) {
-    return min(outer.lo, inner.lo) == outer.lo && max(outer.hi, inner.hi) == outer.hi;
-}
 
 class KdTreeChecker {
 public:
@@ -27,15 +21,8 @@ public:
             return "no node, but triangles or references";
         }
         if (auto fault = check_structure()) return fault;
-        std::atomic<uint64_t> first{tree_.triangles.size()};
-        parallel_for(tree_.triangles.size(), 256, [&](uint64_t i) {
-            if (is_covered(static_cast<uint32_t>(i))) return;
-            uint64_t seen = first;
-            while (i < seen && !first.compare_exchange_weak(seen, i)) {
-            }
-        });
-        if (first == tree_.triangles.size()) return std::nullopt;
-        return fmt::format("a part of triangle {} lies in no leaf that lists it", first.load());
+        return find_uncovered(tree_.triangles, tree_.bounds,
+                              [this](uint32_t id, const TrianglePoint& p) { return is_listed(id, p); });
     }
 
 private:
@@ -60,7 +47,8 @@ private:
                 if (node.first() != references) return fmt::format("leaf {} has not the next references", at.node);
                 references += node.count();
                 if (references > tree_.references.size()) return fmt::format("leaf {} runs past the end", at.node);
-                if (auto fault = check_leaf(node, at)) return fault;
+                const auto list = std::span(tree_.references).subspan(node.first(), node.count());
+                if (auto fault = find_list_fault(list, tree_.triangles, at.cell, at.node)) return fault;
                 continue;
             }
             if (at.depth >= kMaxKdTreeDepth) return fmt::format("node {} is too deep", at.node);
@@ -75,27 +63,6 @@ private:
         }
         if (depth != tree_.depth) return fmt::format("depth {}, stated {}", depth, tree_.depth);
         return std::nullopt;
-    }
-
-    std::optional<std::string> check_leaf(const KdTreeNode& leaf, const Pending& at) const {
-        for (uint32_t i = 0; i < leaf.count(); ++i) {
-            const uint32_t* id = &tree_.references[leaf.first() + i];
-            if (*id >= tree_.triangles.size()) return fmt::format("leaf {} lists triangle {}", at.node, *id);
-            if (i > 0 && id[-1] >= *id) return fmt::format("leaf {} is not in order", at.node);
-            const Bounds3 box = bounds_of(tree_.triangles[*id]);
-            const Bounds3 part = {max(box.lo, at.cell.lo), min(box.hi, at.cell.hi)};
-            if (part.is_empty()) return fmt::format("leaf {} lists triangle {}, which is outside", at.node, *id);
-        }
-        return std::nullopt;
-    }
-
-    bool is_covered(uint32_t id) const {
-        const BvhTriangle& triangle = tree_.triangles[id];
-        if (!holds(tree_.bounds, bounds_of(triangle))) return false;
-        for (int k = 0; k < kTrianglePoints; ++k) {
-            if (!is_listed(id, triangle_point(triangle, k))) return false;
-        }
-        return true;
     }
 
     /// Whether the leaf at `p` lists the triangle; at a plane, whether one of the leaves there does.

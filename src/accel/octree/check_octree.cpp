@@ -1,22 +1,16 @@
 #include "accel/octree/check_octree.h"
 
 #include <algorithm>
-#include <atomic>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "accel/clip_triangle.h"
+#include "accel/check_cells.h"
 #include "accel/octree/build_octree.h"
-#include "accel/triangle_points.h"
-#include "base/parallel_for.h"
 
 namespace pertev {
 namespace {
-
-bool holds(const Bounds3& outer, const Bounds3& inner) {
-    return min(outer.lo, inner.lo) == outer.lo && max(outer.hi, inner.hi) == outer.hi;
-}
 
 /// Whether the eight cells of a cell meet at its centre, and are as large as they should be, to the bit.
 bool is_exact(const OctreeCell& cell, Vec3 corner) {
@@ -38,15 +32,8 @@ public:
         }
         if (!holds(bounds_of(root(), tree_.corner), tree_.bounds)) return "the root's cell does not hold the bounds";
         if (auto fault = check_structure()) return fault;
-        std::atomic<uint64_t> first{tree_.triangles.size()};
-        parallel_for(tree_.triangles.size(), 256, [&](uint64_t i) {
-            if (is_covered(static_cast<uint32_t>(i))) return;
-            uint64_t seen = first;
-            while (i < seen && !first.compare_exchange_weak(seen, i)) {
-            }
-        });
-        if (first == tree_.triangles.size()) return std::nullopt;
-        return fmt::format("a part of triangle {} lies in no leaf that lists it", first.load());
+        return find_uncovered(tree_.triangles, tree_.bounds,
+                              [this](uint32_t id, const TrianglePoint& p) { return is_listed(id, p); });
     }
 
 private:
@@ -80,7 +67,9 @@ private:
                     listed[node.first + i] = true;
                 }
                 references += node.count();
-                if (auto fault = check_leaf(node, at)) return fault;
+                const auto list = std::span(tree_.references).subspan(node.first, node.count());
+                if (auto fault = find_list_fault(list, tree_.triangles, bounds_of(at.cell, tree_.corner), at.node))
+                    return fault;
                 continue;
             }
             if (at.depth >= kMaxOctreeDepth) return fmt::format("node {} is too deep", at.node);
@@ -96,28 +85,6 @@ private:
             return fmt::format("{} of {} references are in leaves", references, listed.size());
         if (depth != tree_.depth) return fmt::format("depth {}, stated {}", depth, tree_.depth);
         return std::nullopt;
-    }
-
-    std::optional<std::string> check_leaf(const OctreeNode& leaf, const Pending& at) const {
-        const Bounds3 cell = bounds_of(at.cell, tree_.corner);
-        for (uint32_t i = 0; i < leaf.count(); ++i) {
-            const uint32_t* id = &tree_.references[leaf.first + i];
-            if (*id >= tree_.triangles.size()) return fmt::format("leaf {} lists triangle {}", at.node, *id);
-            if (i > 0 && id[-1] >= *id) return fmt::format("leaf {} is not in order", at.node);
-            const Bounds3 box = bounds_of(tree_.triangles[*id]);
-            const Bounds3 part = {max(box.lo, cell.lo), min(box.hi, cell.hi)};
-            if (part.is_empty()) return fmt::format("leaf {} lists triangle {}, which is outside", at.node, *id);
-        }
-        return std::nullopt;
-    }
-
-    bool is_covered(uint32_t id) const {
-        const BvhTriangle& triangle = tree_.triangles[id];
-        if (!holds(tree_.bounds, bounds_of(triangle))) return false;
-        for (int k = 0; k < kTrianglePoints; ++k) {
-            if (!is_listed(id, triangle_point(triangle, k))) return false;
-        }
-        return true;
     }
 
     /// Whether the leaf at `p` lists the triangle; at a plane, whether one of the leaves there does.

@@ -1,0 +1,63 @@
+#pragma once
+
+// What the checkers of the kd-tree and the octree share: a leaf's list, and whether each triangle is listed wherever it
+// lies.
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "accel/clip_triangle.h"
+#include "accel/triangle_points.h"
+#include "base/parallel_for.h"
+
+namespace pertev {
+
+inline bool holds(const Bounds3& outer, const Bounds3& inner) {
+    return min(outer.lo, inner.lo) == outer.lo && max(outer.hi, inner.hi) == outer.hi;
+}
+
+/// What is wrong with the list of a leaf, which is node `node` and has the cell `cell`: ids in range, ascending, and of
+/// triangles whose boxes reach into the cell.
+inline std::optional<std::string> find_list_fault(std::span<const uint32_t> list,
+                                                  std::span<const BvhTriangle> triangles, const Bounds3& cell,
+                                                  uint32_t node) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const uint32_t id = list[i];
+        if (id >= triangles.size()) return fmt::format("leaf {} lists triangle {}", node, id);
+        if (i > 0 && list[i - 1] >= id) return fmt::format("leaf {} is not in order", node);
+        const Bounds3 box = bounds_of(triangles[id]);
+        const Bounds3 part = {max(box.lo, cell.lo), min(box.hi, cell.hi)};
+        if (part.is_empty()) return fmt::format("leaf {} lists triangle {}, which is outside", node, id);
+    }
+    return std::nullopt;
+}
+
+/// The first triangle of which a point lies outside the bounds, or where is_listed(id, TrianglePoint) says that no leaf
+/// there lists it.
+template <class IsListed>
+std::optional<std::string> find_uncovered(std::span<const BvhTriangle> triangles, const Bounds3& bounds,
+                                          const IsListed& is_listed) {
+    const auto is_covered = [&](uint32_t id) {
+        if (!holds(bounds, bounds_of(triangles[id]))) return false;
+        for (int k = 0; k < kTrianglePoints; ++k) {
+            if (!is_listed(id, triangle_point(triangles[id], k))) return false;
+        }
+        return true;
+    };
+    std::atomic<uint64_t> first{triangles.size()};
+    parallel_for(triangles.size(), 256, [&](uint64_t i) {
+        if (is_covered(static_cast<uint32_t>(i))) return;
+        uint64_t seen = first;
+        while (i < seen && !first.compare_exchange_weak(seen, i)) {
+        }
+    });
+    if (first == triangles.size()) return std::nullopt;
+    return fmt::format("a part of triangle {} lies in no leaf that lists it", first.load());
+}
+
+} // namespace pertev
