@@ -24,7 +24,7 @@ lab() { # name, arguments
     local name=$1
     shift
     echo "--- $name"
-    "$bin/pertev" lab "$@" --device "$device" -o "$out/$name" || { echo "FAILED: $name"; status=1; }
+    "$bin/pertev" lab -q "$@" --device "$device" -o "$out/$name" || { echo "FAILED: $name"; status=1; }
 }
 record=(--rays record --count "$count" --no-heat-maps)
 
