@@ -6,6 +6,8 @@
 
 #include "tests/support/emulated_device.h" // from here on the device's
 
+#include <type_traits>
+
 #include "device/launch_body.h"
 #include "trace/compressed_walk.h"
 #include "trace/dynamic_fetch.h"
@@ -24,11 +26,20 @@ struct Batch {
     Hit* hits;
     uint32_t* stores;
     uint32_t count;
+    LaneCounts* lanes;
 
     Ray load(uint32_t i) const { return i < count ? rays[i] : Ray{}; }
     void store(uint32_t i, const Hit& hit) const {
         ++stores[i < count ? i : count];
         if (i < count) hits[i] = hit;
+    }
+    template <class Counter>
+    Counter counter() const {
+        if constexpr (std::is_same_v<Counter, LaneCounter>) {
+            return {lanes};
+        } else {
+            return {};
+        }
     }
 };
 
@@ -36,11 +47,11 @@ template <class Walk, bool kAny, class Scene, class Counter>
 struct TraceBatch {
     Scene scene;
     Batch batch;
-    Counter counter;
 
     void operator()(uint32_t i) const {
         const AcceptAll accept;
         const Ray ray = batch.load(i);
+        const auto counter = batch.counter<Counter>();
         Hit hit;
         if constexpr (kAny) {
             if (trace_any<Walk>(scene, ray, accept, counter)) hit.instance = 0;
@@ -52,19 +63,19 @@ struct TraceBatch {
     }
 };
 
-template <class Walk, bool kAny, class Scene, class Counter>
-void run_one_a_thread(const Scene& scene, const Batch& batch, uint32_t*, const Counter& counter) {
-    run_stage(TraceBatch<Walk, kAny, Scene, Counter>{scene, batch, counter}, batch.count);
+template <class Walk, bool kAny, class Counter, class Scene>
+void run_one_a_thread(const Scene& scene, const Batch& batch, uint32_t*) {
+    run_stage(TraceBatch<Walk, kAny, Scene, Counter>{scene, batch}, batch.count);
 }
 
-template <class Walk, bool kAny, class Scene, class Counter>
-void run_persistent(const Scene& scene, const Batch& batch, uint32_t* pool, const Counter& counter) {
-    run_stage_persistent(TraceBatch<Walk, kAny, Scene, Counter>{scene, batch, counter}, batch.count, pool);
+template <class Walk, bool kAny, class Counter, class Scene>
+void run_persistent(const Scene& scene, const Batch& batch, uint32_t* pool) {
+    run_stage_persistent(TraceBatch<Walk, kAny, Scene, Counter>{scene, batch}, batch.count, pool);
 }
 
-template <class Walk, bool kAny, class Scene, class Counter>
-void run_dynamic(const Scene& scene, const Batch& batch, uint32_t* pool, const Counter& counter) {
-    run_dynamic_fetch<Walk, kAny>(scene.baked, batch, batch.count, pool, counter);
+template <class Walk, bool kAny, class Counter, class Scene>
+void run_dynamic(const Scene& scene, const Batch& batch, uint32_t* pool) {
+    run_dynamic_fetch<Walk, kAny>(scene.baked, batch, batch.count, pool, batch.counter<Counter>());
 }
 
 } // namespace
@@ -85,18 +96,15 @@ const Device& seen_by_device(const Host* host) {
 }
 
 /// Runs a thread's part in all threads.
-template <class Counter, class Run>
+template <class Run>
 std::string run_threads(const EmulatedBatch& batch, bool one_a_thread, const Run& run) {
     constexpr uint32_t threads = device::kWalkThreads;
     const uint32_t needed = (batch.count + threads - 1) / threads;
     const device::Batch rays = {reinterpret_cast<const device::Ray*>(batch.rays),
-                                reinterpret_cast<device::Hit*>(batch.hits), batch.stores, batch.count};
-    Counter counter;
-    if constexpr (std::is_same_v<Counter, LaneCounter>) {
-        counter = {reinterpret_cast<device::LaneCounts*>(batch.lanes)};
-    }
+                                reinterpret_cast<device::Hit*>(batch.hits), batch.stores, batch.count,
+                                reinterpret_cast<device::LaneCounts*>(batch.lanes)};
     return run_warps({.blocks = one_a_thread ? needed : batch.blocks, .threads = threads, .seed = batch.seed},
-                     [&] { run(rays, batch.pool, counter); });
+                     [&] { run(rays, batch.pool); });
 }
 
 /// That one of EmulatedTrees or EmulatedScenes which the walk is for.
@@ -114,10 +122,10 @@ constexpr const char* kWays[] = {"one a thread", "persistent", "dynamic fetch"};
 
 template <class Walk, bool kAny, Way kWay, class Counter, class Scene>
 std::string run_in(const Scene& scene, const EmulatedBatch& batch) {
-    return run_threads<Counter>(batch, kWay == Way::OneAThread, [&](auto&&... given) {
-        if constexpr (kWay == Way::OneAThread) device::run_one_a_thread<Walk, kAny>(scene, given...);
-        if constexpr (kWay == Way::Persistent) device::run_persistent<Walk, kAny>(scene, given...);
-        if constexpr (kWay == Way::Dynamic) device::run_dynamic<Walk, kAny>(scene, given...);
+    return run_threads(batch, kWay == Way::OneAThread, [&](auto&&... given) {
+        if constexpr (kWay == Way::OneAThread) device::run_one_a_thread<Walk, kAny, Counter>(scene, given...);
+        if constexpr (kWay == Way::Persistent) device::run_persistent<Walk, kAny, Counter>(scene, given...);
+        if constexpr (kWay == Way::Dynamic) device::run_dynamic<Walk, kAny, Counter>(scene, given...);
     });
 }
 

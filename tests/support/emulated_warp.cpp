@@ -174,13 +174,14 @@ void Machine::start_warp(Warp& warp) {
     warp.live = warp.ready = 0xffffffffu;
     warp.waiting = warp.pending = 0;
     for (Lane& lane : warp.lanes) {
+#if defined(__SANITIZE_ADDRESS__)
+        // A lane never returns from its first function, so that its frame is still marked.
+        __asan_unpoison_memory_region(lane.fiber.stack + kGuardBytes, kStackBytes - kGuardBytes);
+#endif
         void** top = reinterpret_cast<void**>(lane.fiber.stack + kStackBytes) - 8;
         std::fill_n(top, 8, nullptr); // six registers, where to go, and an end to the chain of frames
         top[6] = reinterpret_cast<void*>(&Machine::lane_main);
         lane.fiber.stack_pointer = top;
-#if defined(__SANITIZE_ADDRESS__)
-        __asan_unpoison_memory_region(lane.fiber.stack + kGuardBytes, kStackBytes - kGuardBytes);
-#endif
     }
     warps_.push_back(&warp);
 }
