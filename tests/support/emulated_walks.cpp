@@ -21,6 +21,13 @@
 namespace pertev {
 namespace {
 
+/// tests/support/check_walk.h's.
+struct AcceptSome {
+    bool operator()(uint32_t instance, uint32_t primitive, float u, float) const {
+        return (primitive * 2654435761u + instance) % 3 != 0 || u > 0.5f;
+    }
+};
+
 struct Batch {
     const Ray* rays;
     Hit* hits;
@@ -43,13 +50,13 @@ struct Batch {
     }
 };
 
-template <class Walk, bool kAny, class Scene, class Counter>
+template <class Walk, bool kAny, class Accept, class Counter, class Scene>
 struct TraceBatch {
     Scene scene;
     Batch batch;
 
     void operator()(uint32_t i) const {
-        const AcceptAll accept;
+        const Accept accept;
         const Ray ray = batch.load(i);
         const auto counter = batch.counter<Counter>();
         Hit hit;
@@ -63,17 +70,17 @@ struct TraceBatch {
     }
 };
 
-template <class Walk, bool kAny, class Counter, class Scene>
+template <class Walk, bool kAny, class Accept, class Counter, class Scene>
 void run_one_a_thread(const Scene& scene, const Batch& batch, uint32_t*) {
-    run_stage(TraceBatch<Walk, kAny, Scene, Counter>{scene, batch}, batch.count);
+    run_stage(TraceBatch<Walk, kAny, Accept, Counter, Scene>{scene, batch}, batch.count);
 }
 
-template <class Walk, bool kAny, class Counter, class Scene>
+template <class Walk, bool kAny, class Accept, class Counter, class Scene>
 void run_persistent(const Scene& scene, const Batch& batch, uint32_t* pool) {
-    run_stage_persistent(TraceBatch<Walk, kAny, Scene, Counter>{scene, batch}, batch.count, pool);
+    run_stage_persistent(TraceBatch<Walk, kAny, Accept, Counter, Scene>{scene, batch}, batch.count, pool);
 }
 
-template <class Walk, bool kAny, class Counter, class Scene>
+template <class Walk, bool kAny, class, class Counter, class Scene>
 void run_dynamic(const Scene& scene, const Batch& batch, uint32_t* pool) {
     run_dynamic_fetch<Walk, kAny>(scene.baked, batch, batch.count, pool, batch.counter<Counter>());
 }
@@ -87,7 +94,8 @@ namespace pertev::test {
 namespace {
 
 namespace device = pertev_emulated;
-using device::LaneCounter, device::NoWalkCounter, device::SingleTree, device::WalkOptions;
+using device::AcceptAll, device::AcceptSome, device::LaneCounter, device::NoWalkCounter, device::SingleTree,
+    device::WalkOptions;
 
 /// The host's object as the device sees it.
 template <class Device, class Host>
@@ -120,25 +128,25 @@ const auto* pick(const auto& trees) {
 enum class Way { OneAThread, Persistent, Dynamic };
 constexpr const char* kWays[] = {"one a thread", "persistent", "dynamic fetch"};
 
-template <class Walk, bool kAny, Way kWay, class Counter, class Scene>
+template <class Walk, bool kAny, Way kWay, class Accept, class Counter, class Scene>
 std::string run_in(const Scene& scene, const EmulatedBatch& batch) {
     return run_threads(batch, kWay == Way::OneAThread, [&](auto&&... given) {
-        if constexpr (kWay == Way::OneAThread) device::run_one_a_thread<Walk, kAny, Counter>(scene, given...);
-        if constexpr (kWay == Way::Persistent) device::run_persistent<Walk, kAny, Counter>(scene, given...);
-        if constexpr (kWay == Way::Dynamic) device::run_dynamic<Walk, kAny, Counter>(scene, given...);
+        if constexpr (kWay == Way::OneAThread) device::run_one_a_thread<Walk, kAny, Accept, Counter>(scene, given...);
+        if constexpr (kWay == Way::Persistent) device::run_persistent<Walk, kAny, Accept, Counter>(scene, given...);
+        if constexpr (kWay == Way::Dynamic) device::run_dynamic<Walk, kAny, Accept, Counter>(scene, given...);
     });
 }
 
-template <class Walk, bool kAny, Way kWay, class Counter>
+template <class Walk, bool kAny, Way kWay, class Accept = AcceptAll, class Counter = NoWalkCounter>
 std::string run_tree(const EmulatedTrees& trees, const EmulatedBatch& batch) {
     using Tree = typename Walk::Tree;
-    return run_in<Walk, kAny, kWay, Counter>(SingleTree<Tree>{seen_by_device<Tree>(pick<Walk>(trees))}, batch);
+    return run_in<Walk, kAny, kWay, Accept, Counter>(SingleTree<Tree>{seen_by_device<Tree>(pick<Walk>(trees))}, batch);
 }
 
 template <class Walk, bool kAny, Way kWay>
 std::string run_scene(const EmulatedScenes& scenes, const EmulatedBatch& batch) {
     using Scene = device::SceneTrees<typename Walk::Tree>;
-    return run_in<Walk, kAny, kWay, NoWalkCounter>(seen_by_device<Scene>(pick<Walk>(scenes)), batch);
+    return run_in<Walk, kAny, kWay, AcceptAll, NoWalkCounter>(seen_by_device<Scene>(pick<Walk>(scenes)), batch);
 }
 
 using Rows = std::vector<EmulatedWalk>;
@@ -147,15 +155,22 @@ template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, Wa
 void add_way(const char* name, Rows& rows) {
     using W = Walk<kOptions>;
     constexpr bool kPlain = kOptions.rta && kOptions.near_first && kOptions.exact;
-    EmulatedWalk row = {
-        name,  kWays[static_cast<int>(kWay)],          kOptions.rta, kOptions.near_first, kOptions.exact, kAny,
-        false, run_tree<W, kAny, kWay, NoWalkCounter>, nullptr};
-    if constexpr (kPlain && kWay != Way::Dynamic) row.run_scene = run_scene<W, kAny, kWay>;
+    EmulatedWalk row = {name, kWays[static_cast<int>(kWay)], kOptions.rta, kOptions.near_first, kOptions.exact, kAny};
+    row.run = run_tree<W, kAny, kWay>;
     rows.push_back(row);
     if constexpr (kPlain && !kAny) {
         row.counts_lanes = true;
-        row.run = run_tree<W, kAny, kWay, LaneCounter>;
-        row.run_scene = nullptr;
+        row.run = run_tree<W, kAny, kWay, AcceptAll, LaneCounter>;
+        rows.push_back(row);
+        row.counts_lanes = false;
+    }
+    if constexpr (kPlain && kWay != Way::Dynamic) { // that one has no cut-outs, and one tree alone
+        row.cut_outs = true;
+        row.run = run_tree<W, kAny, kWay, AcceptSome>;
+        rows.push_back(row);
+        row.cut_outs = false;
+        row.run = nullptr;
+        row.run_scene = run_scene<W, kAny, kWay>;
         rows.push_back(row);
     }
 }

@@ -44,9 +44,12 @@ struct EmulatedScenes {
 struct EmulatedWalk {
     const char* walk;
     const char* distribution;
-    bool rta, near_first, exact, any, counts_lanes;
-    std::string (*run)(const EmulatedTrees&, const EmulatedBatch&);        // what went wrong; null: for scenes alone
-    std::string (*run_scene)(const EmulatedScenes&, const EmulatedBatch&); // null: not for scenes
+    bool rta, near_first, exact, any;
+    bool cut_outs = false; // AcceptSome of tests/support/check_walk.h
+    bool counts_lanes = false;
+    // One of them; what went wrong.
+    std::string (*run)(const EmulatedTrees&, const EmulatedBatch&) = nullptr;
+    std::string (*run_scene)(const EmulatedScenes&, const EmulatedBatch&) = nullptr;
 };
 std::vector<EmulatedWalk> emulated_walks();
 

@@ -8,22 +8,18 @@
 #include <sys/mman.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "tests/support/emulated_lanes.h"
 #include "tests/support/random.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/asan_interface.h>
 #include <sanitizer/common_interface_defs.h>
 #endif
-
-extern "C" const char __executable_start; // the linker's: addresses are told relative to it
 
 namespace pertev::test {
 
@@ -38,48 +34,30 @@ using lane::Place;
 constexpr std::size_t kStackBytes = 128 << 10, kGuardBytes = 4 << 10;
 constexpr uint32_t kMostWarps = 8; // at once
 
-enum class Kind : uint8_t { ActiveMask, Ballot, All, MatchAny, Shuffle, Sync };
-constexpr const char* kNames[] = {"__activemask",     "__ballot_sync", "__all_sync",
-                                  "__match_any_sync", "__shfl_sync",   "__syncwarp"};
-
-/// Where a lane waits, and with what.
-struct Meeting {
-    Kind kind;
-    uint32_t mask;  // as the lane gave it
-    uint64_t value; // what it brings; of __activemask, the hash of the calls that led there
-    int source;
-    Place at;
-    void* const* frame; // of the function that was called
-};
-
-struct Fiber {
-    void* stack_pointer; // while it does not run: the six saved registers and where it goes on
-    char* stack;         // kStackBytes from here
-    void* fake_stack;    // AddressSanitizer's
-};
-
-struct Lane {
-    Fiber fiber;
-    Meeting meeting;
-    uint64_t result;
-};
-
-struct Warp {
-    uint32_t block, first_thread;
-    uint32_t live, ready, waiting, pending; // lanes; those that wait are at a meeting, those pending at __activemask
-    std::array<Lane, 32> lanes;
-};
+#if defined(__SANITIZE_ADDRESS__)
+/// From the fiber that runs, whose fake stack is kept, or not (null) where it never goes on.
+void about_to_go(void** kept, const Fiber& to) { __sanitizer_start_switch_fiber(kept, to.stack, to.stack_bytes); }
+/// To the fiber that runs now. The first one of all is reached from `main`, whose stack is learnt there.
+void came_from(void* kept, Fiber& main) {
+    const void* bottom;
+    std::size_t bytes;
+    __sanitizer_finish_switch_fiber(kept, &bottom, &bytes);
+    if (main.stack == nullptr)
+        main.stack = const_cast<char*>(static_cast<const char*>(bottom)), main.stack_bytes = bytes;
+}
+/// A lane never returns from its first function, so that frames of its last run are still marked.
+void forget_frames(const Fiber& fiber) { __asan_unpoison_memory_region(fiber.stack, fiber.stack_bytes); }
+#else
+void about_to_go(void**, const Fiber&) {}
+void came_from(void*, Fiber&) {}
+void forget_frames(const Fiber&) {}
+#endif
 
 /// Saves where the caller stands and goes on where another one stood.
 [[gnu::naked, gnu::noinline]] void switch_stack(void** /*save*/, void* /*to*/) {
     asm("pushq %rbp\n pushq %rbx\n pushq %r12\n pushq %r13\n pushq %r14\n pushq %r15\n"
         "movq %rsp, (%rdi)\n movq %rsi, %rsp\n"
         "popq %r15\n popq %r14\n popq %r13\n popq %r12\n popq %rbx\n popq %rbp\n ret");
-}
-
-template <class Do>
-void for_each_lane(uint32_t mask, const Do& what) {
-    for (; mask != 0; mask &= mask - 1) what(static_cast<unsigned>(__builtin_ctz(mask)));
 }
 
 class Machine {
@@ -90,38 +68,30 @@ public:
     uint32_t wait_for_active_mask(const Meeting& meeting);
     void step();
     bool is_running() const { return lane_ != nullptr; }
-    /// Return addresses from the frame of a lane's call down to where the lane began.
-    template <class Do>
-    void for_each_call(const Lane& lane, const Do& what) const;
-    const Lane& running() const { return *lane_; }
 
 private:
     static void lane_main();
-    void start_warp(Warp& warp);
-    void switch_to(Lane& lane);
+    void start_warp(EmulatedWarp& warp);
+    void switch_to(EmulatedLane& lane);
     void leave_lane(bool for_good);
     void go_on();
-    Lane* choose_lane();
-    void answer_active_mask(Warp& warp);
-    void hold_meeting(Warp& warp, uint32_t mask);
+    EmulatedLane* choose_lane();
+    void answer_active_mask(EmulatedWarp& warp);
+    void hold_meeting(EmulatedWarp& warp, uint32_t mask);
     void fail(std::string what);
-    std::string describe(const Warp& warp) const;
-    std::string describe_missing(const Warp& warp, const Meeting& meeting) const;
-    std::string describe_calls(const Lane& lane) const;
     bool chance(uint32_t of_256) { return (random_.bits() >> 24) < of_256; }
 
-    std::vector<std::unique_ptr<Warp>> slots_;
-    std::vector<Warp*> warps_;      // that have not ended
-    std::vector<uint32_t> to_come_; // numbers of warps, the next one last
+    std::vector<std::unique_ptr<EmulatedWarp>> slots_;
+    std::vector<EmulatedWarp*> warps_; // that have not ended
+    std::vector<uint32_t> to_come_;    // numbers of warps, the next one last
     EmulatedLaunch launch_;
     const std::function<void()>* kernel_ = nullptr;
     Random random_{0};
     uint32_t roam_ = 0, hurry_ = 0, partly_ = 0; // of 256: change the warp, answer __activemask at once, to a part
     uint64_t steps_ = 0;
-    Warp* warp_ = nullptr; // who runs
-    Lane* lane_ = nullptr;
+    EmulatedWarp* warp_ = nullptr; // who runs
+    EmulatedLane* lane_ = nullptr;
     Fiber main_ = {};
-    std::size_t main_bytes_ = 0;
     std::string fault_;
 };
 
@@ -136,10 +106,11 @@ Machine::Machine() {
     if (memory == MAP_FAILED) std::abort();
     char* stack = static_cast<char*>(memory);
     for (uint32_t i = 0; i < kMostWarps; ++i) {
-        slots_.push_back(std::make_unique<Warp>());
-        for (Lane& lane : slots_.back()->lanes) {
+        slots_.push_back(std::make_unique<EmulatedWarp>());
+        for (EmulatedLane& lane : slots_.back()->lanes) {
             ::mprotect(stack, kGuardBytes, PROT_NONE);
-            lane.fiber.stack = stack;
+            lane.fiber.stack = stack + kGuardBytes;
+            lane.fiber.stack_bytes = kStackBytes - kGuardBytes;
             stack += kStackBytes;
         }
     }
@@ -149,15 +120,7 @@ Machine::Machine() {
 
 void Machine::lane_main() {
     Machine& m = machine();
-#if defined(__SANITIZE_ADDRESS__)
-    const void* bottom;
-    std::size_t bytes;
-    __sanitizer_finish_switch_fiber(nullptr, &bottom, &bytes);
-    if (m.main_bytes_ == 0) { // the first lane comes from there
-        m.main_.stack = const_cast<char*>(static_cast<const char*>(bottom));
-        m.main_bytes_ = bytes;
-    }
-#endif
+    came_from(nullptr, m.main_);
     (*m.kernel_)();
     const uint32_t me = 1u << (lane::thread_index.x & 31u);
     m.warp_->live &= ~me;
@@ -166,19 +129,16 @@ void Machine::lane_main() {
 }
 
 /// The next warp that is to come, in the place of one that has ended.
-void Machine::start_warp(Warp& warp) {
+void Machine::start_warp(EmulatedWarp& warp) {
     const uint32_t warps_a_block = launch_.threads / 32;
     warp.block = to_come_.back() / warps_a_block;
     warp.first_thread = to_come_.back() % warps_a_block * 32;
     to_come_.pop_back();
     warp.live = warp.ready = 0xffffffffu;
     warp.waiting = warp.pending = 0;
-    for (Lane& lane : warp.lanes) {
-#if defined(__SANITIZE_ADDRESS__)
-        // A lane never returns from its first function, so that its frame is still marked.
-        __asan_unpoison_memory_region(lane.fiber.stack + kGuardBytes, kStackBytes - kGuardBytes);
-#endif
-        void** top = reinterpret_cast<void**>(lane.fiber.stack + kStackBytes) - 8;
+    for (EmulatedLane& lane : warp.lanes) {
+        forget_frames(lane.fiber);
+        void** top = reinterpret_cast<void**>(lane.fiber.stack + lane.fiber.stack_bytes) - 8;
         std::fill_n(top, 8, nullptr); // six registers, where to go, and an end to the chain of frames
         top[6] = reinterpret_cast<void*>(&Machine::lane_main);
         lane.fiber.stack_pointer = top;
@@ -187,39 +147,33 @@ void Machine::start_warp(Warp& warp) {
 }
 
 /// From whoever runs to a lane.
-void Machine::switch_to(Lane& to) {
+void Machine::switch_to(EmulatedLane& to) {
     Fiber& from = lane_ == nullptr ? main_ : lane_->fiber;
     lane_ = &to;
     lane::thread_index.x = warp_->first_thread + static_cast<uint32_t>(&to - warp_->lanes.data());
     lane::block_index.x = warp_->block;
-#if defined(__SANITIZE_ADDRESS__)
-    __sanitizer_start_switch_fiber(&from.fake_stack, to.fiber.stack, kStackBytes);
-#endif
+    about_to_go(&from.fake_stack, to.fiber);
     switch_stack(&from.stack_pointer, to.fiber.stack_pointer);
-#if defined(__SANITIZE_ADDRESS__)
-    __sanitizer_finish_switch_fiber(from.fake_stack, nullptr, nullptr);
-#endif
+    came_from(from.fake_stack, main_);
 }
 
 /// From a lane back to run().
-void Machine::leave_lane([[maybe_unused]] bool for_good) {
+void Machine::leave_lane(bool for_good) {
     Fiber& from = lane_->fiber;
-#if defined(__SANITIZE_ADDRESS__)
-    __sanitizer_start_switch_fiber(for_good ? nullptr : &from.fake_stack, main_.stack, main_bytes_);
-#endif
+    about_to_go(for_good ? nullptr : &from.fake_stack, main_);
     switch_stack(&from.stack_pointer, main_.stack_pointer);
     std::abort(); // nobody goes on with it
 }
 
 /// Lets some lane go on, perhaps the one that runs. Returns when this one goes on.
 void Machine::go_on() {
-    Lane* next = choose_lane();
+    EmulatedLane* next = choose_lane();
     if (next == nullptr) return leave_lane(false);
     if (next != lane_) switch_to(*next);
 }
 
 /// Nothing when there is a fault.
-Lane* Machine::choose_lane() {
+EmulatedLane* Machine::choose_lane() {
     if (++steps_ > launch_.most_steps) fail("no end after " + std::to_string(launch_.most_steps) + " steps");
     if (!fault_.empty()) return nullptr;
     // Only a warp's own lanes can let it go on, so one that cannot never will.
@@ -253,7 +207,7 @@ std::string Machine::run(const EmulatedLaunch& launch, const std::function<void(
     const std::size_t at_once = one_of({1, 2, 3, 5, kMostWarps});
     for (std::size_t i = 0; i < at_once && !to_come_.empty(); ++i) start_warp(*slots_[i]);
     while (!warps_.empty()) {
-        if (Lane* next = choose_lane()) switch_to(*next);
+        if (EmulatedLane* next = choose_lane()) switch_to(*next);
         lane_ = nullptr;
         if (!fault_.empty()) break;
         if (warp_->live != 0) continue;
@@ -261,7 +215,8 @@ std::string Machine::run(const EmulatedLaunch& launch, const std::function<void(
         if (!to_come_.empty()) start_warp(*warp_);
     }
     if (!fault_.empty()) {
-        for (const Warp* warp : warps_) fault_ += warp == warp_ || steps_ > launch_.most_steps ? describe(*warp) : "";
+        for (const EmulatedWarp* warp : warps_)
+            fault_ += warp == warp_ || steps_ > launch_.most_steps ? describe(*warp) : "";
     }
     warps_.clear();
     to_come_.clear();
@@ -279,12 +234,12 @@ void Machine::fail(std::string what) {
 void Machine::step() { go_on(); }
 
 uint64_t Machine::meet(const Meeting& meeting) {
-    Warp& warp = *warp_;
-    Lane& lane = *lane_;
+    EmulatedWarp& warp = *warp_;
+    EmulatedLane& lane = *lane_;
     const uint32_t me = 1u << (lane::thread_index.x & 31u);
     lane.meeting = meeting;
     if ((meeting.mask & me) == 0) fail("a lane names a mask without itself");
-    if (meeting.kind == Kind::Shuffle && (meeting.mask >> meeting.source & 1) == 0) {
+    if (meeting.kind == MeetingKind::Shuffle && (meeting.mask >> meeting.source & 1) == 0) {
         fail("a lane asks for the value of one that its mask does not name");
     }
     warp.ready &= ~me;
@@ -302,29 +257,29 @@ uint64_t Machine::meet(const Meeting& meeting) {
 }
 
 /// All of `mask` have come.
-void Machine::hold_meeting(Warp& warp, uint32_t mask) {
+void Machine::hold_meeting(EmulatedWarp& warp, uint32_t mask) {
     uint32_t yes = 0;
     for_each_lane(mask, [&](unsigned k) { yes |= warp.lanes[k].meeting.value != 0 ? 1u << k : 0; });
     for_each_lane(mask, [&](unsigned k) {
-        Lane& lane = warp.lanes[k];
+        EmulatedLane& lane = warp.lanes[k];
         switch (lane.meeting.kind) {
-        case Kind::Ballot:
+        case MeetingKind::Ballot:
             lane.result = yes;
             break;
-        case Kind::All:
+        case MeetingKind::All:
             lane.result = yes == mask ? 1 : 0;
             break;
-        case Kind::Shuffle:
+        case MeetingKind::Shuffle:
             lane.result = warp.lanes[static_cast<unsigned>(lane.meeting.source)].meeting.value;
             break;
-        case Kind::MatchAny:
+        case MeetingKind::MatchAny:
             lane.result = 0;
             for_each_lane(mask, [&](unsigned j) {
                 lane.result |= warp.lanes[j].meeting.value == lane.meeting.value ? 1u << j : 0;
             });
             break;
-        case Kind::Sync:
-        case Kind::ActiveMask:
+        case MeetingKind::Sync:
+        case MeetingKind::ActiveMask:
             break;
         }
     });
@@ -333,7 +288,7 @@ void Machine::hold_meeting(Warp& warp, uint32_t mask) {
 }
 
 uint32_t Machine::wait_for_active_mask(const Meeting& meeting) {
-    Lane& lane = *lane_;
+    EmulatedLane& lane = *lane_;
     lane.meeting = meeting;
     // The same line of a source may be called from two places, so it is the calls that tell.
     for_each_call(lane, [&](const void* address) {
@@ -347,7 +302,7 @@ uint32_t Machine::wait_for_active_mask(const Meeting& meeting) {
 }
 
 /// To lanes that wait at the same call.
-void Machine::answer_active_mask(Warp& warp) {
+void Machine::answer_active_mask(EmulatedWarp& warp) {
     const uint32_t rank = random_.below(static_cast<uint32_t>(__builtin_popcount(warp.pending)));
     const uint32_t first = _pdep_u32(1u << rank, warp.pending);
     const uint64_t site = warp.lanes[static_cast<unsigned>(__builtin_ctz(first))].meeting.value;
@@ -359,103 +314,10 @@ void Machine::answer_active_mask(Warp& warp) {
     warp.ready |= together;
 }
 
-// ---- what a fault says
-
-template <class Do>
-void Machine::for_each_call(const Lane& lane, const Do& what) const {
-    const auto inside = [&](const void* p) {
-        return p >= lane.fiber.stack + kGuardBytes && p < lane.fiber.stack + kStackBytes;
-    };
-    for (void* const* frame = lane.meeting.frame; inside(frame) && frame[1] != nullptr;
-         frame = static_cast<void* const*>(frame[0])) {
-        what(frame[1]);
-    }
-}
-
-std::string text_of_lanes(uint32_t mask) {
-    std::string text;
-    for (unsigned k = 0; k < 32; ++k) {
-        if ((mask >> k & 1) == 0) continue;
-        unsigned last = k;
-        while (last < 31 && (mask >> (last + 1) & 1) != 0) ++last;
-        text += (text.empty() ? "" : ", ") + std::to_string(k);
-        if (last > k) text += "-" + std::to_string(last);
-        k = last;
-    }
-    return text;
-}
-
-std::string text_of_place(const Place& at) {
-    std::string_view file = at.file_name();
-    for (const char* folder : {"/src/", "/tests/"}) {
-        const std::size_t from = file.rfind(folder);
-        if (from != file.npos) file.remove_prefix(from + 1);
-    }
-    return std::string(file) + ":" + std::to_string(at.line());
-}
-
-std::string text_of_hex(uint64_t value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "0x%llx", static_cast<unsigned long long>(value));
-    return text;
-}
-
-std::string Machine::describe_calls(const Lane& lane) const {
-    std::string text;
-    for_each_call(lane, [&](const void* address) {
-        text += " " + text_of_hex(static_cast<uint64_t>(static_cast<const char*>(address) - &__executable_start));
-    });
-    return text;
-}
-
-/// What the lanes of a meeting that have not come to it do instead.
-std::string Machine::describe_missing(const Warp& warp, const Meeting& meeting) const {
-    uint32_t other_mask = 0, elsewhere = 0;
-    for_each_lane(meeting.mask & warp.live, [&](unsigned k) {
-        const Meeting& other = warp.lanes[k].meeting;
-        const bool waits = ((warp.waiting | warp.pending) >> k & 1) != 0;
-        if (waits && other.kind == meeting.kind && other.mask == meeting.mask) return;
-        (waits && other.kind == meeting.kind ? other_mask : elsewhere) |= 1u << k;
-    });
-    std::string text;
-    const uint32_t ended = meeting.mask & ~warp.live;
-    if (ended != 0) text += "; lanes " + text_of_lanes(ended) + " of it have ended";
-    if (other_mask != 0) text += "; lanes " + text_of_lanes(other_mask) + " of it name another mask";
-    if (elsewhere != 0) text += "; lanes " + text_of_lanes(elsewhere) + " of it are elsewhere";
-    return text;
-}
-
-std::string Machine::describe(const Warp& warp) const {
-    std::string text = "\nblock " + std::to_string(warp.block) + ", threads from " + std::to_string(warp.first_thread);
-    const uint32_t at_rest = warp.waiting | warp.pending;
-    for (uint32_t left = at_rest; left != 0;) {
-        const Lane& first = warp.lanes[static_cast<unsigned>(__builtin_ctz(left))];
-        const Meeting& meeting = first.meeting;
-        const std::string calls = describe_calls(first);
-        uint32_t same = 0;
-        for_each_lane(left, [&](unsigned k) {
-            const Meeting& other = warp.lanes[k].meeting;
-            const bool alike = other.kind == meeting.kind && other.mask == meeting.mask &&
-                               text_of_place(other.at) == text_of_place(meeting.at) &&
-                               describe_calls(warp.lanes[k]) == calls;
-            same |= alike ? 1u << k : 0;
-        });
-        left &= ~same;
-        text += "\n  lanes " + text_of_lanes(same) + " wait at " + kNames[static_cast<int>(meeting.kind)];
-        if (meeting.kind != Kind::ActiveMask) text += " of mask " + text_of_hex(meeting.mask);
-        text += ", " + text_of_place(meeting.at);
-        if (meeting.kind != Kind::ActiveMask) text += describe_missing(warp, meeting);
-        text += "\n    addr2line -Cfipe build/bin/pertev_tests" + calls;
-    }
-    if (warp.live != 0xffffffffu) text += "\n  lanes " + text_of_lanes(~warp.live) + " have ended";
-    if ((warp.live & ~at_rest) != 0) text += "\n  lanes " + text_of_lanes(warp.live & ~at_rest) + " could go on";
-    return text;
-}
-
-uint64_t meet(Kind kind, uint32_t mask, uint64_t value, int source, const Place& at, void* frame) {
+uint64_t meet(MeetingKind kind, uint32_t mask, uint64_t value, int source, const Place& at, void* frame) {
     if (!machine().is_running()) std::abort(); // no lane calls
     const Meeting meeting = {kind, mask, value, source, at, static_cast<void* const*>(frame)};
-    return kind == Kind::ActiveMask ? machine().wait_for_active_mask(meeting) : machine().meet(meeting);
+    return kind == MeetingKind::ActiveMask ? machine().wait_for_active_mask(meeting) : machine().meet(meeting);
 }
 
 } // namespace
@@ -468,21 +330,23 @@ namespace lane {
 
 // Each is a call of its own, whose frame says where it was called from.
 [[gnu::noinline]] uint32_t active_mask(Place at) {
-    return static_cast<uint32_t>(meet(Kind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(meet(MeetingKind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
 }
 [[gnu::noinline]] uint32_t ballot(uint32_t mask, bool mine, Place at) {
-    return static_cast<uint32_t>(meet(Kind::Ballot, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(meet(MeetingKind::Ballot, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)));
 }
 [[gnu::noinline]] bool all(uint32_t mask, bool mine, Place at) {
-    return meet(Kind::All, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)) != 0;
+    return meet(MeetingKind::All, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)) != 0;
 }
 [[gnu::noinline]] uint32_t match_any(uint32_t mask, uint64_t key, Place at) {
-    return static_cast<uint32_t>(meet(Kind::MatchAny, mask, key, 0, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(meet(MeetingKind::MatchAny, mask, key, 0, at, __builtin_frame_address(0)));
 }
 [[gnu::noinline]] uint32_t shuffle(uint32_t mask, uint32_t value, int source, Place at) {
-    return static_cast<uint32_t>(meet(Kind::Shuffle, mask, value, source & 31, at, __builtin_frame_address(0)));
+    return static_cast<uint32_t>(meet(MeetingKind::Shuffle, mask, value, source & 31, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] void sync(uint32_t mask, Place at) { meet(Kind::Sync, mask, 0, 0, at, __builtin_frame_address(0)); }
+[[gnu::noinline]] void sync(uint32_t mask, Place at) {
+    meet(MeetingKind::Sync, mask, 0, 0, at, __builtin_frame_address(0));
+}
 void step() { machine().step(); }
 
 } // namespace lane
