@@ -72,8 +72,7 @@ void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t bl
     uint32_t pool = 0;
     const std::string fault =
         run(EmulatedBatch{expected.rays.data(), hits.data(), stores.data(), count, &pool, blocks, seed, lanes});
-    CHECK(fault == "");
-    if (!fault.empty()) return;
+    REQUIRE(fault == "");
     CHECK(std::count(stores.begin(), stores.end() - 1, 1u) == count);
     CHECK(stores[count] == 0);
     const std::vector<Hit> want = as_stored(expected.hits, expected.rays, walk.any);

@@ -6,8 +6,8 @@
 //
 // One definition: such code must never be linked with the host's of the same name. So from here on `pertev` is spelled
 // pertev_emulated, and whatever such a file compiles lies in that namespace, which nothing else has; views of the
-// host's are handed over by address (emulated_walks.cpp). In the object no symbol of the host's namespace may be weak:
-//   nm -C OBJECT | grep ' [VWu] .*pertev::'    says nothing
+// host's are handed over by address (emulated_walks.cpp). In the object no symbol of the host's namespace is weak:
+//   nm -C OBJECT | grep ' [VWu] ' | grep pertev::    shows nothing but templates of std
 // Compiled with frame pointers (tests/CMakeLists.txt): __activemask() tells places apart by the calls that led there.
 
 #if defined(HD)

@@ -103,6 +103,8 @@ const Device& seen_by_device(const Host* host) {
     return *reinterpret_cast<const Device*>(host);
 }
 
+constexpr uint64_t kMostStepsARay = 20'000; // some 5 times as many as seen
+
 /// Runs a thread's part in all threads.
 template <class Run>
 std::string run_threads(const EmulatedBatch& batch, bool one_a_thread, const Run& run) {
@@ -111,7 +113,10 @@ std::string run_threads(const EmulatedBatch& batch, bool one_a_thread, const Run
     const device::Batch rays = {reinterpret_cast<const device::Ray*>(batch.rays),
                                 reinterpret_cast<device::Hit*>(batch.hits), batch.stores, batch.count,
                                 reinterpret_cast<device::LaneCounts*>(batch.lanes)};
-    return run_warps({.blocks = one_a_thread ? needed : batch.blocks, .threads = threads, .seed = batch.seed},
+    return run_warps({.blocks = one_a_thread ? needed : batch.blocks,
+                      .threads = threads,
+                      .seed = batch.seed,
+                      .most_steps = 1'000'000 + kMostStepsARay * batch.count},
                      [&] { run(rays, batch.pool); });
 }
 

@@ -3,7 +3,8 @@
 // A GPU's warps on the host, for tests: every lane is a fiber with a stack of its own, and lanes meet only where CUDA
 // says that they do. What CUDA leaves open is chosen at random from a seed: which lane and which warp goes on next, how
 // many warps are there at once, and what __activemask() answers: any lanes at that same call, sometimes all that can
-// come, sometimes fewer, sometimes one. Stricter than CUDA: a mask may not name lanes that have ended.
+// come, sometimes fewer, sometimes one. Stricter than CUDA: a mask may not name lanes that have ended. As in PTX,
+// lanes may come to a meeting from different places of the source.
 //
 // What would be undefined or hang on a GPU is reported as a fault that tells which lanes wait where, with which masks.
 // A lane that spins without meeting anyone is not noticed. tests/support/emulated_device.h lets the renderer's own
