@@ -50,12 +50,12 @@ void for_each_lane(uint32_t mask, const Do& what) {
 /// Return addresses, from that of the call a lane waits in to the one that the lane began with.
 template <class Do>
 void for_each_call(const EmulatedLane& lane, const Do& what) {
-    const auto inside = [&](const void* p) {
-        return p >= lane.fiber.stack && p < lane.fiber.stack + lane.fiber.stack_bytes;
-    };
-    for (void* const* frame = lane.meeting.frame; inside(frame) && frame[1] != nullptr;
+    const void *above = lane.fiber.stack, *end = lane.fiber.stack + lane.fiber.stack_bytes - 2 * sizeof(void*);
+    // The bounds are for a caller that was compiled without frame pointers.
+    for (void* const* frame = lane.meeting.frame; frame > above && frame <= end && frame[1] != nullptr;
          frame = static_cast<void* const*>(frame[0])) {
         what(frame[1]);
+        above = frame;
     }
 }
 
