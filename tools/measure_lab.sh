@@ -38,7 +38,7 @@ for part in "${parts[@]}"; do
     switches) lab switches sponza "${record[@]}" --structures sbvh,kd-sah,octree --rta both --order both --tests both ;;
     peers)
         for scene in sponza bunny forest; do
-            lab "peers-$scene" $scene "${record[@]}" --structures binned,sbvh --rta on --tests both \
+            lab "peers-$scene" $scene "${record[@]}" --structures binned,sbvh --rta on --order both --tests both \
                 --walks while-while,speculative,wide8,compressed --runs 25
         done
         ;;

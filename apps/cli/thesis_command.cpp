@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "image/auto_exposure.h"
 #include "image/tone_map_image.h"
+#include "image/write_png.h"
 #include "integrators/render_picture.h"
 #include "lab/thesis.h"
 #include "lab/write_tables.h"
@@ -70,6 +71,13 @@ void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& set
 
 void write_files(const std::filesystem::path& folder, const ThesisReport& thesis) {
     write_text(folder / "thesis.html", html_of(thesis));
+    for (const ThesisFigure& figure : figures_of(thesis)) {
+        if (!figure.svg.empty()) write_text(folder / fmt::format("figure-{}.svg", figure.number), figure.svg);
+    }
+    for (std::size_t i = 0; i < thesis.global.size(); ++i) {
+        write_png(folder / fmt::format("figure-6.{}-local.png", 7 + i), thesis.local[i].image);
+        write_png(folder / fmt::format("figure-6.{}-global.png", 7 + i), thesis.global[i].image);
+    }
     for (std::size_t i = 0; i < thesis.scenes.size(); ++i) { // numbered: both may have one name
         const std::string name = fmt::format("thesis-{}-{}", i + 1, thesis.scenes[i].scene);
         write_text(folder / (name + ".csv"), csv_of(thesis.scenes[i]));

@@ -120,9 +120,9 @@ std::vector<std::string> notes_of(const ThesisReport& thesis) {
     return notes;
 }
 
-/// Frames a second over depth of the variants of these names, in all scenes; where there is nothing to draw, the
-/// reason.
-std::string figure_of(const ThesisReport& thesis, const std::string& title, const std::vector<std::string>& names) {
+/// Frames a second over depth of the variants of these names, in all scenes.
+ThesisFigure figure_of(const ThesisReport& thesis, const char* number, const std::string& title,
+                       const std::vector<std::string>& names) {
     std::vector<Curve> curves;
     bool has_variant = false;
     for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
@@ -136,12 +136,14 @@ std::string figure_of(const ThesisReport& thesis, const std::string& title, cons
             if (!curve.points.empty()) curves.push_back(std::move(curve));
         }
     }
-    const std::string svg = svg_curves(title, "depth", "frames/s", curves);
-    if (!svg.empty()) return svg;
-    const char* why = !has_variant     ? "needs a GPU"
-                      : curves.empty() ? "was not measured; the notes say why"
-                                       : "needs more than one depth; the tables have what there is";
-    return fmt::format("<p>{}: {}.</p>\n", html_text(title), why);
+    const std::string full = fmt::format("Figure {}: {}", number, title);
+    ThesisFigure figure = {number, full, svg_curves(full, "depth", "frames/s", curves), {}};
+    if (figure.svg.empty()) {
+        figure.missing = !has_variant     ? "needs a GPU"
+                         : curves.empty() ? "was not measured; the notes say why"
+                                          : "needs more than one depth; the tables have what there is";
+    }
+    return figure;
 }
 
 std::string html_of(const Table& table) {
@@ -203,6 +205,12 @@ std::vector<ThesisVariant> thesis_variants(bool is_cuda) {
              speculative(kFast, DynamicFetch)}};
 }
 
+std::vector<ThesisFigure> figures_of(const ThesisReport& thesis) {
+    return {figure_of(thesis, "6.9", "RTA with persistent speculative while-while", {"PSWW", "PSWW-R"}),
+            figure_of(thesis, "6.10", "speculative while-while, with and without RTA", {"SWW", "SWW-R"}),
+            figure_of(thesis, "6.11", "RTA with packets", {"PPacket", "PPacket-R", "Packet", "Packet-R"})};
+}
+
 std::string text_of(const ThesisReport& thesis) {
     std::string text;
     for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
@@ -234,9 +242,10 @@ std::string html_of(const ThesisReport& thesis) {
         body += "</ul>\n";
     }
     body += pictures_of(thesis);
-    body += figure_of(thesis, "Figure 6.9: RTA with persistent speculative while-while", {"PSWW", "PSWW-R"});
-    body += figure_of(thesis, "Figure 6.10: speculative while-while, with and without RTA", {"SWW", "SWW-R"});
-    body += figure_of(thesis, "Figure 6.11: RTA with packets", {"PPacket", "PPacket-R", "Packet", "Packet-R"});
+    for (const ThesisFigure& figure : figures_of(thesis)) {
+        body +=
+            figure.svg.empty() ? fmt::format("<p>{}: {}.</p>\n", html_text(figure.title), figure.missing) : figure.svg;
+    }
     for (const LabReport& report : thesis.scenes) body += "<p>" + html_text(about(report)) + "</p>\n";
     return html_page("Realtime photo-realistic rendering using modern GPU systems, chapter 6, measured anew", body);
 }

@@ -31,6 +31,16 @@ struct ThesisReport {
     std::vector<Picture> local, global;
 };
 
+struct ThesisFigure {
+    const char* number; // "6.9"
+    std::string title;
+    std::string svg;     // a file by itself; empty: there is nothing to draw,
+    std::string missing; // and why
+};
+
+/// Figures 6.9 to 6.11: frames a second over the depth of paths.
+std::vector<ThesisFigure> figures_of(const ThesisReport& thesis);
+
 /// Tables, and below them what has no figures and why, and how many rays A loses.
 std::string text_of(const ThesisReport& thesis);
 std::string html_of(const ThesisReport& thesis);

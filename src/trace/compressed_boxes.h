@@ -18,9 +18,7 @@
 // (2^121). A ray with |d_i| < 2^-72 moves along axis i, up to a hit, by less than 2^-72 t <= 2^-72 2^41 S = 2^-31 S,
 // far less than e; so a plane that the ray truly reaches only beyond the hit is not put before it.
 //
-// Least and greatest of three are taken of the bits as integers, which the device does in one instruction. For numbers
-// that are not negative that is the same; among negative ones the order is reversed, so an entry may come out too small
-// and an exit too large: a box is then entered in vain, never missed.
+// Least and greatest of three are taken of the bits as integers (ray_boxes.h).
 // The node: accel/bvh/compressed_bvh.h. The arithmetic was worked out for this file.
 
 #include <cstdint>
@@ -39,29 +37,12 @@ HD inline Ray guard_for_compressed(Ray ray) {
     return ray;
 }
 
-/// 2^15 + byte k of the word.
-HD inline float float_of_byte(uint32_t word, int k) {
+/// 2^15 + byte k of the word; `base` is kByteBase.
+HD inline float float_of_byte(uint32_t word, int k, uint32_t base) {
 #if PERTEV_ON_DEVICE
-    return float_of(__byte_perm(word, 0x47000000u, 0x7404u | static_cast<uint32_t>(k) << 4));
+    return float_of(__byte_perm(word, base, 0x7404u | static_cast<uint32_t>(k) << 4));
 #else
-    return float_of(0x47000000u | (word >> (8 * k) & 0xffu) << 8);
-#endif
-}
-
-HD inline float greatest_bits(float a, float b, float c) {
-    const int x = static_cast<int>(bits_of(a)), y = static_cast<int>(bits_of(b)), z = static_cast<int>(bits_of(c));
-#if PERTEV_ON_DEVICE
-    return float_of(static_cast<uint32_t>(__vimax3_s32(x, y, z)));
-#else
-    return float_of(static_cast<uint32_t>(max(max(x, y), z)));
-#endif
-}
-HD inline float least_bits(float a, float b, float c) {
-    const int x = static_cast<int>(bits_of(a)), y = static_cast<int>(bits_of(b)), z = static_cast<int>(bits_of(c));
-#if PERTEV_ON_DEVICE
-    return float_of(static_cast<uint32_t>(__vimin3_s32(x, y, z)));
-#else
-    return float_of(static_cast<uint32_t>(min(min(x, y), z)));
+    return float_of(base | (word >> (8 * k) & 0xffu) << 8);
 #endif
 }
 
@@ -111,8 +92,8 @@ HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, con
 #endif
     for (int s = 7; s >= 0; --s) {
         const int w = s / 4, k = s % 4;
-        const auto at = [](uint32_t word, int byte, float step, float add) {
-            return fma(float_of_byte(word, byte), step, add);
+        const auto at = [&node](uint32_t word, int byte, float step, float add) {
+            return fma(float_of_byte(word, byte, node.byte_base), step, add);
         };
         const float entry =
             greatest_bits(at(x.near_planes[w], k, x.step, x.near), at(y.near_planes[w], k, y.step, y.near),
@@ -128,14 +109,6 @@ HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, con
 #endif
     }
     return ~mask & 0xffu;
-}
-
-/// Bits 3 s, 3 s + 1, 3 s + 2 of the result are bit s of the mask.
-HD inline uint32_t spread_slots(uint32_t mask) {
-    mask = (mask | mask << 8) & 0x00f00fu;
-    mask = (mask | mask << 4) & 0x0c30c3u;
-    mask = (mask | mask << 2) & 0x249249u;
-    return mask * 7;
 }
 
 /// The bit of the slot that comes first for a ray with 1 / direction `inv`: least s ^ the ray's octant. `slots` is not

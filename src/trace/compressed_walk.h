@@ -12,7 +12,7 @@
 // RTA: boxes are compared with the nearest hit so far, at the node test. A group carries no distances, so nothing is
 // dropped at a pop: what was entered before the hit came near is fetched once more, and there all its boxes fail. On
 // Sponza those are 8 to 15 % of all nodes, and only an entry kept for each child, not one a group, would save them.
-// near_first off, and any hit: in the order of slots.
+// near_first off: in the order of slots.
 
 #include <cstdint>
 
@@ -28,11 +28,11 @@
 
 namespace pertev {
 
-// Triangles are tested while at least this share of the lanes that run together have some; theirs is 20. Counted for
-// warps of 32, not timed, on the second diffuse bounce in Sponza: 2.7 lanes test a triangle together where none are put
-// off, 7.4 by their rule at 20, 13 by this one at 40, while 25 of 32 test a node. From 35 to 50 the instructions a ray
-// takes change by 2 %.
-inline constexpr int kTestTrianglesPercent = 40;
+/// Triangles are tested while at least this many of `working` lanes have some: 13 of 32, about 40 %; theirs is 20 %.
+/// Counted for warps of 32, not timed, on the second diffuse bounce in Sponza: 2.7 lanes test a triangle together where
+/// none are put off, 7.4 by their rule at 20 %, 13 by this one at 40 %, while 25 of 32 test a node. From 35 to 50 % the
+/// instructions a ray takes change by 2 %. At least 1.
+HD inline int lanes_for_triangles(int working) { return (13 * working + 31) / 32; }
 
 /// The children of one node that are still to be entered.
 struct NodeGroup {
@@ -124,10 +124,10 @@ struct CompressedWalk {
     /// the visitor ended the walk.
     template <class Visitor, class Counter>
     HD static bool turn(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
-                        const Counter& counter, LaneMask lanes) {
-        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
-        if (!place.nodes.is_empty()) step_down<kNear>(bvh, ray, skip_beyond<kOptions>(visitor, ray), place, counter);
-        const int enough = (kTestTrianglesPercent * count_lanes(lanes) + 99) / 100; // at least 1
+                        const Counter& counter, LaneMask lanes, int working) {
+        if (!place.nodes.is_empty())
+            step_down<kOptions.near_first>(bvh, ray, skip_beyond<kOptions>(visitor, ray), place, counter);
+        const int enough = lanes_for_triangles(working);
         bool ended = false;
         while (count_lanes(ballot(lanes, !place.triangles.is_empty())) >= enough) { // all of `lanes` come to each vote
             if (place.triangles.is_empty()) continue;
@@ -154,7 +154,7 @@ private:
         counter.add_node(bvh.nodes + index);
         const CompressedBvhNode node = load_aligned(bvh.nodes + index);
         const uint32_t entered = enters_slots(ray, place.boxes, node, limit);
-        const uint32_t found = spread_slots(entered) & node.triangles;
+        const uint32_t found = triangles_of_slots(node, entered);
         if (place.triangles.is_empty()) {
             place.triangles = {node.triangle_base, node.triangles, found};
         } else if (found != 0) {
@@ -168,7 +168,7 @@ private:
                                  Visitor& visitor, const Counter& counter) {
         const uint32_t lowest = place.triangles.left & (0u - place.triangles.left);
         place.triangles.left ^= lowest;
-        const BvhTriangle* at = bvh.triangles + place.triangles.base + count_ones(place.triangles.all & (lowest - 1));
+        const BvhTriangle* at = bvh.triangles + (place.triangles.base + count_ones(place.triangles.all & (lowest - 1)));
         counter.add_triangle(at);
         const BvhTriangle triangle = load_aligned(at);
         TriangleHit hit;

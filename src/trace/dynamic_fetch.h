@@ -9,8 +9,9 @@
 // Such a walk has, besides what all have (trace/walk_scene.h),
 //   Place(Place::Slot[Place::kSlots])                  where a ray stands, done at first; is_done(), stop()
 //   start<Visitor>(tree, ray, place)                   puts the ray at the root
-//   turn(tree, ray, instance, place, visitor, counter, lanes)    takes it further; true when the visitor ended the
-//                                                      walk. `lanes` are those that come to this turn together
+//   turn(tree, ray, instance, place, visitor, counter, lanes, working)    takes it further; true when the visitor
+//                                                      ended the walk. `lanes` come to this turn together, `working`
+//                                                      of them with a ray on its way; to the others it does nothing
 //
 // Source: Aila, Laine, Karras, "Understanding the Efficiency of Ray Traversal on GPUs - Kepler and Fermi Addendum",
 // 2012.
@@ -82,11 +83,11 @@ __global__ void __launch_bounds__(kWalkThreads)
             }
         }
         if (ballot(kWarp, index != kNoRay) == 0) return; // then the pool is empty too
-        LaneMask working = ballot(kWarp, !place.is_done());
-        while (!place.is_done()) {
-            if (Walk::turn(tree, ray, kNoHit, place, search.visitor, counter, working)) place.stop();
-            working = ballot(working, !place.is_done()); // the lanes of a turn come here together, and only then part
-            if (!pool_is_empty && count_lanes(working) < Walk::Place::kRefillBelow) break;
+        const auto count_working = [&] { return count_lanes(ballot(kWarp, !place.is_done())); };
+        for (int working = count_working(); working != 0;) { // with all lanes, since votes of a whole warp cost least
+            if (Walk::turn(tree, ray, kNoHit, place, search.visitor, counter, kWarp, working)) place.stop();
+            working = count_working();
+            if (!pool_is_empty && working < Walk::Place::kRefillBelow) break;
         }
         if (index != kNoRay && place.is_done()) {
             rays.store(index, search.hit());

@@ -20,7 +20,6 @@ struct IfIfWalk {
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
         using Tests = TestsOf<kOptions>;
-        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
         const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
         const auto prepared = Tests::make_triangles(ray);
         typename WalkStack<kOptions.rta>::Slot slots[kMaxBvhDepth];
@@ -30,7 +29,8 @@ struct IfIfWalk {
             if (!(link & kLeafBit)) {
                 counter.add_node(bvh.nodes + link);
                 const BvhNode node = load_aligned(bvh.nodes + link);
-                link = step_down<kNear>(node, boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray), stack);
+                link =
+                    step_down<kOptions.near_first>(node, boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray), stack);
             }
             if (link != kNoLink && (link & kLeafBit)) {
                 bool last;

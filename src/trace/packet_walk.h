@@ -130,7 +130,6 @@ void walk_packet(const BvhNode* nodes, uint32_t root, const PacketBoxes& boxes, 
 template <WalkOptions kOptions, class Visitor, class Counter>
 class PacketTracer {
     using Tests = TestsOf<kOptions>;
-    static constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
 
 public:
     PacketTracer(const SceneBvhView& scene, const RayPacket& rays, std::array<Visitor, kPacketRays>& visitors,
@@ -169,17 +168,17 @@ private:
         alignas(32) float t_max[kPacketRays] = {};
         for_each(mask, [&](std::size_t k) { t_max[k] = rays[k].t_max; });
         unsigned here = mask; // those of the packet that came into this mesh and are not done
-        walk_packet<kNear>(bvh.nodes, bvh.root, boxes, kOptions.rta ? limits_ : t_max, here, counter_,
-                           [&](uint32_t link, unsigned in_leaf) {
-                               for_each(in_leaf, [&](std::size_t k) {
-                                   if (test_leaf<Tests>(bvh.triangles, link, rays[k], prepared[k], instance,
-                                                        visitors_[k], counter_of_ray(k))) {
-                                       alive_ &= ~(1u << k);
-                                       here &= ~(1u << k);
-                                   }
-                                   limits_[k] = visitors_[k].limit();
-                               });
-                           });
+        walk_packet<kOptions.near_first>(bvh.nodes, bvh.root, boxes, kOptions.rta ? limits_ : t_max, here, counter_,
+                                         [&](uint32_t link, unsigned in_leaf) {
+                                             for_each(in_leaf, [&](std::size_t k) {
+                                                 if (test_leaf<Tests>(bvh.triangles, link, rays[k], prepared[k],
+                                                                      instance, visitors_[k], counter_of_ray(k))) {
+                                                     alive_ &= ~(1u << k);
+                                                     here &= ~(1u << k);
+                                                 }
+                                                 limits_[k] = visitors_[k].limit();
+                                             });
+                                         });
     }
 
     auto counter_of_ray(std::size_t k) const {

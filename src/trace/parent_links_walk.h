@@ -23,7 +23,6 @@ struct ParentLinksWalk {
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
         using Tests = TestsOf<kOptions>;
-        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
         const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
         const auto prepared = Tests::make_triangles(ray);
         if (bvh.root & kLeafBit) {
@@ -38,12 +37,13 @@ struct ParentLinksWalk {
                 const uint32_t place = bvh.nodes[at].parent;
                 at = place & ~kSecondChildBit;
                 const int came_from = (place & kSecondChildBit) ? 1 : 0;
-                if (came_from == first_child<kNear>(bvh.nodes[at].split, ray.direction)) state = State::FromSibling;
+                if (came_from == first_child<kOptions.near_first>(bvh.nodes[at].split, ray.direction))
+                    state = State::FromSibling;
                 continue;
             }
             counter.add_node(bvh.nodes + at);
             const BvhNode node = load_aligned(bvh.nodes + at);
-            const int first = first_child<kNear>(node.split, ray.direction);
+            const int first = first_child<kOptions.near_first>(node.split, ray.direction);
             const bool second = (state == State::FromParent ? first : 1 - first) == 1;
             // Where the walk goes on if there is nothing beneath this child, or when that is done.
             const State after = state == State::FromParent ? State::FromSibling : State::FromChild;

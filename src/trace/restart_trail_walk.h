@@ -89,7 +89,6 @@ template <WalkOptions kOptions, class ShortStack, class Visitor, class Counter>
 HD inline bool walk_by_trail(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                              const Counter& counter) {
     using Tests = TestsOf<kOptions>;
-    constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
     const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
     const auto prepared = Tests::make_triangles(ray);
     RestartTrail trail;
@@ -100,7 +99,7 @@ HD inline bool walk_by_trail(const BvhView& bvh, const Ray& ray, uint32_t instan
             counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
             const float limit = skip_beyond<kOptions>(visitor, ray);
-            link = step_by_trail<kNear>(node, boxes, ray.t_min, limit, bvh.root, trail, stack);
+            link = step_by_trail<kOptions.near_first>(node, boxes, ray.t_min, limit, bvh.root, trail, stack);
         }
         if (link == kNoLink) return false;
         if (test_leaf<Tests>(bvh.triangles, link, ray, prepared, instance, visitor, counter)) return true;

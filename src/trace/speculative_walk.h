@@ -33,17 +33,16 @@ struct SpeculativeWalk {
     /// Down until all lanes that run together have found a leaf, and the leaves found. True when the visitor ended it.
     template <class Visitor, class Counter>
     HD static bool turn(const BvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
-                        const Counter& counter, LaneMask) {
-        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
+                        const Counter& counter, LaneMask, int) {
         uint32_t link = place.link, postponed = kNoLink;
         while (!(link & kLeafBit)) {
             counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
             const float limit = skip_beyond<kOptions>(visitor, ray);
-            link = step_down<kNear>(node, place.boxes, ray.t_min, limit, place.stack);
-            const bool at_leaf = (link & kLeafBit) && link != kNoLink;
-            if (all_lanes_here(at_leaf || postponed != kNoLink)) break;
-            if (at_leaf && postponed == kNoLink) {
+            link = step_down<kOptions.near_first>(node, place.boxes, ray.t_min, limit, place.stack);
+            const bool ends = (link & kLeafBit) != 0; // at a leaf, or nothing is left
+            if (all_lanes_here(ends || postponed != kNoLink)) break;
+            if (ends && link != kNoLink && postponed == kNoLink) {
                 postponed = link;
                 link = place.stack.pop(limit);
             }

@@ -23,12 +23,10 @@ struct ClosestVisitor {
 
     HD float limit() const { return best.t; }
     HD bool visit(uint32_t instance, uint32_t primitive, const TriangleHit& hit) {
-        if (hit.t > best.t) return false;
-        if (hit.t == best.t &&
-            (instance > best.instance || (instance == best.instance && primitive >= best.primitive))) {
-            return false;
-        }
-        if (accept(instance, primitive, hit.u, hit.v)) best = {hit.t, hit.u, hit.v, instance, primitive};
+        // Bits in place of branches: lanes of a warp that differ here would otherwise take turns.
+        const bool lower = (instance < best.instance) | ((instance == best.instance) & (primitive < best.primitive));
+        const bool first = (hit.t < best.t) | ((hit.t == best.t) & lower);
+        if (first && accept(instance, primitive, hit.u, hit.v)) best = {hit.t, hit.u, hit.v, instance, primitive};
         return false;
     }
 };

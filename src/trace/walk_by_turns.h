@@ -18,7 +18,8 @@ HD inline bool walk_by_turns(const typename Walk::Tree& tree, const Ray& ray, ui
     typename Walk::Place place(slots);
     Walk::template start<Visitor>(tree, ray, place);
     while (!place.is_done()) {
-        if (Walk::turn(tree, ray, instance, place, visitor, counter, lanes_here())) return true;
+        const LaneMask lanes = lanes_here();
+        if (Walk::turn(tree, ray, instance, place, visitor, counter, lanes, count_lanes(lanes))) return true;
     }
     return false;
 }

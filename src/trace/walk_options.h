@@ -15,6 +15,12 @@ struct WalkOptions {
     bool exact = true;      // ExactTests; off: FastTests
 };
 
+/// What an any-hit search is compiled with: it has no nearest hit to skip beyond, so its stack need hold no entries.
+constexpr WalkOptions for_any_hit(WalkOptions options) {
+    options.rta = false;
+    return options;
+}
+
 template <WalkOptions kOptions>
 using TestsOf = std::conditional_t<kOptions.exact, ExactTests, FastTests>;
 

@@ -100,7 +100,6 @@ inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uin
         float entry;
         uint32_t link, count;
     };
-    constexpr bool kNearFirst = kOptions.near_first && Visitor::kNearestFirst;
     Entry stack[kWideStackSize<kWideChildren>];
     int size = 0;
     const WideRay wide = make_wide_ray(TestsOf<kOptions>::make_boxes(ray, bvh.bounds_max_abs));
@@ -118,11 +117,11 @@ inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uin
                 const int base = size;
                 while (entered != 0) {
                     // The last one pushed is entered first: the nearest; else the one that the builder put first.
-                    const int k = kNearFirst ? __builtin_ctz(entered) : 31 - __builtin_clz(entered);
+                    const int k = kOptions.near_first ? __builtin_ctz(entered) : 31 - __builtin_clz(entered);
                     entered &= ~(1u << k);
                     const Entry next = {entries[k], node.child[k], node.count[k]};
                     int place = size++;
-                    if constexpr (kNearFirst) {
+                    if constexpr (kOptions.near_first) {
                         for (; place > base && stack[place - 1].entry < next.entry; --place)
                             stack[place] = stack[place - 1];
                     }
@@ -149,8 +148,8 @@ inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uin
 /// The one that pictures are made with. `bvh.wide` is there and the root is an inner node.
 template <class Visitor, class Counter>
 inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
-    return walk_wide<WalkOptions{}>(WideBvhView<kWideChildren>{bvh.wide, bvh.triangles, bvh.bounds_max_abs}, ray,
-                                    instance, visitor, counter);
+    return walk_wide<WalkOptions{.near_first = Visitor::kNearestFirst}>(
+        WideBvhView<kWideChildren>{bvh.wide, bvh.triangles, bvh.bounds_max_abs}, ray, instance, visitor, counter);
 }
 
 /// It as a walk of the laboratory; host only.

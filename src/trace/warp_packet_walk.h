@@ -27,7 +27,6 @@ struct WarpPacketWalk {
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
         using Tests = TestsOf<kOptions>;
-        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
         // An instance's rays are in a space of their own, but the tree is the same for all instances of a mesh.
         const LaneMask packet = lanes_with_same(lanes_here(), reinterpret_cast<uint64_t>(bvh.triangles));
         const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
@@ -62,7 +61,7 @@ struct WarpPacketWalk {
             const LaneMask into0 = ballot(packet, enters0), into1 = ballot(packet, enters1);
             if (into0 != 0 && into1 != 0) {
                 bool second = false; // child 1 first
-                if constexpr (kNear) {
+                if constexpr (kOptions.near_first) {
                     const int both = count_lanes(into0 & into1);
                     second =
                         both != 0 && 2 * count_lanes(ballot(packet, enters0 && enters1 && entry1 <= entry0)) >= both;

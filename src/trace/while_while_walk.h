@@ -59,13 +59,13 @@ struct WhileWhileWalk {
     /// Down to the next leaf, and its triangles. True when the visitor ended the walk.
     template <class Visitor, class Counter>
     HD static bool turn(const BvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
-                        const Counter& counter, LaneMask) {
-        constexpr bool kNear = kOptions.near_first && Visitor::kNearestFirst;
+                        const Counter& counter, LaneMask, int) {
         uint32_t link = place.link;
         while (!(link & kLeafBit)) {
             counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
-            link = step_down<kNear>(node, place.boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray), place.stack);
+            link = step_down<kOptions.near_first>(node, place.boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray),
+                                                  place.stack);
         }
         if (link != kNoLink) {
             if (test_leaf<Tests>(bvh.triangles, link, ray, place.prepared, instance, visitor, counter)) return true;

@@ -83,7 +83,6 @@ private:
     template <class Visitor>
     HD static void push_children(const WideBvhNode<kWidth>* node, const RayBoxes& boxes, float t_min, float t_limit,
                                  WalkStackEntry* stack, int& size) {
-        constexpr bool kNearFirst = kOptions.near_first && Visitor::kNearestFirst;
         const int base = size;
         for (int first = kWidth - 4; first >= 0; first -= 4) {
             float entries[4];
@@ -93,7 +92,7 @@ private:
             const auto push = [&](uint32_t entered, float entry, uint32_t link) {
                 if (entered == 0) return;
                 int place = size++;
-                if constexpr (kNearFirst) {
+                if constexpr (kOptions.near_first) {
                     for (; place > base && stack[place - 1].entry < entry; --place) stack[place] = stack[place - 1];
                 }
                 stack[place] = {link, entry};

@@ -239,18 +239,20 @@ TEST_CASE("walks with a stack visit the same, walks without one visit more, brut
     constexpr WalkOptions kAll = {};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     uint64_t by_stack = 0, by_short_stack = 0, by_trail = 0, far_first = 0, near_first = 0, wrong = 0;
+    const auto compare = [&]<WalkOptions kOptions>(const Ray& ray, bool any) {
+        const Visits stack = count_visits<StackWalk>(view_of(bvh), ray, any);
+        wrong += count_visits<WhileWhileWalk<kOptions>>(view_of(bvh), ray, any) != stack ? 1 : 0;
+        wrong += count_visits<SpeculativeWalk<kOptions>>(view_of(bvh), ray, any) != stack ? 1 : 0;
+        wrong += count_visits<WarpPacketWalk<kOptions>>(view_of(bvh), ray, any) != stack ? 1 : 0;
+        wrong += count_visits<IfIfWalk<kOptions>>(view_of(bvh), ray, any) != stack ? 1 : 0;
+        const Visits trail = count_visits<RestartTrailWalk<kOptions>>(view_of(bvh), ray, any);
+        const Visits some = count_visits<ShortStackWalk<kOptions>>(view_of(bvh), ray, any);
+        wrong += trail.triangles > stack.triangles || some.triangles > stack.triangles ? 1 : 0;
+        by_stack += stack.nodes, by_short_stack += some.nodes, by_trail += trail.nodes;
+    };
     for (const Ray& ray : rays_at_shells(2000)) {
-        for (const bool any : {false, true}) {
-            const Visits stack = count_visits<StackWalk>(view_of(bvh), ray, any);
-            wrong += count_visits<WhileWhileWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
-            wrong += count_visits<SpeculativeWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
-            wrong += count_visits<WarpPacketWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
-            wrong += count_visits<IfIfWalk<kAll>>(view_of(bvh), ray, any) != stack ? 1 : 0;
-            const Visits trail = count_visits<RestartTrailWalk<kAll>>(view_of(bvh), ray, any);
-            const Visits some = count_visits<ShortStackWalk<kAll>>(view_of(bvh), ray, any);
-            wrong += trail.triangles > stack.triangles || some.triangles > stack.triangles ? 1 : 0;
-            by_stack += stack.nodes, by_short_stack += some.nodes, by_trail += trail.nodes;
-        }
+        compare.template operator()<kAll>(ray, false);
+        compare.template operator()<for_any_hit({.near_first = false})>(ray, true); // as pictures have it
         near_first += count_visits<WhileWhileWalk<kAll>>(view_of(bvh), ray).nodes;
         far_first += count_visits<WhileWhileWalk<WalkOptions{.near_first = false}>>(view_of(bvh), ray).nodes;
         const Visits all = count_visits<BruteForceWalk<kAll>>(triangle_array_of(bvh), ray);

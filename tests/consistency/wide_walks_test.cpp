@@ -88,14 +88,14 @@ struct PostponingWalk {
     template <class Visitor, class Counter>
     static bool walk(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                      const Counter& counter) {
-        constexpr LaneMask kAlone = 1, kWarp = 0xffffffffu;
+        constexpr LaneMask kAlone = 1;
         typename Walk::Place::Slot slots[Walk::Place::kSlots];
         typename Walk::Place place(slots);
         Walk::template start<Visitor>(bvh, ray, place);
         for (uint32_t turns = 0; !place.is_done(); ++turns) {
             const bool waits = place.nodes.is_empty();
             const bool alone = waits || (!kAlways && hash_word(bits_of(ray.direction.x) + turns) % 4 == 0);
-            if (Walk::turn(bvh, ray, instance, place, visitor, counter, alone ? kAlone : kWarp)) return true;
+            if (Walk::turn(bvh, ray, instance, place, visitor, counter, kAlone, alone ? 1 : 32)) return true;
             most_entries = max(most_entries, place.size);
         }
         return false;

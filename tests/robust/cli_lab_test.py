@@ -15,6 +15,7 @@ import signal
 import struct
 import subprocess
 import time
+import xml.etree.ElementTree as ElementTree
 
 from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, main, write
 
@@ -353,6 +354,11 @@ class WhatIsWritten(LabTest):
                         self.assertEqual(len(of["frame_seconds"]), 2)
                 html = self.check_html(self.path("out/thesis.html"))
                 self.assertEqual(html.count("<img"), 4)
+                figures = glob.glob(self.path("out/figure-6.*.svg"))
+                self.assertEqual(len(figures), 2)
+                for figure in figures:
+                    ElementTree.parse(figure)
+                self.assertEqual(len(glob.glob(self.path("out/figure-6.[78]-*al.png"))), 4)
                 tables = glob.glob(self.path("out/*.csv"))
                 counts = [{row["scene_triangles"] for row in self.read_csv(table)} for table in tables]
                 self.assertCountEqual(counts, [{"38"}, {"12"}])

@@ -78,8 +78,6 @@ inline uint32_t __byte_perm(uint32_t x, uint32_t y, uint32_t selector) {
     }
     return result;
 }
-/// To the last bit, which a device does not promise: then hits by fast tests are the host's.
-inline float __fdividef(float a, float b) { return a / b; }
 
 struct alignas(16) [[gnu::may_alias]] uint4 {
     uint32_t x, y, z, w;

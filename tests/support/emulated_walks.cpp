@@ -158,7 +158,7 @@ using Rows = std::vector<EmulatedWalk>;
 
 template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, Way kWay>
 void add_way(const char* name, Rows& rows) {
-    using W = Walk<kOptions>;
+    using W = Walk<kAny ? device::for_any_hit(kOptions) : kOptions>;
     constexpr bool kPlain = kOptions.rta && kOptions.near_first && kOptions.exact;
     EmulatedWalk row = {name, kWays[static_cast<int>(kWay)], kOptions.rta, kOptions.near_first, kOptions.exact, kAny};
     row.run = run_tree<W, kAny, kWay>;

@@ -1,6 +1,7 @@
 #include "accel/bvh/compressed_bvh.h"
 
 #include <algorithm>
+#include <bit>
 
 #include <fmt/format.h>
 
@@ -169,9 +170,12 @@ CompressedBvh compress(const WideBvh<8>& wide) {
                 continue;
             }
             PERTEV_CHECK(from.count[k] >= 1 && from.count[k] <= kCompressedLeaf);
-            node.triangles |= ((1u << from.count[k]) - 1) << 3 * s;
-            const auto first = wide.triangles.begin() + (from.child[k] & ~kLeafBit);
-            result.triangles.insert(result.triangles.end(), first, first + from.count[k]);
+            node.triangles |= (((1u << 8 * from.count[k]) - 1) & 0x010101u) << s;
+        }
+        for (uint32_t left = node.triangles; left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            const uint32_t leaf = from.child[child_of_slot[bit % 8]] & ~kLeafBit;
+            result.triangles.push_back(wide.triangles[leaf + static_cast<uint32_t>(bit / 8)]);
         }
         set_boxes(node, boxes);
         result.nodes[at.compressed] = node;
@@ -223,19 +227,22 @@ private:
             const uint32_t exponent = node.exponents_and_inner >> 8 * axis & 0xff;
             if (exponent < kMinQuantumExponent || exponent > kMaxQuantumExponent) return "its grid is out of range";
         }
+        if (node.byte_base != kByteBase) return "its bytes have another base";
+        if (node.triangles >> 24 != 0) return "its leaves are too large";
         uint32_t child = node.child_base;
-        uint64_t triangle = node.triangle_base;
         for (int slot = 0; slot < 8; ++slot) {
-            const uint32_t run = node.triangles >> 3 * slot & 7;
-            if (run != 0 && run != 1 && run != 3 && run != 7) return fmt::format("slot {} counts wrongly", slot);
+            const uint32_t run = node.triangles >> slot & 0x010101u;
+            if (run != 0 && run != 1 && run != 0x0101 && run != 0x010101)
+                return fmt::format("slot {} counts wrongly", slot);
             if (inner_slots(node) >> slot & 1) {
                 if (run != 0) return fmt::format("slot {} is a leaf and a node", slot);
                 ways_.push_back({child++, at, slot, ways_[static_cast<std::size_t>(at)].depth + 1});
             }
-            for (uint32_t left = run; left != 0; left >>= 1) {
-                std::string fault = check_triangle(triangle++, at, slot);
-                if (!fault.empty()) return fault;
-            }
+        }
+        uint64_t triangle = node.triangle_base;
+        for (uint32_t left = node.triangles; left != 0; left &= left - 1) {
+            std::string fault = check_triangle(triangle++, at, std::countr_zero(left) % 8);
+            if (!fault.empty()) return fault;
         }
         return {};
     }

@@ -4,8 +4,8 @@
 // children. Five loads of 16 bytes fetch eight boxes.
 //
 // Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
-// sections 3 and 4. Unlike theirs, a node says which triangles its leaves have in one word of 24 bits, three a child,
-// so that a walk turns a mask of children into one of triangles without asking child by child. A child's place (slot)
+// sections 3 and 4. Unlike theirs, a node says which triangles its leaves have in one word of three masks of children,
+// so that a walk turns a mask of children into one of triangles by a multiplication. A child's place (slot)
 // tells where it lies: the one in slot s comes early for rays that travel into octant s (bit 0: x decreases, bit 1: y,
 // bit 2: z), so a ray of octant r takes slots in ascending order of s ^ r and sorts nothing.
 
@@ -25,20 +25,27 @@ inline constexpr int kCompressedLeaf = 3; // triangles of a leaf at most
 // 2^-80: then the quantum divided by a ray's direction is a normal float. 2^34: 255 of them span [-2^40, 2^40].
 inline constexpr uint32_t kMinQuantumExponent = 127 - 80, kMaxQuantumExponent = 127 + 34;
 
+inline constexpr uint32_t kByteBase = 0x47000000u; // as a float 2^15; with a byte q in bits 8 to 15, 2^15 + q
+
 struct alignas(16) CompressedBvhNode {
     float origin[3];              // the lower corner of what it holds
     uint32_t exponents_and_inner; // bits 8 a .. 8 a + 7: exponent of axis a's quantum, as in a float; 24 + s: slot s is
                                   // an inner node
     uint32_t child_base = 0;      // the inner children's nodes, in the order of slots
-    uint32_t triangle_base = 0;   // the leaves' triangles, in the order of slots
-    uint32_t triangles = 0;       // bit 3 s + k: slot s is a leaf of more than k triangles
-    uint32_t unused = 0;
+    uint32_t triangle_base = 0;   // the leaves' triangles, in the order of the bits of `triangles`
+    uint32_t triangles = 0;       // bit 8 k + s: slot s is a leaf of more than k triangles
+    uint32_t byte_base = kByteBase; // read from here, it is in a register where a walk's byte permutations need it;
+                                    // written in the code, each of them would first have its pattern moved to one
     uint32_t planes[6][2]; // lower x, upper x, lower y, ... in quanta from the origin; byte s % 4 of word s / 4 is slot
                            // s. Empty slots: 255 to 0; what a test says of them is masked out
 };
 static_assert(sizeof(CompressedBvhNode) == 80);
 
 HD inline uint32_t inner_slots(const CompressedBvhNode& node) { return node.exponents_and_inner >> 24; }
+/// The bits in `triangles` of all triangles of these slots.
+HD inline uint32_t triangles_of_slots(const CompressedBvhNode& node, uint32_t slots) {
+    return node.triangles & slots * 0x010101u;
+}
 HD inline float quantum(const CompressedBvhNode& node, int axis) {
     return float_of((node.exponents_and_inner >> (8 * axis) & 0xff) << 23);
 }

@@ -83,10 +83,11 @@ void count_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork
 
 template <WalkOptions kOptions, bool kAny>
 void add_rows(std::vector<WalkKernel>& rows) {
+    constexpr WalkOptions kCompiled = kAny ? for_any_hit(kOptions) : kOptions;
     rows.push_back({WalkKind::Wide8Simd, kOptions, Distribution::OneAThread, kAny, false, true,
-                    trace_simd<kOptions, kAny>, count_simd<kOptions, kAny>, nullptr, nullptr});
+                    trace_simd<kCompiled, kAny>, count_simd<kCompiled, kAny>, nullptr, nullptr});
     rows.push_back({WalkKind::Packet, kOptions, Distribution::OneAThread, kAny, false, true,
-                    trace_packets<kOptions, kAny>, count_packets<kOptions, kAny>, nullptr, nullptr});
+                    trace_packets<kCompiled, kAny>, count_packets<kCompiled, kAny>, nullptr, nullptr});
 }
 
 template <WalkOptions kOptions>

@@ -141,8 +141,7 @@ template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kDynamic
 void add_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     constexpr bool kLanes = kOptions.near_first && kOptions.exact;
     add_rows<Walk<kOptions>, false, kDynamic, kLanes>(kind, kOptions, rows);
-    // An any-hit search has no nearest hit to skip beyond, so RTA changes nothing there.
-    if constexpr (kOptions.rta) add_rows<Walk<kOptions>, true, kDynamic, kLanes>(kind, kOptions, rows);
+    if constexpr (kOptions.rta) add_rows<Walk<for_any_hit(kOptions)>, true, kDynamic, kLanes>(kind, kOptions, rows);
 }
 
 /// Every useful set of switches: fast tests only with everything else on.
