@@ -1,7 +1,8 @@
 #pragma once
 
 // HD marks a function that runs on the host and in CUDA device code alike: no allocation, exceptions, globals,
-// virtual calls or recursion in it. PERTEV_ON_DEVICE is 1 in the device pass.
+// virtual calls or recursion in it. PERTEV_HAS_KERNELS is 1 where kernels are compiled, PERTEV_ON_DEVICE in the device
+// pass. Both are where a test emulates the device (PERTEV_EMULATED_WARPS, tests/support/emulated_device.h).
 
 #if defined(__CUDACC__)
 #define HD __host__ __device__
@@ -9,7 +10,13 @@
 #define HD
 #endif
 
-#if defined(__CUDA_ARCH__)
+#if defined(__CUDACC__) || defined(PERTEV_EMULATED_WARPS)
+#define PERTEV_HAS_KERNELS 1
+#else
+#define PERTEV_HAS_KERNELS 0
+#endif
+
+#if defined(__CUDA_ARCH__) || defined(PERTEV_EMULATED_WARPS)
 #define PERTEV_ON_DEVICE 1
 #else
 #define PERTEV_ON_DEVICE 0

@@ -3,12 +3,13 @@
 // The body of launch(): included by the .cu files that instantiate stages, and by nothing else. A .cpp that saw it
 // would make a second, CPU-only copy of the same weak symbol, and the linker may pick that one.
 
+#include "base/host_device.h"
 #include "base/parallel_for.h"
 #include "device/launch.h"
 
 namespace pertev {
 
-#if defined(__CUDACC__)
+#if PERTEV_HAS_KERNELS
 template <class Stage>
 __global__ void __launch_bounds__(128) run_stage(Stage stage, uint32_t count) {
     // 64-bit on purpose: blocks * threads passes 2^32 for large queues.

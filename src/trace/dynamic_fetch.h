@@ -19,6 +19,7 @@
 #include <cstdint>
 
 #include "base/error.h"
+#include "base/host_device.h"
 #include "base/parallel_for.h"
 #include "device/queue.h"
 #include "trace/kernel_limits.h"
@@ -52,7 +53,7 @@ struct RaySearch<true> {
     HD Hit hit() const { return {.t = 0, .instance = visitor.found ? 0u : kNoHit}; }
 };
 
-#if defined(__CUDACC__)
+#if PERTEV_HAS_KERNELS
 
 template <class Walk, bool kAny, class Rays, class Counter>
 __global__ void __launch_bounds__(kWalkThreads)

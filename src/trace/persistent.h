@@ -10,13 +10,14 @@
 #include <cstdint>
 
 #include "base/error.h"
+#include "base/host_device.h"
 #include "base/parallel_for.h"
 #include "device/queue.h"
 #include "trace/kernel_limits.h"
 
 namespace pertev {
 
-#if defined(__CUDACC__)
+#if PERTEV_HAS_KERNELS
 
 /// The next `wanted` indices of a pool, for the warp whose lanes are all here: the first of them.
 __device__ inline uint32_t fetch_from_pool(uint32_t* pool, uint32_t wanted) {

@@ -31,7 +31,7 @@ struct ExactTests {
 
 /// 1 / x, to about one unit in the last place on the device, where denormal numbers are 0.
 HD inline float fast_reciprocal(float x) {
-#if PERTEV_ON_DEVICE
+#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
     float r;
     asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(x));
     return r;

@@ -60,7 +60,9 @@ HD inline LaneMask ballot(LaneMask lanes, bool mine) {
 
 /// The lanes of the warp before this one. Asked of the hardware each time: kept, it would take a register.
 HD inline LaneMask lanes_before() {
-#if PERTEV_ON_DEVICE
+#if defined(PERTEV_EMULATED_WARPS)
+    return emulated_lanes_before();
+#elif PERTEV_ON_DEVICE
     LaneMask lanes;
     asm volatile("mov.u32 %0, %%lanemask_lt;" : "=r"(lanes));
     return lanes;

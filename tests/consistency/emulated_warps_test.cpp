@@ -1,0 +1,236 @@
+// The code that only a GPU runs gives the hits that the host's walks give, whatever a warp does: persistent threads,
+// dynamic fetch, packets of a warp, triangles and leaves put off, counts of live lanes. It runs on emulated warps
+// (tests/support/emulated_warp.h): no vote may name a lane that does not come, each ray is stored once, the pool ends
+// where it must. A failure tells the seed, which replays it.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "accel/bvh/build_bvh.h"
+#include "accel/bvh/compressed_bvh.h"
+#include "tests/support/check_walk.h"
+#include "tests/support/emulated_walks.h"
+#include "tests/support/instanced_scene.h"
+#include "tests/support/nasty_meshes.h"
+#include "tests/support/options.h"
+#include "trace/compressed_walk.h"
+#include "trace/lane_counter.h"
+#include "trace/while_while_walk.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr uint32_t kThreads = 128; // a block
+
+// AddressSanitizer takes twenty times as long.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr uint32_t kRays = 67, kMostRays = 203, kFew = 1;
+#else
+constexpr uint32_t kRays = 331, kMostRays = 2000, kFew = 3;
+#endif
+
+/// The host's hits as a batch stores them.
+std::vector<Hit> as_stored(std::vector<Hit> hits, const std::vector<Ray>& rays, bool any) {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const bool found = hits[i].instance != kNoHit;
+        if (any) {
+            hits[i] = {.t = 0, .instance = found ? 0 : kNoHit};
+        } else if (!found) {
+            hits[i].t = rays[i].t_max;
+        }
+    }
+    return hits;
+}
+
+struct Expected {
+    const std::vector<Ray>& rays;
+    const std::vector<Hit>& hits; // the host's closest
+};
+
+/// Runs a batch on warps, of `blocks` blocks where they share a pool, and holds what it stored to what is expected.
+template <class Run>
+void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t blocks, uint32_t seed, const Run& run,
+                 LaneCounts* lanes = nullptr) {
+    const std::string way = walk.distribution;
+    const auto count = static_cast<uint32_t>(expected.rays.size());
+    CAPTURE(std::string(walk.walk));
+    CAPTURE(way);
+    CAPTURE(walk.rta);
+    CAPTURE(walk.exact);
+    CAPTURE(walk.any);
+    CAPTURE(walk.cut_outs);
+    CAPTURE(count);
+    CAPTURE(blocks);
+    CAPTURE(seed);
+    std::vector<Hit> hits(count, Hit{.t = -1});
+    std::vector<uint32_t> stores(count + 1);
+    uint32_t pool = 0;
+    const std::string fault =
+        run(EmulatedBatch{expected.rays.data(), hits.data(), stores.data(), count, &pool, blocks, seed, lanes});
+    REQUIRE(fault == "");
+    CHECK(std::count(stores.begin(), stores.end() - 1, 1u) == count);
+    CHECK(stores[count] == 0);
+    const std::vector<Hit> want = as_stored(expected.hits, expected.rays, walk.any);
+    const auto wrong = std::mismatch(hits.begin(), hits.end(), want.begin());
+    if (wrong.first != hits.end()) {
+        const auto i = static_cast<std::size_t>(wrong.first - hits.begin());
+        FAIL_CHECK("ray ", i, ": ", text_of(expected.rays[i]), " t ", hits[i].t, " want ", want[i].t);
+    }
+    const uint32_t warps = blocks * (kThreads / 32), fetches = (count + 31) / 32;
+    if (way == "one a thread") CHECK(pool == 0);
+    if (way == "persistent") CHECK(pool == 32 * (fetches + warps)); // each warp asks once more than there is work for
+    if (way == "dynamic fetch") {
+        CHECK(pool >= count);
+        CHECK(pool <= max(count, 1u) - 1 + 32 * warps); // only the last fetch of a warp may lead beyond
+    }
+}
+
+/// The host's hits by the same tests; exact ones are those of every walk.
+struct HostHits {
+    std::vector<Hit> exact, cut_outs, fast_binary, fast_compressed;
+
+    HostHits(const BvhView& binary, const CompressedBvhView& compressed, const std::vector<Ray>& rays) {
+        constexpr WalkOptions kFast = {.exact = false};
+        for (const Ray& ray : rays) {
+            trace_closest(SingleTree<BvhView>{binary}, ray, AcceptAll{}, exact.emplace_back());
+            trace_closest(SingleTree<BvhView>{binary}, ray, AcceptSome{}, cut_outs.emplace_back());
+            trace_closest<WhileWhileWalk<kFast>>(SingleTree<BvhView>{binary}, ray, AcceptAll{},
+                                                 fast_binary.emplace_back());
+            trace_closest<CompressedWalk<kFast>>(SingleTree<CompressedBvhView>{compressed}, ray, AcceptAll{},
+                                                 fast_compressed.emplace_back());
+        }
+    }
+    const std::vector<Hit>& of(const EmulatedWalk& walk) const {
+        if (walk.cut_outs) return cut_outs;
+        return walk.exact ? exact : std::string(walk.walk) == "compressed" ? fast_compressed : fast_binary;
+    }
+};
+
+} // namespace
+
+TEST_CASE("on warps, every walk by every way of handing out rays gives each ray its hit, once") {
+    const uint32_t rounds = static_cast<uint32_t>(effort(1, 40));
+    uint32_t seed = 0;
+    for (const NastyMesh& c : nasty_meshes(500)) {
+        CAPTURE(std::string(c.name));
+        const bool has_ties = c.extent != 1 || std::string(c.name).find("soup") != 0;
+        const Bvh bvh = build_bvh(c.triangles);
+        const CompressedBvh compressed = make_compressed_bvh(bvh);
+        const BvhView binary_view = view_of(bvh);
+        const CompressedBvhView compressed_view = view_of(compressed);
+        for (uint32_t round = 0; round < rounds; ++round) {
+            const std::vector<Ray> rays = nasty_rays(kRays, c, 7 + round);
+            const HostHits host(binary_view, compressed_view, rays);
+            for (const EmulatedWalk& walk : emulated_walks()) {
+                // By fast tests what is hit at a tie depends on what was skipped before.
+                if (walk.run == nullptr || walk.counts_lanes || (!walk.exact && has_ties)) continue;
+                check_batch(walk, {rays, host.of(walk)}, 2, ++seed, [&](const EmulatedBatch& batch) {
+                    return walk.run({&binary_view, &compressed_view}, batch);
+                });
+            }
+        }
+    }
+}
+
+TEST_CASE("so they do for any number of rays and of warps") {
+    const NastyMesh mesh = nasty_meshes()[3];
+    const Bvh bvh = build_bvh(mesh.triangles);
+    const CompressedBvh compressed = make_compressed_bvh(bvh);
+    const BvhView binary_view = view_of(bvh);
+    const CompressedBvhView compressed_view = view_of(compressed);
+    uint32_t seed = 0;
+    struct Size {
+        uint32_t rays, blocks;
+    };
+    const Size sizes[] = {{0, 1},  {1, 1},  {1, 3},   {5, 2},   {31, 1},
+                          {32, 1}, {33, 2}, {100, 4}, {257, 9}, {kMostRays, 3}};
+    for (const auto [count, blocks] : sizes) {
+        const std::vector<Ray> rays = nasty_rays(count, mesh, 3);
+        const HostHits host(binary_view, compressed_view, rays);
+        for (const EmulatedWalk& walk : emulated_walks()) {
+            if (walk.run == nullptr || walk.counts_lanes) continue;
+            const uint32_t rounds = static_cast<uint32_t>(effort(count < 1000 ? kFew : 1, 100));
+            for (uint32_t round = 0; round < rounds; ++round) {
+                check_batch(walk, {rays, host.of(walk)}, blocks, ++seed, [&](const EmulatedBatch& batch) {
+                    return walk.run({&binary_view, &compressed_view}, batch);
+                });
+            }
+        }
+    }
+}
+
+TEST_CASE("so they do over instances, where rays of a warp come to different meshes") {
+    const InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(kRays, 20'011)));
+    std::vector<BvhView> views;
+    std::vector<CompressedBvh> compressed;
+    std::vector<CompressedBvhView> compressed_views;
+    for (const Bvh& tree : s.trees) {
+        views.push_back(view_of(tree));
+        compressed.push_back(make_compressed_bvh(tree));
+    }
+    for (const CompressedBvh& tree : compressed) compressed_views.push_back(view_of(tree));
+    const CompressedBvh compressed_baked = make_compressed_bvh(s.baked_tree);
+    const SceneBvhView binary_scene = s.scene(views, view_of(s.baked_tree));
+    const SceneTrees<CompressedBvhView> compressed_scene = s.scene(compressed_views, view_of(compressed_baked));
+    std::vector<Hit> expected(s.rays.size());
+    for (std::size_t i = 0; i < s.rays.size(); ++i) trace_closest(binary_scene, s.rays[i], AcceptAll{}, expected[i]);
+    int runs = 0;
+    for (const EmulatedWalk& walk : emulated_walks()) {
+        if (walk.run_scene == nullptr) continue;
+        check_batch(walk, {s.rays, expected}, 2, static_cast<uint32_t>(++runs), [&](const EmulatedBatch& batch) {
+            return walk.run_scene({&binary_scene, &compressed_scene}, batch);
+        });
+    }
+    CHECK(runs == 16); // four walks, two ways, closest and any
+}
+
+TEST_CASE("on warps, live lanes add up to the visits of the rays") {
+    const Bvh bvh = build_bvh(triangles_of(make_torus(40, 24)));
+    const CompressedBvh compressed = make_compressed_bvh(bvh);
+    const BvhView binary_view = view_of(bvh);
+    const CompressedBvhView compressed_view = view_of(compressed);
+    Random random(4);
+    std::vector<Ray> rays(static_cast<std::size_t>(effort(kRays, 20'011)));
+    std::vector<Hit> expected;
+    uint64_t nodes = 0, triangles = 0;
+    for (Ray& ray : rays) {
+        ray.origin = random.point(-3, 3);
+        ray.direction = random.point(-1, 1) - ray.origin;
+        trace_closest<WhileWhileWalk<WalkOptions{}>>(SingleTree<BvhView>{binary_view}, ray, AcceptAll{},
+                                                     expected.emplace_back(), WalkCounter{&nodes, &triangles});
+    }
+    int runs = 0;
+    for (const EmulatedWalk& walk : emulated_walks()) {
+        if (!walk.counts_lanes) continue;
+        CAPTURE(std::string(walk.walk));
+        LaneCounts sums;
+        check_batch(
+            walk, {rays, expected}, 2, static_cast<uint32_t>(++runs),
+            [&](const EmulatedBatch& batch) {
+                return walk.run({&binary_view, &compressed_view}, batch);
+            },
+            &sums);
+        if (std::string(walk.walk) == "while-while") {
+            CHECK(sums.node_lanes == nodes);
+            CHECK(sums.triangle_lanes == triangles);
+        }
+        const bool is_compressed = std::string(walk.walk) == "compressed";
+        CHECK(sums.node_steps > 0);
+        CHECK(sums.node_steps <= sums.node_lanes);
+        CHECK(sums.node_lanes <= 32 * sums.node_steps);
+        CHECK(sums.triangle_steps <= sums.triangle_lanes);
+        CHECK(sums.triangle_lanes <= 32 * sums.triangle_steps);
+        CHECK(sums.node_requests == (is_compressed ? 5 : 4) * sums.node_steps);
+        CHECK(sums.triangle_requests == 3 * sums.triangle_steps);
+        CHECK(sums.node_sectors >= sums.node_requests);
+        CHECK(sums.node_sectors <= (is_compressed ? 5 : 4) * sums.node_lanes);
+        CHECK(sums.triangle_sectors >= sums.triangle_requests);
+        CHECK(sums.triangle_sectors <= 3 * sums.triangle_lanes);
+    }
+    CHECK(runs == 11);
+}

@@ -1,0 +1,90 @@
+#pragma once
+
+// What a header of src/ meets where it is compiled for a device: CUDA's names, over the warps of emulated_warp.h. A
+// file that includes this before any header of src/ gets the device's code of all that it includes after, kernels too,
+// and can run them on the host.
+//
+// One definition: such code must never be linked with the host's of the same name. So from here on `pertev` is spelled
+// pertev_emulated, and whatever such a file compiles lies in that namespace, which nothing else has; views of the
+// host's are handed over by address (emulated_walks.cpp). In the object no symbol of the host's namespace is weak:
+//   nm -C OBJECT | grep ' [VWu] ' | grep pertev::    shows nothing but templates of std
+// Compiled with frame pointers (tests/CMakeLists.txt): __activemask() tells places apart by the calls that led there.
+
+#if defined(HD)
+#error "tests/support/emulated_device.h comes before every header of src/"
+#endif
+
+#include <cstdint>
+#include <source_location>
+
+#include "tests/support/emulated_warp.h"
+
+namespace pertev_emulated::lane {
+using namespace pertev::test::lane; // NOLINT: before the name means something else
+}
+
+#define PERTEV_EMULATED_WARPS
+#define pertev pertev_emulated
+#define __device__
+#define __global__
+#define __launch_bounds__(threads)
+
+namespace pertev {
+
+using Place = std::source_location;
+
+inline const lane::Index &threadIdx = lane::thread_index, &blockIdx = lane::block_index, &blockDim = lane::block_size;
+
+inline uint32_t __activemask(Place at = Place::current()) { return lane::active_mask(at); }
+inline uint32_t __ballot_sync(uint32_t mask, bool mine, Place at = Place::current()) {
+    return lane::ballot(mask, mine, at);
+}
+inline int __all_sync(uint32_t mask, bool mine, Place at = Place::current()) { return lane::all(mask, mine, at); }
+inline uint32_t __match_any_sync(uint32_t mask, unsigned long long key, Place at = Place::current()) {
+    return lane::match_any(mask, key, at);
+}
+inline uint32_t __shfl_sync(uint32_t mask, uint32_t value, int source, Place at = Place::current()) {
+    return lane::shuffle(mask, value, source, at);
+}
+inline void __syncwarp(uint32_t mask = 0xffffffffu, Place at = Place::current()) { lane::sync(mask, at); }
+/// In place of the assembler of trace/warp_vote.h.
+inline uint32_t emulated_lanes_before() { return (1u << (threadIdx.x & 31u)) - 1; }
+
+template <class T>
+T atomicAdd(T* target, T value) {
+    lane::step();
+    const T old = *target;
+    *target += value;
+    return old;
+}
+
+inline int __popc(uint32_t x) { return __builtin_popcount(x); }
+inline int __ffs(int x) { return __builtin_ffs(x); }
+inline int __clz(int x) { return x == 0 ? 32 : __builtin_clz(static_cast<uint32_t>(x)); }
+inline int __clzll(long long x) { return x == 0 ? 64 : __builtin_clzll(static_cast<unsigned long long>(x)); }
+inline int __vimax3_s32(int a, int b, int c) { return a < b ? (b < c ? c : b) : (a < c ? c : a); }
+inline int __vimin3_s32(int a, int b, int c) { return b < a ? (c < b ? c : b) : (c < a ? c : a); }
+inline uint32_t __funnelshift_l(uint32_t low, uint32_t high, uint32_t shift) {
+    return static_cast<uint32_t>((uint64_t(high) << 32 | low) << (shift & 31) >> 32);
+}
+/// Byte k of the result: that one of the eight of y and x which digit k of the selector names; a digit's bit 3 asks for
+/// its sign instead.
+inline uint32_t __byte_perm(uint32_t x, uint32_t y, uint32_t selector) {
+    const uint64_t bytes = uint64_t(y) << 32 | x;
+    uint32_t result = 0;
+    for (uint32_t k = 0; k < 4; ++k) {
+        const uint32_t digit = selector >> (4 * k), byte = bytes >> (8 * (digit & 7)) & 0xff;
+        result |= ((digit & 8) == 0 ? byte : (byte >> 7) * 0xff) << (8 * k);
+    }
+    return result;
+}
+
+struct alignas(16) [[gnu::may_alias]] uint4 {
+    uint32_t x, y, z, w;
+};
+template <class T>
+T __ldg(const T* from) {
+    return *from;
+}
+
+} // namespace pertev

@@ -1,0 +1,65 @@
+#pragma once
+
+// The lanes and warps that emulated_warp.cpp lets run and whose faults emulated_fault.cpp describes; for these two
+// alone.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <source_location>
+#include <string>
+
+namespace pertev::test {
+
+enum class MeetingKind : uint8_t { ActiveMask, Ballot, All, MatchAny, Shuffle, Sync };
+
+/// Where a lane waits, and with what.
+struct Meeting {
+    MeetingKind kind;
+    uint32_t mask;  // as the lane gave it
+    uint64_t value; // what it brings; of __activemask, a hash of the calls that led there
+    int source;     // of __shfl_sync
+    std::source_location at;
+    void* const* frame; // of the function that was called
+};
+
+struct Fiber {
+    void* stack_pointer = nullptr; // while it does not run: six saved registers and where it goes on lie there
+    char* stack = nullptr;         // its lowest address
+    std::size_t stack_bytes = 0;
+    void* fake_stack = nullptr; // AddressSanitizer's
+};
+
+struct EmulatedLane {
+    Fiber fiber;
+    Meeting meeting;
+    uint64_t result; // of the meeting
+};
+
+struct EmulatedWarp {
+    uint32_t block, first_thread;
+    uint32_t live, ready, waiting, pending; // lanes: have not ended; can go on; are at a meeting; at __activemask
+    std::array<EmulatedLane, 32> lanes;
+};
+
+template <class Do>
+void for_each_lane(uint32_t mask, const Do& what) {
+    for (; mask != 0; mask &= mask - 1) what(static_cast<unsigned>(__builtin_ctz(mask)));
+}
+
+/// Return addresses, from that of the call a lane waits in to the one that the lane began with.
+template <class Do>
+void for_each_call(const EmulatedLane& lane, const Do& what) {
+    const void *above = lane.fiber.stack, *end = lane.fiber.stack + lane.fiber.stack_bytes - 2 * sizeof(void*);
+    // The bounds are for a caller that was compiled without frame pointers.
+    for (void* const* frame = lane.meeting.frame; frame > above && frame <= end && frame[1] != nullptr;
+         frame = static_cast<void* const*>(frame[0])) {
+        what(frame[1]);
+        above = frame;
+    }
+}
+
+/// Which lanes wait where, with which masks, and what those do that they wait for.
+std::string describe(const EmulatedWarp& warp);
+
+} // namespace pertev::test

@@ -1,0 +1,210 @@
+// The kernels of src/device/launch_body.h, src/trace/persistent.h and src/trace/dynamic_fetch.h with the walks that
+// vote, compiled as for a device: see tests/support/emulated_device.h. The host's views, rays and hits have the layout
+// of the device's, so addresses of the ones serve as addresses of the others; nothing else passes between the two.
+
+#include "tests/support/emulated_walks.h"
+
+#include "tests/support/emulated_device.h" // from here on the device's
+
+#include <type_traits>
+
+#include "device/launch_body.h"
+#include "trace/compressed_walk.h"
+#include "trace/dynamic_fetch.h"
+#include "trace/lane_counter.h"
+#include "trace/persistent.h"
+#include "trace/scene_bvh.h"
+#include "trace/speculative_walk.h"
+#include "trace/warp_packet_walk.h"
+#include "trace/while_while_walk.h"
+
+namespace pertev {
+namespace {
+
+/// tests/support/check_walk.h's.
+struct AcceptSome {
+    bool operator()(uint32_t instance, uint32_t primitive, float u, float) const {
+        return (primitive * 2654435761u + instance) % 3 != 0 || u > 0.5f;
+    }
+};
+
+struct Batch {
+    const Ray* rays;
+    Hit* hits;
+    uint32_t* stores;
+    uint32_t count;
+    LaneCounts* lanes;
+
+    Ray load(uint32_t i) const { return i < count ? rays[i] : Ray{}; }
+    void store(uint32_t i, const Hit& hit) const {
+        ++stores[i < count ? i : count];
+        if (i < count) hits[i] = hit;
+    }
+    template <class Counter>
+    Counter counter() const {
+        if constexpr (std::is_same_v<Counter, LaneCounter>) {
+            return {lanes};
+        } else {
+            return {};
+        }
+    }
+};
+
+template <class Walk, bool kAny, class Accept, class Counter, class Scene>
+struct TraceBatch {
+    Scene scene;
+    Batch batch;
+
+    void operator()(uint32_t i) const {
+        const Accept accept;
+        const Ray ray = batch.load(i);
+        const auto counter = batch.counter<Counter>();
+        Hit hit;
+        if constexpr (kAny) {
+            if (trace_any<Walk>(scene, ray, accept, counter)) hit.instance = 0;
+            hit.t = 0;
+        } else {
+            trace_closest<Walk>(scene, ray, accept, hit, counter);
+        }
+        batch.store(i, hit);
+    }
+};
+
+template <class Walk, bool kAny, class Accept, class Counter, class Scene>
+void run_one_a_thread(const Scene& scene, const Batch& batch, uint32_t*) {
+    run_stage(TraceBatch<Walk, kAny, Accept, Counter, Scene>{scene, batch}, batch.count);
+}
+
+template <class Walk, bool kAny, class Accept, class Counter, class Scene>
+void run_persistent(const Scene& scene, const Batch& batch, uint32_t* pool) {
+    run_stage_persistent(TraceBatch<Walk, kAny, Accept, Counter, Scene>{scene, batch}, batch.count, pool);
+}
+
+template <class Walk, bool kAny, class, class Counter, class Scene>
+void run_dynamic(const Scene& scene, const Batch& batch, uint32_t* pool) {
+    run_dynamic_fetch<Walk, kAny>(scene.baked, batch, batch.count, pool, batch.counter<Counter>());
+}
+
+} // namespace
+} // namespace pertev
+
+#undef pertev // from here on the host's again
+
+namespace pertev::test {
+namespace {
+
+namespace device = pertev_emulated;
+using device::AcceptAll, device::AcceptSome, device::LaneCounter, device::NoWalkCounter, device::SingleTree,
+    device::WalkOptions;
+
+/// The host's object as the device sees it.
+template <class Device, class Host>
+const Device& seen_by_device(const Host* host) {
+    return *reinterpret_cast<const Device*>(host);
+}
+
+constexpr uint64_t kMostStepsARay = 20'000; // some 5 times as many as seen
+
+/// Runs a thread's part in all threads.
+template <class Run>
+std::string run_threads(const EmulatedBatch& batch, bool one_a_thread, const Run& run) {
+    constexpr uint32_t threads = device::kWalkThreads;
+    const uint32_t needed = (batch.count + threads - 1) / threads;
+    const device::Batch rays = {reinterpret_cast<const device::Ray*>(batch.rays),
+                                reinterpret_cast<device::Hit*>(batch.hits), batch.stores, batch.count,
+                                reinterpret_cast<device::LaneCounts*>(batch.lanes)};
+    return run_warps({.blocks = one_a_thread ? needed : batch.blocks,
+                      .threads = threads,
+                      .seed = batch.seed,
+                      .most_steps = 1'000'000 + kMostStepsARay * batch.count},
+                     [&] { run(rays, batch.pool); });
+}
+
+/// That one of EmulatedTrees or EmulatedScenes which the walk is for.
+template <class Walk>
+const auto* pick(const auto& trees) {
+    if constexpr (std::is_same_v<typename Walk::Tree, device::CompressedBvhView>) {
+        return trees.compressed;
+    } else {
+        return trees.binary;
+    }
+}
+
+enum class Way { OneAThread, Persistent, Dynamic };
+constexpr const char* kWays[] = {"one a thread", "persistent", "dynamic fetch"};
+
+template <class Walk, bool kAny, Way kWay, class Accept, class Counter, class Scene>
+std::string run_in(const Scene& scene, const EmulatedBatch& batch) {
+    return run_threads(batch, kWay == Way::OneAThread, [&](auto&&... given) {
+        if constexpr (kWay == Way::OneAThread) device::run_one_a_thread<Walk, kAny, Accept, Counter>(scene, given...);
+        if constexpr (kWay == Way::Persistent) device::run_persistent<Walk, kAny, Accept, Counter>(scene, given...);
+        if constexpr (kWay == Way::Dynamic) device::run_dynamic<Walk, kAny, Accept, Counter>(scene, given...);
+    });
+}
+
+template <class Walk, bool kAny, Way kWay, class Accept = AcceptAll, class Counter = NoWalkCounter>
+std::string run_tree(const EmulatedTrees& trees, const EmulatedBatch& batch) {
+    using Tree = typename Walk::Tree;
+    return run_in<Walk, kAny, kWay, Accept, Counter>(SingleTree<Tree>{seen_by_device<Tree>(pick<Walk>(trees))}, batch);
+}
+
+template <class Walk, bool kAny, Way kWay>
+std::string run_scene(const EmulatedScenes& scenes, const EmulatedBatch& batch) {
+    using Scene = device::SceneTrees<typename Walk::Tree>;
+    return run_in<Walk, kAny, kWay, AcceptAll, NoWalkCounter>(seen_by_device<Scene>(pick<Walk>(scenes)), batch);
+}
+
+using Rows = std::vector<EmulatedWalk>;
+
+template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, Way kWay>
+void add_way(const char* name, Rows& rows) {
+    using W = Walk<kAny ? device::for_any_hit(kOptions) : kOptions>;
+    constexpr bool kPlain = kOptions.rta && kOptions.near_first && kOptions.exact;
+    EmulatedWalk row = {name, kWays[static_cast<int>(kWay)], kOptions.rta, kOptions.near_first, kOptions.exact, kAny};
+    row.run = run_tree<W, kAny, kWay>;
+    rows.push_back(row);
+    if constexpr (kPlain && !kAny) {
+        row.counts_lanes = true;
+        row.run = run_tree<W, kAny, kWay, AcceptAll, LaneCounter>;
+        rows.push_back(row);
+        row.counts_lanes = false;
+    }
+    if constexpr (kPlain && kWay != Way::Dynamic) { // that one has no cut-outs, and one tree alone
+        row.cut_outs = true;
+        row.run = run_tree<W, kAny, kWay, AcceptSome>;
+        rows.push_back(row);
+        row.cut_outs = false;
+        row.run = nullptr;
+        row.run_scene = run_scene<W, kAny, kWay>;
+        rows.push_back(row);
+    }
+}
+
+template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, bool kDynamic>
+void add_ways(const char* name, Rows& rows) {
+    add_way<Walk, kOptions, kAny, Way::OneAThread>(name, rows);
+    add_way<Walk, kOptions, kAny, Way::Persistent>(name, rows);
+    if constexpr (kDynamic) add_way<Walk, kOptions, kAny, Way::Dynamic>(name, rows);
+}
+
+template <template <WalkOptions> class Walk, bool kDynamic>
+void add_all(const char* name, Rows& rows) {
+    add_ways<Walk, WalkOptions{true, true, true}, false, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{true, true, true}, true, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{false, false, true}, false, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{true, true, false}, false, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{true, true, false}, true, kDynamic>(name, rows);
+}
+
+} // namespace
+
+std::vector<EmulatedWalk> emulated_walks() {
+    Rows rows;
+    add_all<device::WhileWhileWalk, true>("while-while", rows);
+    add_all<device::SpeculativeWalk, true>("speculative", rows);
+    add_all<device::CompressedWalk, true>("compressed", rows);
+    add_all<device::WarpPacketWalk, false>("warp packet", rows);
+    return rows;
+}
+
+} // namespace pertev::test

@@ -1,0 +1,56 @@
+#pragma once
+
+// The laboratory's walks whose lanes vote, as kernels on emulated warps: the device's code of src/trace, every way of
+// handing out rays. This header is the host's, and names the host's types only.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pertev {
+struct BvhView;
+struct CompressedBvhView;
+struct Hit;
+struct LaneCounts;
+struct Ray;
+template <class Tree>
+struct SceneTrees;
+} // namespace pertev
+
+namespace pertev::test {
+
+/// Of an any-hit search a hit's instance is 0 or kNoHit and the rest is as of a new Hit.
+struct EmulatedBatch {
+    const Ray* rays;
+    Hit* hits;
+    uint32_t* stores; // [count + 1]: how often each hit was stored, and how often one of no ray was
+    uint32_t count;
+    uint32_t* pool;  // 0 at first
+    uint32_t blocks; // of 128 threads; one ray a thread takes as many as it needs
+    uint32_t seed;
+    LaneCounts* lanes = nullptr; // for those that count
+};
+
+/// Of the same triangles.
+struct EmulatedTrees {
+    const BvhView* binary;
+    const CompressedBvhView* compressed;
+};
+struct EmulatedScenes {
+    const SceneTrees<BvhView>* binary;
+    const SceneTrees<CompressedBvhView>* compressed;
+};
+
+struct EmulatedWalk {
+    const char* walk;
+    const char* distribution;
+    bool rta, near_first, exact, any;
+    bool cut_outs = false; // AcceptSome of tests/support/check_walk.h
+    bool counts_lanes = false;
+    // One of them; what went wrong.
+    std::string (*run)(const EmulatedTrees&, const EmulatedBatch&) = nullptr;
+    std::string (*run_scene)(const EmulatedScenes&, const EmulatedBatch&) = nullptr;
+};
+std::vector<EmulatedWalk> emulated_walks();
+
+} // namespace pertev::test
