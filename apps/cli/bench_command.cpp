@@ -79,13 +79,14 @@ double mean_of(const Image& image) {
 int bench_job(const BenchFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
+    const RenderSettings settings = job_settings(flags);
+    if (!flags.output.empty()) check_image_output(flags.output, settings.width, settings.height);
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     const Stopwatch watch;
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
     const double load_s = watch.seconds();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     reporter.say_messages();
-    const RenderSettings settings = job_settings(flags);
     const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
 
     RenderSettings warm_up = settings; // clocks, caches, the driver's first launch

@@ -1,6 +1,7 @@
 #include "apps/cli/render_flags.h"
 
 #include <algorithm>
+#include <initializer_list>
 
 #include <CLI/CLI.hpp>
 
@@ -8,7 +9,6 @@
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
 #include "base/limits.h"
-#include "base/write_file_atomically.h"
 #include "image/write_image.h"
 
 namespace pertev {
@@ -35,6 +35,12 @@ std::vector<std::string> names_of(const std::vector<std::pair<std::string, T>>& 
     std::vector<std::string> names;
     for (const auto& [name, value] : choices) names.push_back(name);
     return names;
+}
+
+bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> formats) {
+    return std::ranges::any_of(flags.outputs, [&](const std::string& output) {
+        return std::ranges::find(formats, image_format_for(output)) != formats.end();
+    });
 }
 
 } // namespace
@@ -117,12 +123,10 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
 
 void check_render_flags(const RenderFlags& flags) {
     if (!flags.exposure.empty() && flags.exposure != "auto") parse_number("--exposure", flags.exposure);
-    bool any_exr = false;
-    for (const std::string& output : flags.outputs) {
-        any_exr = image_format_for(output) == ImageFormat::Exr || any_exr;
-        check_writable(output);
-    }
-    if (!flags.aovs.empty() && !any_exr) {
+    RenderSettings size; // where no flag tells it, it is small enough for every format
+    if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
+    for (const std::string& output : flags.outputs) check_image_output(output, size.width, size.height);
+    if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }
 }

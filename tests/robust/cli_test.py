@@ -141,6 +141,14 @@ class WhatIsWritten(CliTest):
             with self.subTest(output=name):
                 self.refuse(6, "render", "nowhere.obj", "-o", "good.png", "-o", name, says=[name])
 
+    def test_a_picture_too_large_for_its_format_ends_with_3_before_the_scene_is_read(self):
+        for size in ["65501x1", "1x65501"]:
+            self.refuse(3, "render", "nowhere.obj", "-o", "good.png", "-o", "late.jpg", "--size", size,
+                        says=["late.jpg", "65500"])
+            self.refuse(3, "bench", "render", "--scene", "nowhere.obj", "-o", "late.jpg", "--size", size,
+                        says=["late.jpg", "65500"])
+            self.render(output="whole.png", size=size)
+
     def test_an_unknown_extension_ends_with_2_and_lists_those_known(self):
         for name in ["x.bmp", "x", "x.png.", ".png"]:
             self.refuse(2, "render", "cornell-box", "-o", name, says=[name, ".exr"])
