@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
@@ -129,6 +130,16 @@ void check_render_flags(const RenderFlags& flags) {
     if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }
+    if (flags.transparent && !writes_any(flags, {ImageFormat::Exr, ImageFormat::Png})) {
+        throw Error(ErrorCode::BadInput, "--transparent: alpha is kept in EXR and PNG alone; add -o NAME.exr or .png");
+    }
+    if ((!flags.exposure.empty() || flags.tone_map != "srgb") &&
+        !writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg})) {
+        throw Error(ErrorCode::BadInput, fmt::format("--{}: light is mapped to tones in PNG and JPEG alone; add -o "
+                                                     "NAME.png or .jpg",
+                                                     flags.exposure.empty() ? "tone-map" : "exposure"));
+    }
+    check_scene_options(flags.scene);
 }
 
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {

@@ -19,14 +19,12 @@ constexpr float kRadiansPerDegree = kPi / 180.0f;
 
 Environment environment_of(const SceneOptions& options, Messages& messages) {
     Environment environment;
-    environment.rotation = options.environment_rotation_deg * kRadiansPerDegree;
-    environment.scale = grey(options.environment_scale);
     if (Rgb color; parse_rgb(options.environment, color)) {
         if (color.r < 0 || color.g < 0 || color.b < 0) {
             throw Error(ErrorCode::BadInput,
                         fmt::format("--environment {}: radiance cannot be negative", options.environment));
         }
-        environment.scale = options.environment_scale * color;
+        environment.scale = color;
         return environment;
     }
     if (!std::filesystem::exists(options.environment)) {
@@ -83,7 +81,30 @@ void flatten(const SceneOptions& options, const Scene& scene, Camera& camera) {
     if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
 }
 
+void warn_of_useless_flags(const SceneOptions& options, const Camera& camera, Messages& messages) {
+    const bool is_perspective = camera.projection == Projection::Perspective;
+    if (options.view_height_m > 0 && is_perspective) {
+        messages.warn("--view-height: the camera is a perspective one; --projection orthographic makes use of it");
+    }
+    if (options.fov_deg > 0 && !is_perspective && (options.projection.empty() || options.view_height_m > 0)) {
+        messages.warn("--fov: the camera is an orthographic one, whose view has a height; --view-height sets that");
+    }
+    if (options.focus_m > 0 && camera.aperture_radius == 0) {
+        messages.warn("--focus: the lens has no aperture, so all is sharp; --aperture gives it one");
+    }
+}
+
 } // namespace
+
+void check_scene_options(const SceneOptions& options) {
+    if (options.view_height_m > 0 && options.projection == "perspective") {
+        throw Error(ErrorCode::BadInput, "--view-height: a perspective view has none; say --fov, or "
+                                         "--projection orthographic");
+    }
+    if (options.focus_m > 0 && options.aperture_m == 0) {
+        throw Error(ErrorCode::BadInput, "--focus: with --aperture 0 all is sharp; give the lens a radius");
+    }
+}
 
 void add_view_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
@@ -105,7 +126,7 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->check(one_of({"perspective", "orthographic"}))
         ->group(group);
     verb.add_option("--view-height", options.view_height_m,
-                    "orthographic: full height of the view, metres (as much as the\nperspective view shows)")
+                    "of an orthographic view: its full height, metres (as much as\nthe perspective view shows)")
         ->type_name("M")
         ->check(length_m())
         ->group(group);
@@ -113,7 +134,8 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(number_between(0, kMaxCoordinate))
         ->group(group);
-    verb.add_option("--focus", options.focus_m, "distance in focus, metres (that of the target)")
+    verb.add_option("--focus", options.focus_m,
+                    "of a lens with an aperture: distance in focus, metres (that of\nthe target)")
         ->type_name("M")
         ->check(length_m())
         ->group(group);
@@ -126,11 +148,11 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("--environment", options.environment, "an .hdr or .exr panorama, or R,G,B: light from far away")
         ->type_name("FILE|R,G,B")
         ->group(group);
-    verb.add_option("--environment-rotation", options.environment_rotation_deg, "about +y")
+    verb.add_option("--environment-rotation", options.environment_rotation_deg, "turned about +y; of a made-up sky too")
         ->type_name("DEG")
         ->check(number_between(-1e6f, 1e6f))
         ->group(group);
-    verb.add_option("--environment-scale", options.environment_scale, "times its radiance")
+    verb.add_option("--environment-scale", options.environment_scale, "times its radiance; of a made-up sky too")
         ->type_name("X")
         ->check(number_between(0, 1e12f))
         ->group(group);
@@ -155,14 +177,21 @@ LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
     Scene scene = read_any_scene(options.scene, options.allowed_paths, messages);
     if (!options.environment.empty()) {
         scene.environment = environment_of(options, messages);
-    } else if (scene.environment) {
-        scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
-        scene.environment->scale = options.environment_scale * scene.environment->scale;
     }
     const bool had_environment = scene.environment.has_value();
     const std::size_t lights = scene.lights.size();
     add_default_environment(scene, messages);
     const bool default_light = scene.lights.size() != lights || scene.environment.has_value() != had_environment;
+    if (scene.environment) {
+        scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
+        scene.environment->scale = options.environment_scale * scene.environment->scale;
+    } else {
+        const auto warn = [&](const char* flag) {
+            messages.warn(fmt::format("{}: the scene has no environment; --environment gives it one", flag));
+        };
+        if (options.environment_rotation_deg != 0) warn("--environment-rotation");
+        if (options.environment_scale != 1) warn("--environment-scale");
+    }
     return {std::move(scene), default_light};
 }
 
@@ -188,6 +217,7 @@ Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspe
         flatten(options, scene, camera);
     }
     if (options.view_height_m > 0) camera.ortho_height = options.view_height_m;
+    warn_of_useless_flags(options, camera, messages);
     return camera;
 }
 

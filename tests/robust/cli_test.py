@@ -63,6 +63,42 @@ class WhatIsRefused(CliTest):
                 arguments = flag.split()
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", *arguments, says=[arguments[0]])
 
+    def test_a_number_that_is_too_large_is_answered_by_the_largest(self):
+        for flag, limit in [("--time 1e300", "3.4028235e+38"), ("--clamp 1e300", "3.4028235e+38"),
+                            ("--exposure 1e300", "3.4028235e+38"), ("--eye 1e300,0,0", "3.4028235e+38"),
+                            ("--environment-rotation 1e30", "1000000"), ("--environment-scale 1e30", "1000000000000")]:
+            outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", *flag.split(), says=[*flag.split(), limit])
+            self.assertNotIn("finite", outcome.stderr)
+
+    def test_a_flag_that_the_others_make_useless_ends_with_2_before_the_scene_is_read(self):
+        for flag, output in [("--transparent", "x.jpg"), ("--transparent", "x.hdr"), ("--aov albedo", "x.png"),
+                             ("--exposure 1", "x.exr"), ("--exposure auto", "x.hdr"), ("--tone-map agx", "x.exr"),
+                             ("--view-height 2 --projection perspective", "x.png"),
+                             ("--focus 2 --aperture 0", "x.png")]:
+            with self.subTest(flag=flag, output=output):
+                self.refuse(2, "render", "nowhere.obj", "-o", output, *flag.split(), says=[flag.split()[0] + ": "])
+
+    def test_a_flag_that_the_scene_makes_useless_is_a_warning(self):
+        write(self.path("floor.obj"), FLOOR)
+        ortho = json.loads(gltf_with_cameras())
+        ortho["cameras"][0] = {"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 1, "znear": 0, "zfar": 9}}
+        write(self.path("ortho.gltf"), json.dumps(ortho))
+        look = ["--eye", "0,2,4", "--target", "0,0,0"]
+        for scene, flags, useless in [
+                ("cornell-box", ["--environment-scale", "2"], ["--environment-scale"]),
+                ("cornell-box", ["--environment-rotation", "90"], ["--environment-rotation"]),
+                ("cornell-box", ["--environment-scale", "2", "--environment", "1,1,1"], []),
+                ("floor.obj", [*look, "--environment-scale", "2", "--environment-rotation", "9"], []),
+                ("cornell-box", ["--view-height", "1"], ["--view-height"]),
+                ("cornell-box", ["--view-height", "1", "--projection", "orthographic"], []),
+                ("cornell-box", ["--fov", "30", "--projection", "orthographic"], []),
+                ("ortho.gltf", ["--view-height", "1"], []), ("ortho.gltf", ["--fov", "30"], ["--fov"]),
+                ("cornell-box", ["--focus", "1"], ["--focus"]),
+                ("cornell-box", ["--focus", "1", "--aperture", "0.01"], [])]:
+            with self.subTest(scene=scene, flags=flags):
+                outcome = self.succeed("render", scene, "-o", "x.png", "--size", "8x8", "--spp", "1", "--json", *flags)
+                self.assertEqual([event["text"].split(":")[0] for event in outcome.events("warning")], useless, outcome)
+
     def test_a_line_without_verb_scene_or_output_ends_with_2(self):
         self.refuse(2, says=["render"])
         self.refuse(2, "frobnicate")
@@ -420,6 +456,13 @@ class WhatIsRendered(CliTest):
         hashes = [self.render(*flags, size="32x32", spp=2)["hash"] for flags in choices]
         self.assertEqual(len(set(hashes)), len(choices))
         self.assertEqual(self.render("--aperture", "0", size="32x32", spp=2)["hash"], hashes[0])
+
+    def test_a_made_up_sky_is_an_environment_too(self):
+        write(self.path("floor.obj"), FLOOR)
+        look = ["--eye", "0,2,4", "--target", "0,0,0"]
+        hashes = {self.render(*look, *flags, scene="floor.obj")["hash"]
+                  for flags in [[], ["--environment-scale", "2"], ["--environment-rotation", "90"]]}
+        self.assertEqual(len(hashes), 3)
 
     def test_a_camera_is_chosen_by_name_or_number_and_gives_the_picture_its_shape(self):
         write(self.path("two.gltf"), gltf_with_cameras())
