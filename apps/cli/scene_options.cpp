@@ -6,7 +6,6 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
-#include "formats/builtin_scenes.h"
 #include "formats/read_environment.h"
 #include "formats/read_scene.h"
 #include "math/portable_math.h"
@@ -61,11 +60,10 @@ void place_camera(const SceneOptions& options, Camera& camera) {
     Transform placed = look_at(eye, target, up);
     if (!is_finite(placed.row0) && options.up.empty()) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
     if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format("--eye {},{},{} --target {},{},{} --up {},{},{}: the target must differ from the eye and "
-                        "not lie along up",
-                        eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z));
+        const std::string of_up = options.up.empty() ? "" : fmt::format(" and not lie along --up {}", options.up);
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--eye {},{},{} --target {},{},{}: the target must differ from the eye{}", eye.x, eye.y,
+                                eye.z, target.x, target.y, target.z, of_up));
     }
     camera.world_from_camera = placed;
     if (options.focus_m <= 0) camera.focus_distance = length(target - eye);
@@ -170,7 +168,7 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
                      Messages& messages) {
     ReadOptions read;
     read.allowed_paths = allowed_paths;
-    return builtin_scene(name) ? read_builtin_scene(name, messages) : read_scene(name, read, messages);
+    return read_scene(name, read, messages);
 }
 
 LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
