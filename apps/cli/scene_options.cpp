@@ -45,7 +45,7 @@ const Camera& named_camera(const std::string& name, const Scene& scene) {
     }
     std::string known;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        known += fmt::format("\n  {}  {}", i, scene.cameras[i].name);
+        known += fmt::format("\n  {}  {}", i, scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
     }
     throw Error(ErrorCode::BadInput, fmt::format("--camera {}: the scene has no such camera; it has:{}", name,
                                                  known.empty() ? "\n  none" : known));

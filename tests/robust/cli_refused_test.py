@@ -87,6 +87,10 @@ class WhatIsRefused(CliTest):
         for name in ["nowhere.obj", "nowhere.gltf", "cornel-box", "folder.obj", "pipe.obj", "a" * 300 + ".obj"]:
             self.refuse(2, "render", name, "-o", "x.png", says=[name])
             self.refuse(2, "info", name, says=[name])
+        write(self.path("README"), "text")
+        for name in ["README", "spnza"]:
+            self.refuse(2, "render", name, "-o", "x.png", says=[name, ".gltf", "cornell-box"])
+            self.refuse(2, "info", name, says=[name, ".gltf", "cornell-box", ".exr"])
         for name in ["nowhere.exr", "endless.png", "empty.png"]:
             self.refuse(2, "info", name, says=[name])
             self.refuse(2, "compare", name, name, says=[name])
@@ -126,7 +130,7 @@ class WhatIsRefused(CliTest):
 
     def test_what_was_left_out_is_said_before_the_error_that_follows_from_it(self):
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
-        outcome = self.refuse(2, "info", "flat.obj", says=["1 triangles without area", "no geometry"])
+        outcome = self.refuse(2, "info", "flat.obj", says=["1 triangle without area: left out", "no geometry"])
         self.assertLess(outcome.stderr.index("without area"), outcome.stderr.index("no geometry"))
 
     def test_a_sample_that_is_not_finite_fails_only_a_strict_render_and_is_always_counted(self):

@@ -250,6 +250,50 @@ class WhatIsRendered(CliTest):
                      "load_seconds", "build_seconds", "invalid_samples"]:
             self.assertIn(f"pertev.{name}", made)
 
+    def test_the_metadata_of_an_exr_are_the_flags_that_make_the_same_picture_again(self):
+        write(self.path("floor.obj"), FLOOR)
+        view = ["--eye", "0.3,2.1,4.7", "--target", "0.1,0.2,0"]
+        for scene, flags in [("cornell-box", view), ("floor.obj", view), ("floor.obj", ["--eye", "0,3,0", "--target", "0,0,0"]),
+                             ("floor.obj", [*view, "--up", "1,3,0.2", "--fov", "33"]),
+                             ("floor.obj", [*view, "--projection", "orthographic"]),
+                             ("floor.obj", [*view, "--projection", "orthographic", "--view-height", "1.7"]),
+                             ("floor.obj", [*view, "--aperture", "0.1"]),
+                             ("floor.obj", [*view, "--aperture", "0.1", "--focus", "3", "--filter", "tent"]),
+                             ("floor.obj", [*view, "--filter", "gaussian", "--filter-radius", "2.5"]),
+                             ("floor.obj", [*view, "--environment-rotation", "70", "--environment-scale", "0.3"]),
+                             ("floor.obj", [*view, "--environment", "1,0.5,0.25", "--environment-scale", "3"])]:
+            with self.subTest(scene=scene, flags=flags):
+                made = self.render(*flags, scene=scene, output="x.exr")
+                told = self.info("x.exr")
+                again = []
+                for name in ["eye", "target", "up", "fov", "projection", "view_height", "aperture", "focus", "filter",
+                             "filter_radius", "environment", "environment_scale", "environment_rotation"]:
+                    value = told.get("pertev." + name)
+                    if value not in [None, "made up", "none"]:
+                        again += ["--" + name.replace("_", "-"), str(value)]
+                self.assertEqual(self.render(*again, scene=scene)["hash"], made["hash"], again)
+        self.render(scene="floor.obj", output="x.exr")  # a view that is made up: as near as its numbers go
+        told = self.info("x.exr")
+        near = self.render("--eye", told["pertev.eye"], "--target", told["pertev.target"], "--up", told["pertev.up"],
+                           "--fov", told["pertev.fov"], scene="floor.obj", output="y.exr")
+        self.assertGreater(near["samples"], 0)
+        self.assertLess(self.succeed("compare", "x.exr", "y.exr", "--json").events("compare")[0]["flip"], 0.01)
+
+    def test_info_and_render_count_the_same_lights_and_one_thing_is_one(self):
+        said = self.succeed("render", "cornell-box", "-o", "x.png", "--size", "8x8", "--spp", "1").stderr
+        self.assertIn("38 triangles, 8 instances, 2 lights; ", said)
+        told = self.info("cornell-box")
+        self.assertEqual((told["lights"], told["emissive_triangles"]), (2, 2))
+        write(self.path("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        said = self.succeed("render", "one.obj", "-o", "x.png", "--size", "8x8", "--spp", "1").stderr
+        self.assertIn("one.obj: 1 triangle, 1 instance, 1 light; ", said)
+
+    def test_a_camera_without_a_name_is_told_by_its_number(self):
+        cameras = json.loads(gltf_with_cameras())
+        del cameras["cameras"][1]["name"]
+        write(self.path("two.gltf"), json.dumps(cameras))
+        self.assertEqual(self.info("two.gltf")["cameras"], ["wide", "1"])
+
     def test_aov_layers_are_in_the_exr_and_agree_with_each_other(self):
         # The tall and the short box before the open side; one sample a pixel, so that no pixel is a mean of two things.
         self.render("--aov", "albedo,normal,depth", "--aov", "position,ids", size="24x24", output="x.exr")
@@ -370,6 +414,17 @@ class WhatIsCompared(CliTest):
         self.assertFalse(other["equal"])
         self.assertGreater(min(other[key] for key in ["rel_mse", "mse", "flip", "hdr_flip"]), 0)
         self.assertIn("the same to the last bit", self.succeed("compare", "a.exr", "a.exr").stdout)
+
+    def test_pictures_that_differ_in_alpha_alone_are_said_to(self):
+        self.render(output="a.exr")
+        self.render("--transparent", output="b.exr")
+        for blocks in [[], ["--blocks", "4"]]:
+            differ = self.succeed("compare", "a.exr", "b.exr", "--json", *blocks).events("compare")[0]
+            self.assertEqual((differ["equal"], differ["equal_colors"], differ["mse"]), (False, True, 0))
+            self.assertIn("same colours to the last bit, different alpha",
+                          self.succeed("compare", "a.exr", "b.exr", *blocks).stdout)
+        self.render("--seed", "1", output="c.exr")
+        self.assertFalse(self.succeed("compare", "a.exr", "c.exr", "--json").events("compare")[0]["equal_colors"])
 
     def test_pictures_of_different_sizes_are_refused_with_both_sizes(self):
         self.render(output="a.exr", size="16x8")

@@ -78,8 +78,8 @@ TEST_CASE("triangles with a vertex that is not finite, and those without area, a
     CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
     for (const Vec3 p : mesh.positions) CHECK(is_finite(p));
     REQUIRE(result.messages.all().size() == 2);
-    CHECK(result.messages.all()[0].text == "file: 2 triangles with a vertex that is not finite are left out");
-    CHECK(result.messages.all()[1].text == "file: 3 triangles without area are left out");
+    CHECK(result.messages.all()[0].text == "file: 2 triangles with a vertex that is not finite: left out");
+    CHECK(result.messages.all()[1].text == "file: 3 triangles without area: left out");
 }
 
 TEST_CASE("tiny and huge triangles have an area") {
