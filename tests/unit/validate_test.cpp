@@ -225,3 +225,15 @@ TEST_CASE("an environment's pixels that are negative or not finite are set to 0 
     CHECK(result.messages.all().size() == 1);
     check_refused("scale", ErrorCode::BadInput, [](Scene& s) { s.environment.emplace().scale.r = -1; });
 }
+
+TEST_CASE("messages name what has a name, number the rest, and count one thing as one") {
+    const auto out_of_range = [](Scene& scene) { scene.meshes[0].indices[3] = 9; };
+    check_refused("file: mesh 0 square: triangle 1: ", ErrorCode::BadInput, out_of_range);
+    check_refused("file: mesh 0: triangle 1: ", ErrorCode::BadInput, [&](Scene& scene) {
+        scene.meshes[0].name.clear();
+        out_of_range(scene);
+    });
+    const Result result = validated([](Scene& scene) { scene.meshes[0].indices[1] = 0; });
+    REQUIRE(result.messages.all().size() == 1);
+    CHECK(result.messages.all()[0].text == "file: 1 triangle without area: left out");
+}
