@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,6 +15,7 @@
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "base/error.h"
@@ -37,6 +38,16 @@ struct BenchFlags {
     MachineFlags machine;
     ReportFlags report;
 };
+
+/// The whole picture. Throws Error(Interrupted) where it is asked to end before.
+RenderResult render_all(Queue& queue, const PreparedScene& prepared, const Camera& camera,
+                        const RenderSettings& settings) {
+    throw_if_interrupted();
+    RenderResult result =
+        render_picture(queue, prepared, camera, settings, [](const RenderProgress&) { return !interrupted(); });
+    throw_if_interrupted();
+    return result;
+}
 
 // ---------------------------------------------------------------------------------------------------------------------
 // bench render --job: grey geometry under a constant sky.
@@ -79,20 +90,24 @@ double mean_of(const Image& image) {
 int bench_job(const BenchFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
+    const RenderSettings settings = job_settings(flags);
+    if (!flags.output.empty()) check_image_output(flags.output, settings.width, settings.height);
+    check_bench_scene(flags.scenes.front());
+    listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     const Stopwatch watch;
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
     const double load_s = watch.seconds();
+    throw_if_interrupted();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     reporter.say_messages();
-    const RenderSettings settings = job_settings(flags);
     const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
 
     RenderSettings warm_up = settings; // clocks, caches, the driver's first launch
     warm_up.samples = 1;
     const Camera camera = record_camera(*find_record_scene("sponza"));
-    render_picture(*queue, prepared, camera, warm_up);
-    const RenderResult result = render_picture(*queue, prepared, camera, settings);
+    render_all(*queue, prepared, camera, warm_up);
+    const RenderResult result = render_all(*queue, prepared, camera, settings);
     const std::string hash = picture_hash(result.picture).hex();
     if (!flags.output.empty()) write_image(flags.output, result.picture);
     if (flags.report.json) {
@@ -150,7 +165,7 @@ private:
     std::filesystem::path path_;
 };
 
-SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& flags) {
+SceneFigures measure(const std::string& file, Queue& queue, RenderSettings settings) {
     SceneFigures figures{.scene = std::filesystem::path(file).stem().string(), .device = queue.device_name()};
     Messages messages;
     const Stopwatch watch;
@@ -161,16 +176,15 @@ SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& fl
     const ScratchCache cache;
     PrepareOptions options;
     options.bvh_cache = cache.path();
+    throw_if_interrupted();
     const PreparedScene prepared = prepare_scene(scene, options, messages); // also fills the cache
+    throw_if_interrupted();
     figures.cached_s = prepare_scene(scene, options, messages).build_seconds;
     figures.build_s = prepare_scene(scene, {}, messages).build_seconds;
     figures.triangles = prepared.triangles;
     figures.tree_bytes_per_triangle =
         static_cast<double>(tree_bytes(prepared)) / static_cast<double>(std::max<uint64_t>(prepared.triangles, 1));
 
-    RenderSettings settings;
-    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
-    settings.samples = flags.samples > 0 ? flags.samples : (queue.is_cuda() ? 64 : 4);
     const Camera camera =
         scene.cameras.empty()
             ? make_default_camera(scene, static_cast<float>(settings.width) / static_cast<float>(settings.height),
@@ -178,8 +192,8 @@ SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& fl
             : scene.cameras.front();
     RenderSettings warm_up = settings;
     warm_up.samples = 1;
-    render_picture(queue, prepared, camera, warm_up);
-    const RenderResult whole = render_picture(queue, prepared, camera, settings);
+    render_all(queue, prepared, camera, warm_up);
+    const RenderResult whole = render_all(queue, prepared, camera, settings);
     figures.first_pixel_s = whole.upload_seconds + whole.first_pixel_seconds;
     figures.render_s = whole.render_seconds;
     figures.msamples =
@@ -188,7 +202,7 @@ SceneFigures measure(const std::string& file, Queue& queue, const BenchFlags& fl
     StageSeconds stages; // once more, each stage on its own
     settings.stage_seconds = &stages;
     settings.body = PathBody::Wavefront;
-    const RenderResult staged = render_picture(queue, prepared, camera, settings);
+    const RenderResult staged = render_all(queue, prepared, camera, settings);
     figures.camera_mrays = millions_a_second(staged.rays.camera, stages.camera_hits);
     figures.bounce_mrays = millions_a_second(staged.rays.bounce, stages.bounce_hits);
     figures.shadow_mrays = millions_a_second(staged.rays.shadow, stages.shadows);
@@ -228,19 +242,28 @@ std::vector<std::string> default_scenes() {
 int bench_scenes(const BenchFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
+    RenderSettings settings;
+    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
+    const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
+    for (const std::string& scene : scenes) check_bench_scene(scene);
+    listen_for_interrupt();
     std::vector<std::unique_ptr<Queue>> queues;
     queues.push_back(take_machine(flags.machine, messages));
     if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
     reporter.say_messages();
-    reporter.answer(
+    std::string header =
         fmt::format("seconds: load the file, build the trees, read them from the cache, first sample of every pixel, "
                     "render; Mrays/s by kind\n{:10} {:12} {:>9} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>8} "
                     "{:>6}\n",
                     "scene", "device", "triangles", "load", "build", "cached", "first", "render", "Msample/s", "camera",
-                    "bounce", "shadow", "B/tri"));
-    const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
+                    "bounce", "shadow", "B/tri");
     for (const std::string& scene : scenes) {
-        for (const auto& queue : queues) print(measure(scene, *queue, flags), reporter);
+        for (const auto& queue : queues) {
+            settings.samples = flags.samples > 0 ? flags.samples : (queue->is_cuda() ? 64 : 4);
+            const SceneFigures figures = measure(scene, *queue, settings);
+            reporter.answer(std::exchange(header, "")); // over the first row
+            print(figures, reporter);
+        }
     }
     return 0;
 }
@@ -260,7 +283,7 @@ void add_bench_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("bench", "Measure loading, building and rendering on this machine");
     const auto flags = std::make_shared<BenchFlags>();
     verb.add_option("--scene", flags->scenes,
-                    "a scene file; may be given again (Sponza and Sibenik\nunder PERTEV_SCENES)")
+                    "a scene file or a built-in scene; may be given again\n(Sponza and Sibenik under PERTEV_SCENES)")
         ->type_name("FILE")
         ->allow_extra_args(false);
     add_shared_flags(verb, *flags);
@@ -280,8 +303,12 @@ void add_bench_command(CLI::App& app, int& status) {
         ->expected(1);
     job.add_option("-o,--output", job_flags->output, "keep the picture")->type_name("FILE");
     add_shared_flags(job, *job_flags);
-    job.callback([job_flags, &status] { status = bench_job(*job_flags); });
+    job.callback([&job, job_flags, &status] {
+        refuse_flags_before(job);
+        status = bench_job(*job_flags);
+    });
     add_bench_rays_command(verb, status);
+    verb.require_subcommand(0, 1);
     verb.callback([&verb, flags, &status] {
         if (verb.get_subcommands().empty()) status = bench_scenes(*flags);
     });

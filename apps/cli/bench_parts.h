@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace CLI {
 class App;
@@ -22,6 +24,13 @@ inline std::filesystem::path public_scenes_folder() {
     const char* const folder = std::getenv("PERTEV_SCENES");
     return folder != nullptr ? folder : "";
 }
+
+/// Throws Error(BadInput) where there is no such scene; `others` are names that are taken beside it. Asked of all
+/// scenes before the first is measured.
+void check_bench_scene(const std::string& name, std::string_view others = "");
+
+/// Throws Error(BadInput) for a flag of `bench` itself before the name of this verb of it, which would not see it.
+void refuse_flags_before(const CLI::App& verb);
 
 /// `bench rays`, a verb of `bench`.
 void add_bench_rays_command(CLI::App& bench, int& status);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,11 +12,11 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
 #include "lab/binary_stack_walk.h"
 #include "lab/measure_rays.h"
@@ -43,16 +45,17 @@ struct SetFigures {
     const RecordedSet* record = nullptr; // of another tracer, where there is one
 };
 
+/// Throws Error(BadInput) where there is no such scene, before the first is measured.
+void check_scene(const std::string& name) {
+    const RecordScene* const record = find_record_scene(name);
+    if (record == nullptr) return check_bench_scene(name, "sponza, bunny or forest nor ");
+    if (record->file != nullptr) record_file(*record, public_scenes_folder());
+}
+
 /// A scene of the record by its name, else a built-in scene or a file.
 Scene read_geometry(const std::string& name, Messages& messages) {
     if (const RecordScene* record = find_record_scene(name)) {
         return make_record_scene(*record, public_scenes_folder(), messages);
-    }
-    if (builtin_scene(name)) return read_builtin_scene(name, messages);
-    std::error_code no_such_name; // of a name too long for a file, too
-    if (!std::filesystem::exists(name, no_such_name)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--scene {}: neither a file nor sponza, bunny, forest or a built-in scene", name));
     }
     ReadOptions options;
     options.geometry_only = true;
@@ -79,22 +82,28 @@ void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const Prepar
 SetFigures measure(Queue& queue, const SceneBvhView& trees, const RaySet& set, const RaysFlags& flags,
                    const PreparedScene& prepared) {
     SetFigures figures{.set = set.name, .device = queue.device_name(), .rays = set.rays.size()};
+    if (set.rays.empty()) return figures;
+    throw_if_interrupted();
     RaysOnDevice rays(queue, set);
     rays.trace<StackWalk>(trees);
     const std::vector<RayHit> hits = rays.hits();
     if (flags.check) check_hits(hits, set, prepared);
     figures.hit_share = hit_share(hits);
+    throw_if_interrupted();
     figures.work = summarize_work(rays.count_work<BinaryStackWalk>(trees));
     const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 5);
-    figures.times = rays.time<StackWalk>(trees, queue.is_cuda() ? 3 : 1, runs);
+    figures.times = time_runs(queue, queue.is_cuda() ? 3 : 1, runs, [&] {
+        throw_if_interrupted(); // a run of millions of rays takes seconds on a CPU
+        rays.trace<StackWalk>(trees);
+    });
     return figures;
 }
 
-std::string beside(double value, const char* format, bool is_there) {
-    return is_there ? fmt::format(fmt::runtime(format), value) : std::string("-");
+std::string beside(double value, const char* format, bool is_there, const char* none = "-") {
+    return is_there ? fmt::format(fmt::runtime(format), value) : std::string(none);
 }
 
-void print(const SetFigures& f, Reporter& reporter) {
+void print(const SetFigures& f, bool is_checked, Reporter& reporter) {
     const RecordedSet none{};
     const RecordedSet& r = f.record != nullptr ? *f.record : none;
     const bool has = f.record != nullptr;
@@ -105,11 +114,16 @@ void print(const SetFigures& f, Reporter& reporter) {
                               r.hit_share, r.nodes, r.triangles, r.best_rays_per_second)
                 : "null";
         reporter.event(fmt::format(
-            R"({{"event":"rays","scene":{},"set":"{}","device":{},"rays":{},"rays_per_second":{:.0f},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"record":{}}})",
-            json_string(f.scene), f.set, json_string(f.device), f.rays, rate * 1e6, json_number(f.times.median),
-            json_number(f.times.least), json_number(f.times.greatest), f.times.runs, f.hit_share, f.work.nodes,
-            f.work.triangles, f.work.most_nodes, f.work.most_triangles, record));
+            R"({{"event":"rays","scene":{},"set":"{}","device":{},"rays":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"checked":{},"record":{}}})",
+            json_string(f.scene), f.set, json_string(f.device), f.rays,
+            beside(rate * 1e6, "{:.0f}", f.rays > 0, "null"), json_number(f.times.median), json_number(f.times.least),
+            json_number(f.times.greatest), f.times.runs, f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes,
+            f.work.most_triangles, is_checked, record));
         return;
+    }
+    if (f.rays == 0) {
+        return reporter.answer(
+            fmt::format("{:11} {:8} {:8} empty: no ray before it hit anything\n", f.scene, f.set, 0));
     }
     reporter.answer(fmt::format(
         "{:11} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} "
@@ -120,11 +134,14 @@ void print(const SetFigures& f, Reporter& reporter) {
         beside(r.nodes, "{:.1f}", has), beside(r.triangles, "{:.1f}", has)));
 }
 
-void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, Reporter& reporter) {
+/// `header` is printed before the first row, and is empty after it.
+void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, std::string& header,
+                 Reporter& reporter) {
     Messages& messages = reporter.messages();
     Stopwatch watch;
     const Scene scene = read_geometry(name, messages);
     const double load_s = watch.seconds();
+    throw_if_interrupted();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const SceneOnDevice on_device(queue, prepared);
     const SceneBvhView& trees = on_device.view().bvh;
@@ -132,8 +149,11 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const Camera camera = choose_camera(flags.camera, scene, 16.0f / 9.0f, messages);
     reporter.say_messages();
     watch.restart();
-    std::vector<RaySet> sets =
-        make_record_ray_sets({scene, camera, frame.width, frame.height, make_ray_tracer(queue, trees)}, flags.count);
+    const auto trace = [tracer = make_ray_tracer(queue, trees)](std::span<const Ray> rays, std::span<RayHit> hits) {
+        throw_if_interrupted();
+        tracer(rays, hits);
+    };
+    std::vector<RaySet> sets = make_record_ray_sets({scene, camera, frame.width, frame.height, trace}, flags.count);
     reporter.say(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",
                              name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
                              frame.height));
@@ -143,25 +163,31 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
         SetFigures figures = measure(queue, trees, sets[i], flags, prepared);
         figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
         if (record != nullptr && !is_moved) figures.record = &record->sets[i];
-        print(figures, reporter);
+        reporter.answer(std::exchange(header, ""));
+        print(figures, flags.check, reporter);
         sets[i].rays = {}; // a quarter of a gigabyte on the record
+    }
+    if (flags.check) {
+        reporter.answer(fmt::format("{}: checked, each hit is that of the binary walk on the CPU, to the bit\n", name));
     }
 }
 
 int bench_rays(const RaysFlags& flags) {
     Reporter reporter(flags.report);
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     std::vector<std::string> scenes = flags.scenes;
     if (scenes.empty()) {
         for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
     }
-    reporter.answer(
+    for (const std::string& scene : scenes) check_scene(scene);
+    listen_for_interrupt();
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
+    std::string header =
         fmt::format("{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in "
                     "the binary tree,\nnodes of the dearest ray; at the right the record, on an H200\n{:11} "
                     "{:8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6} {:>6} {:>6}\n",
                     queue->device_name(), "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
-                    "tri", "most", "best", "hits", "nodes", "tri"));
-    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, reporter);
+                    "tri", "most", "best", "hits", "nodes", "tri");
+    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, header, reporter);
     return 0;
 }
 
@@ -171,7 +197,8 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("rays", "Sets of rays that other tracers can be timed on");
     const auto flags = std::make_shared<RaysFlags>();
     verb.add_option("--scene", flags->scenes,
-                    "sponza, bunny, forest or a scene file; may be given\nagain (the first three, the files under "
+                    "sponza, bunny, forest, a scene file or a built-in scene;\nmay be given again (the first three, "
+                    "the files under "
                     "PERTEV_SCENES)")
         ->type_name("NAME|FILE")
         ->allow_extra_args(false);
@@ -190,7 +217,10 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
     verb.add_flag("--check", flags->check, "compare every hit with the binary walk's on the CPU, bit for bit");
     add_machine_flags(verb, flags->machine);
     add_report_flags(verb, flags->report);
-    verb.callback([flags, &status] { status = bench_rays(*flags); });
+    verb.callback([&verb, flags, &status] {
+        refuse_flags_before(verb);
+        status = bench_rays(*flags);
+    });
 }
 
 } // namespace pertev

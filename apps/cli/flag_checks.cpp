@@ -19,8 +19,6 @@ CLI::Validator checked(Accepts accepts, std::string wanted) {
     return CLI::Validator(check, ""); // nothing in --help: the flag's own text tells
 }
 
-bool is_open_ended(float high) { return high == std::numeric_limits<float>::max(); }
-
 } // namespace
 
 CLI::Validator number_between(float low, float high) {
@@ -28,9 +26,7 @@ CLI::Validator number_between(float low, float high) {
         const auto value = number_in(text);
         return value && *value >= low && *value <= high;
     };
-    return checked(accepts, low == -high          ? "a finite number"
-                            : is_open_ended(high) ? fmt::format("a finite number from {} up", low)
-                                                  : fmt::format("a number from {} to {}", low, high));
+    return checked(accepts, fmt::format("a number from {} to {}", low, high));
 }
 
 CLI::Validator number_above_zero(float high) {
@@ -38,8 +34,7 @@ CLI::Validator number_above_zero(float high) {
         const auto value = number_in(text);
         return value && *value > 0 && *value <= high;
     };
-    return checked(accepts, is_open_ended(high) ? "a finite number above 0"
-                                                : fmt::format("a number above 0 and at most {}", high));
+    return checked(accepts, fmt::format("a number above 0 and at most {}", high));
 }
 
 CLI::Validator whole_between(uint32_t low, uint32_t high) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a flag takes. CLI11's own Range lets NaN through, and its messages show bounds such as 1.8e308.
+// What a flag takes. CLI11's own Range lets NaN through.
 
 #include <cstdint>
 #include <limits>

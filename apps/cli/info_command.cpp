@@ -1,7 +1,9 @@
 // pertev info SCENE|IMAGE: what a file holds.
 
+#include <algorithm>
 #include <concepts>
 #include <memory>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,9 +11,12 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "base/error.h"
+#include "formats/read_scene.h"
 #include "image/picture_hash.h"
 #include "image/read_exr.h"
 #include "image/read_image.h"
+#include "shading/build_light_set.h"
 
 namespace pertev {
 namespace {
@@ -63,6 +68,8 @@ private:
     std::vector<Fact> facts_;
 };
 
+constexpr std::string_view kPictures[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr"};
+
 std::string lower_case_extension(const std::string& file) {
     std::string extension = std::filesystem::path(file).extension().string();
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -71,10 +78,7 @@ std::string lower_case_extension(const std::string& file) {
 
 bool is_image(const std::string& file) {
     const std::string extension = lower_case_extension(file);
-    for (const char* known : {".exr", ".png", ".jpg", ".jpeg", ".hdr"}) {
-        if (extension == known) return true;
-    }
-    return false;
+    return std::ranges::find(kPictures, extension) != std::end(kPictures);
 }
 
 void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
@@ -110,13 +114,17 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
     facts.add("triangles_placed", placed);
     facts.add("materials", scene.materials.size());
     facts.add("images", scene.images.size());
-    facts.add("lights", scene.lights.size());
+    const uint64_t emissive = count_emissive_triangles(scene);
+    facts.add("lights", emissive + scene.lights.size() + (scene.environment ? 1 : 0)); // as render counts them
+    facts.add("emissive_triangles", emissive);
     facts.add("environment", scene.environment ? "yes" : "no");
     const Bounds3 bounds = bounds_of(scene);
     facts.add("bounds_low", bounds.lo);
     facts.add("bounds_high", bounds.hi);
     std::vector<std::string> cameras;
-    for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
+    for (const Camera& camera : scene.cameras) { // what --camera takes
+        cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);
+    }
     facts.add("cameras", cameras);
 }
 
@@ -127,8 +135,11 @@ int info(const InfoFlags& flags) {
     facts.add("file", flags.file);
     if (is_image(flags.file)) {
         describe_image(flags, facts, messages);
-    } else {
+    } else if (is_scene_name(flags.file)) {
         describe_scene(flags, facts, messages);
+    } else {
+        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a picture ({}) nor {}", flags.file,
+                                                     fmt::join(kPictures, " "), scene_kinds()));
     }
     reporter.say_messages();
     facts.report(reporter);

@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "base/error.h"
+
 namespace pertev {
 namespace {
 
@@ -21,5 +23,9 @@ void listen_for_interrupt() {
 }
 
 bool interrupted() { return g_interrupted != 0; }
+
+void throw_if_interrupted() {
+    if (interrupted()) throw Error(ErrorCode::Interrupted, "interrupted");
+}
 
 } // namespace pertev

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -35,11 +37,38 @@ int fail(ErrorCode code, const std::string& message) {
     return exit_status(code);
 }
 
+/// The line names none of the verbs there are.
+std::string describe_missing_verb(const CLI::App& app) {
+    std::vector<std::string> verbs;
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+        verbs.push_back(verb->get_name());
+    }
+    const std::vector<std::string> strange = app.remaining();
+    return fmt::format("{}a verb is required: {}", strange.empty() ? "" : strange.front() + " is not understood; ",
+                       fmt::join(verbs, ", "));
+}
+
+/// Says which flag is given more often than it is taken; nothing where none is.
+std::string describe_repetition(const CLI::App& verb) {
+    for (const CLI::Option* flag : verb.get_options()) {
+        const int most = std::max(flag->get_items_expected_max(), 1);
+        if (flag->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw && int(flag->count()) > most) {
+            return fmt::format("{}: given {} times, taken once", flag->get_name(), flag->count());
+        }
+    }
+    return "";
+}
+
 std::string describe(const CLI::App* app, const CLI::Error& error) {
-    std::string verb = app->get_name(), what = error.what();
-    for (const CLI::App* sub : app->get_subcommands()) verb += ' ' + sub->get_name();
-    if (what.starts_with("A subcommand")) what = "a verb is required: render, compare, info, bench or lab";
-    return fmt::format("pertev: {}\n({} --help lists what there is)\n", what, verb);
+    std::string path = app->get_name(), what = error.what();
+    const CLI::App* verb = app;
+    while (!verb->get_subcommands().empty()) {
+        verb = verb->get_subcommands().front();
+        path += ' ' + verb->get_name();
+    }
+    if (verb == app) what = describe_missing_verb(*app);
+    if (const std::string repeated = describe_repetition(*verb); !repeated.empty()) what = repeated;
+    return fmt::format("pertev: {}\n({} --help lists what there is)\n", what, path);
 }
 
 /// Parses the command line, which runs its verb.

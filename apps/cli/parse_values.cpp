@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,8 @@
 
 namespace pertev {
 namespace {
+
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
 template <class T>
 std::optional<T> parse_all_of(std::string_view text) {
@@ -58,12 +61,14 @@ std::pair<uint32_t, uint32_t> parse_size(const std::string& flag, const std::str
 
 float parse_number(const std::string& flag, const std::string& text) {
     if (const auto value = number_in(text)) return *value;
-    throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected a finite number", flag, text));
+    throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected a number of size {} at most", flag, text, kMaxFloat));
 }
 
 Vec3 parse_vec3(const std::string& flag, const std::string& text) {
     if (const auto value = three_numbers(text)) return *value;
-    throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected three numbers X,Y,Z, such as 1,0.5,-2", flag, text));
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("{} {}: expected three numbers X,Y,Z of size {} at most, such as 1,0.5,-2", flag, text, kMaxFloat));
 }
 
 Vec3 parse_position(const std::string& flag, const std::string& text) {

@@ -11,6 +11,7 @@
 #include "apps/cli/render_flags.h"
 #include "apps/cli/write_result.h"
 #include "base/error.h"
+#include "base/message_text.h"
 #include "base/stopwatch.h"
 
 namespace pertev {
@@ -49,11 +50,12 @@ int render(const RenderFlags& flags) {
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);
     reporter.say_messages();
-    reporter.say(fmt::format("{}: {} triangles, {} instances, {} lights; loaded in {:.2f} s, trees in {:.2f} s; "
+    reporter.say(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
                              "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
-                             flags.scene.scene, prepared.triangles, scene.instances.size(),
-                             prepared.lights.choice.count, load_s, prepared.build_seconds, settings.width,
-                             settings.height, settings.samples, queue->device_name(),
+                             flags.scene.scene, counted(prepared.triangles, "triangle"),
+                             counted(scene.instances.size(), "instance"),
+                             counted(prepared.lights.choice.count, "light"), load_s, prepared.build_seconds,
+                             settings.width, settings.height, settings.samples, queue->device_name(),
                              static_cast<double>(predicted_bytes(prepared, settings, queue->is_cuda())) / 1048576.0));
 
     listen_for_interrupt();
@@ -64,13 +66,16 @@ int render(const RenderFlags& flags) {
     const RenderRecord record = {.device = queue->device_name(),
                                  .is_cuda = queue->is_cuda(),
                                  .default_light = loaded.default_light,
+                                 .has_environment = scene.environment.has_value(),
+                                 .filter_radius = filter_radius_of(settings),
+                                 .camera = camera,
                                  .load_seconds = load_s,
                                  .build_seconds = prepared.build_seconds};
     const std::string hash = write_result(flags, record, result, reporter);
     report_result(record, result, hash, watch.seconds(), reporter);
     if (flags.strict && result.invalid_samples > 0) {
-        throw Error(ErrorCode::BadInput, fmt::format("--strict: {} samples were not finite; the picture is written",
-                                                     result.invalid_samples));
+        throw Error(ErrorCode::BadInput, fmt::format("--strict: {} not finite; the picture is written",
+                                                     counted(result.invalid_samples, "sample")));
     }
     return interrupted() && result.samples < settings.samples ? exit_status(ErrorCode::Interrupted) : 0;
 }

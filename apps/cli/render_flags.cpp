@@ -1,14 +1,15 @@
 #include "apps/cli/render_flags.h"
 
 #include <algorithm>
+#include <initializer_list>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
 #include "base/limits.h"
-#include "base/write_file_atomically.h"
 #include "image/write_image.h"
 
 namespace pertev {
@@ -35,6 +36,12 @@ std::vector<std::string> names_of(const std::vector<std::pair<std::string, T>>& 
     std::vector<std::string> names;
     for (const auto& [name, value] : choices) names.push_back(name);
     return names;
+}
+
+bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> formats) {
+    return std::ranges::any_of(flags.outputs, [&](const std::string& output) {
+        return std::ranges::find(formats, image_format_for(output)) != formats.end();
+    });
 }
 
 } // namespace
@@ -117,14 +124,22 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
 
 void check_render_flags(const RenderFlags& flags) {
     if (!flags.exposure.empty() && flags.exposure != "auto") parse_number("--exposure", flags.exposure);
-    bool any_exr = false;
-    for (const std::string& output : flags.outputs) {
-        any_exr = image_format_for(output) == ImageFormat::Exr || any_exr;
-        check_writable(output);
-    }
-    if (!flags.aovs.empty() && !any_exr) {
+    RenderSettings size; // where no flag tells it, it is small enough for every format
+    if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
+    for (const std::string& output : flags.outputs) check_image_output(output, size.width, size.height);
+    if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }
+    if (flags.transparent && !writes_any(flags, {ImageFormat::Exr, ImageFormat::Png})) {
+        throw Error(ErrorCode::BadInput, "--transparent: alpha is kept in EXR and PNG alone; add -o NAME.exr or .png");
+    }
+    if ((!flags.exposure.empty() || flags.tone_map != "srgb") &&
+        !writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg})) {
+        throw Error(ErrorCode::BadInput, fmt::format("--{}: light is mapped to tones in PNG and JPEG alone; add -o "
+                                                     "NAME.png or .jpg",
+                                                     flags.exposure.empty() ? "tone-map" : "exposure"));
+    }
+    check_scene_options(flags.scene);
 }
 
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {

@@ -6,7 +6,6 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
-#include "formats/builtin_scenes.h"
 #include "formats/read_environment.h"
 #include "formats/read_scene.h"
 #include "math/portable_math.h"
@@ -19,14 +18,12 @@ constexpr float kRadiansPerDegree = kPi / 180.0f;
 
 Environment environment_of(const SceneOptions& options, Messages& messages) {
     Environment environment;
-    environment.rotation = options.environment_rotation_deg * kRadiansPerDegree;
-    environment.scale = grey(options.environment_scale);
     if (Rgb color; parse_rgb(options.environment, color)) {
         if (color.r < 0 || color.g < 0 || color.b < 0) {
             throw Error(ErrorCode::BadInput,
                         fmt::format("--environment {}: radiance cannot be negative", options.environment));
         }
-        environment.scale = options.environment_scale * color;
+        environment.scale = color;
         return environment;
     }
     if (!std::filesystem::exists(options.environment)) {
@@ -48,7 +45,7 @@ const Camera& named_camera(const std::string& name, const Scene& scene) {
     }
     std::string known;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        known += fmt::format("\n  {}  {}", i, scene.cameras[i].name);
+        known += fmt::format("\n  {}  {}", i, scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
     }
     throw Error(ErrorCode::BadInput, fmt::format("--camera {}: the scene has no such camera; it has:{}", name,
                                                  known.empty() ? "\n  none" : known));
@@ -63,11 +60,10 @@ void place_camera(const SceneOptions& options, Camera& camera) {
     Transform placed = look_at(eye, target, up);
     if (!is_finite(placed.row0) && options.up.empty()) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
     if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format("--eye {},{},{} --target {},{},{} --up {},{},{}: the target must differ from the eye and "
-                        "not lie along up",
-                        eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z));
+        const std::string of_up = options.up.empty() ? "" : fmt::format(" and not lie along --up {}", options.up);
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--eye {},{},{} --target {},{},{}: the target must differ from the eye{}", eye.x, eye.y,
+                                eye.z, target.x, target.y, target.z, of_up));
     }
     camera.world_from_camera = placed;
     if (options.focus_m <= 0) camera.focus_distance = length(target - eye);
@@ -83,7 +79,30 @@ void flatten(const SceneOptions& options, const Scene& scene, Camera& camera) {
     if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
 }
 
+void warn_of_useless_flags(const SceneOptions& options, const Camera& camera, Messages& messages) {
+    const bool is_perspective = camera.projection == Projection::Perspective;
+    if (options.view_height_m > 0 && is_perspective) {
+        messages.warn("--view-height: the camera is a perspective one; --projection orthographic makes use of it");
+    }
+    if (options.fov_deg > 0 && !is_perspective && (options.projection.empty() || options.view_height_m > 0)) {
+        messages.warn("--fov: the camera is an orthographic one, whose view has a height; --view-height sets that");
+    }
+    if (options.focus_m > 0 && camera.aperture_radius == 0) {
+        messages.warn("--focus: the lens has no aperture, so all is sharp; --aperture gives it one");
+    }
+}
+
 } // namespace
+
+void check_scene_options(const SceneOptions& options) {
+    if (options.view_height_m > 0 && options.projection == "perspective") {
+        throw Error(ErrorCode::BadInput, "--view-height: a perspective view has none; say --fov, or "
+                                         "--projection orthographic");
+    }
+    if (options.focus_m > 0 && options.aperture_m == 0) {
+        throw Error(ErrorCode::BadInput, "--focus: with --aperture 0 all is sharp; give the lens a radius");
+    }
+}
 
 void add_view_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
@@ -105,7 +124,7 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->check(one_of({"perspective", "orthographic"}))
         ->group(group);
     verb.add_option("--view-height", options.view_height_m,
-                    "orthographic: full height of the view, metres (as much as the\nperspective view shows)")
+                    "of an orthographic view: its full height, metres (as much as\nthe perspective view shows)")
         ->type_name("M")
         ->check(length_m())
         ->group(group);
@@ -113,7 +132,8 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(number_between(0, kMaxCoordinate))
         ->group(group);
-    verb.add_option("--focus", options.focus_m, "distance in focus, metres (that of the target)")
+    verb.add_option("--focus", options.focus_m,
+                    "of a lens with an aperture: distance in focus, metres (that of\nthe target)")
         ->type_name("M")
         ->check(length_m())
         ->group(group);
@@ -126,11 +146,11 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("--environment", options.environment, "an .hdr or .exr panorama, or R,G,B: light from far away")
         ->type_name("FILE|R,G,B")
         ->group(group);
-    verb.add_option("--environment-rotation", options.environment_rotation_deg, "about +y")
+    verb.add_option("--environment-rotation", options.environment_rotation_deg, "turned about +y; of a made-up sky too")
         ->type_name("DEG")
         ->check(number_between(-1e6f, 1e6f))
         ->group(group);
-    verb.add_option("--environment-scale", options.environment_scale, "times its radiance")
+    verb.add_option("--environment-scale", options.environment_scale, "times its radiance; of a made-up sky too")
         ->type_name("X")
         ->check(number_between(0, 1e12f))
         ->group(group);
@@ -148,21 +168,28 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
                      Messages& messages) {
     ReadOptions read;
     read.allowed_paths = allowed_paths;
-    return builtin_scene(name) ? read_builtin_scene(name, messages) : read_scene(name, read, messages);
+    return read_scene(name, read, messages);
 }
 
 LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
     Scene scene = read_any_scene(options.scene, options.allowed_paths, messages);
     if (!options.environment.empty()) {
         scene.environment = environment_of(options, messages);
-    } else if (scene.environment) {
-        scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
-        scene.environment->scale = options.environment_scale * scene.environment->scale;
     }
     const bool had_environment = scene.environment.has_value();
     const std::size_t lights = scene.lights.size();
     add_default_environment(scene, messages);
     const bool default_light = scene.lights.size() != lights || scene.environment.has_value() != had_environment;
+    if (scene.environment) {
+        scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
+        scene.environment->scale = options.environment_scale * scene.environment->scale;
+    } else {
+        const auto warn = [&](const char* flag) {
+            messages.warn(fmt::format("{}: the scene has no environment; --environment gives it one", flag));
+        };
+        if (options.environment_rotation_deg != 0) warn("--environment-rotation");
+        if (options.environment_scale != 1) warn("--environment-scale");
+    }
     return {std::move(scene), default_light};
 }
 
@@ -188,6 +215,7 @@ Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspe
         flatten(options, scene, camera);
     }
     if (options.view_height_m > 0) camera.ortho_height = options.view_height_m;
+    warn_of_useless_flags(options, camera, messages);
     return camera;
 }
 

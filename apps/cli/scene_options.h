@@ -36,6 +36,9 @@ void add_view_options(CLI::App& verb, SceneOptions& options);
 /// --allow-path alone.
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);
 
+/// What can be told before the scene is read. Throws Error(BadInput) for a flag that another one makes useless.
+void check_scene_options(const SceneOptions& options);
+
 /// A file, or a built-in scene by its name. Throws Error.
 Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
                      Messages& messages);
@@ -45,15 +48,16 @@ struct LoadedScene {
     bool default_light = false; // it brought none of its own
 };
 
-/// The scene read, with the environment that the flags or the defaults give it. Throws Error.
+/// The scene read, with the environment that the flags or the defaults give it. A flag that this scene makes useless is
+/// a warning. Throws Error.
 LoadedScene load_scene(const SceneOptions& options, Messages& messages);
 
 /// The scene's own camera: the one that --camera names, else the first, else null. Throws Error(BadInput) that lists
 /// those there are when none is named so.
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene);
 
-/// The camera that the flags or the scene or the defaults give, for a picture of this width / height. Throws
-/// Error(BadInput).
+/// The camera that the flags or the scene or the defaults give, for a picture of this width / height. A flag that this
+/// camera makes useless is a warning. Throws Error(BadInput).
 Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages);
 
 } // namespace pertev

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/parse_values.h"
+#include "base/message_text.h"
 #include "base/version.h"
 #include "image/auto_exposure.h"
 #include "image/picture_hash.h"
@@ -24,24 +25,63 @@ double peak_memory_bytes() {
     return static_cast<double>(usage.ru_maxrss) * 1024.0;
 }
 
+std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+/// The flags that place this camera again: to the bit where flags have placed it, else as near as their numbers go.
+void add_camera(const SceneOptions& options, const Camera& camera, ExrMetadata& metadata) {
+    const Transform& from = camera.world_from_camera;
+    const Vec3 eye = from.translation;
+    const Vec3 target = options.target.empty() ? eye - camera.focus_distance * column(from, 2)
+                                               : parse_position("--target", options.target);
+    Vec3 up = options.up.empty() ? column(from, 1) : parse_vec3("--up", options.up);
+    for (const Vec3 unsaid : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
+        if (options.up.empty() && look_at(eye, target, unsaid) == from) up = unsaid;
+    }
+    metadata.insert(metadata.end(), {{"pertev.eye", comma_separated(eye)},
+                                     {"pertev.target", comma_separated(target)},
+                                     {"pertev.up", comma_separated(up)},
+                                     {"pertev.aperture", camera.aperture_radius}});
+    if (camera.aperture_radius > 0) metadata.emplace_back("pertev.focus", camera.focus_distance);
+    if (camera.projection == Projection::Orthographic) {
+        metadata.insert(metadata.end(),
+                        {{"pertev.projection", "orthographic"}, {"pertev.view_height", camera.ortho_height}});
+    } else {
+        const float fov_deg = options.fov_deg > 0 ? options.fov_deg : camera.fov_y * (180 / kPi);
+        metadata.insert(metadata.end(), {{"pertev.projection", "perspective"}, {"pertev.fov", fov_deg}});
+    }
+}
+
+void add_environment(const SceneOptions& options, bool is_there, ExrMetadata& metadata) {
+    const std::string made_up = is_there ? "made up" : "none";
+    metadata.insert(metadata.end(),
+                    {{"pertev.environment", options.environment.empty() ? made_up : options.environment},
+                     {"pertev.environment_scale", options.environment_scale},
+                     {"pertev.environment_rotation", options.environment_rotation_deg}});
+}
+
+/// How the picture was made, all that is needed to make it again among it.
 ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, const RenderRecord& record,
                         const std::string& hash) {
-    return {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
-            {"pertev.scene", flags.scene.scene},
-            {"pertev.samples", static_cast<int32_t>(result.samples)},
-            {"pertev.max_depth", static_cast<int32_t>(flags.max_depth)},
-            {"pertev.integrator", flags.integrator},
-            {"pertev.sampler", flags.sampler},
-            {"pertev.filter", flags.filter},
-            {"pertev.seed", fmt::format("{}", flags.seed)},
-            {"pertev.clamp", flags.clamp},
-            {"pertev.device", record.device},
-            {"pertev.hash", hash},
-            {"pertev.invalid_samples", static_cast<double>(result.invalid_samples)},
-            {"pertev.load_seconds", record.load_seconds},
-            {"pertev.build_seconds", record.build_seconds},
-            {"pertev.render_seconds", result.render_seconds},
-            {"pertev.rays", static_cast<double>(result.rays.total())}};
+    ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
+                            {"pertev.scene", flags.scene.scene},
+                            {"pertev.samples", static_cast<int32_t>(result.samples)},
+                            {"pertev.max_depth", static_cast<int32_t>(flags.max_depth)},
+                            {"pertev.integrator", flags.integrator},
+                            {"pertev.sampler", flags.sampler},
+                            {"pertev.filter", flags.filter},
+                            {"pertev.filter_radius", record.filter_radius},
+                            {"pertev.seed", fmt::format("{}", flags.seed)},
+                            {"pertev.clamp", flags.clamp},
+                            {"pertev.device", record.device},
+                            {"pertev.hash", hash},
+                            {"pertev.invalid_samples", static_cast<double>(result.invalid_samples)},
+                            {"pertev.load_seconds", record.load_seconds},
+                            {"pertev.build_seconds", record.build_seconds},
+                            {"pertev.render_seconds", result.render_seconds},
+                            {"pertev.rays", static_cast<double>(result.rays.total())}};
+    add_camera(flags.scene, record.camera, metadata);
+    add_environment(flags.scene, record.has_environment, metadata);
+    return metadata;
 }
 
 std::vector<ExrLayer> layers_of(RenderResult& result) {
@@ -103,11 +143,11 @@ void report_result(const RenderRecord& record, const RenderResult& result, const
     const double device_bytes = static_cast<double>(result.device_peak_bytes), host_bytes = peak_memory_bytes();
     reporter.say(
         fmt::format("{} spp in {:.2f} s ({:.2f} s in all), {:.2f} Msamples/s, {:.1f} Mrays/s, peak {:.0f} MiB{}, "
-                    "{} invalid samples, picture {}",
+                    "{}, picture {}",
                     result.samples, result.render_seconds, total_seconds, samples_per_second * 1e-6,
                     rays_per_second * 1e-6, host_bytes / kMebibyte,
                     record.is_cuda ? fmt::format(" and {:.0f} MiB on the GPU", device_bytes / kMebibyte) : "",
-                    result.invalid_samples, hash));
+                    counted(result.invalid_samples, "invalid sample"), hash));
     reporter.event(fmt::format(
         R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{:.0f},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{}}})",
         result.samples, result.render_seconds, total_seconds, json_number(samples_per_second),

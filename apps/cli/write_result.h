@@ -14,6 +14,9 @@ struct RenderRecord {
     std::string device;
     bool is_cuda = false;
     bool default_light = false; // made up for lack of any: the exposure then follows the picture
+    bool has_environment = false;
+    float filter_radius = 0; // pixels
+    Camera camera;
     double load_seconds = 0, build_seconds = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
@@ -107,7 +108,7 @@ int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> by
 
 void TextureLoader::load_into(Scene& scene) {
     if (missing_ > kMissingNamed) {
-        messages_.warn(fmt::format("{} further textures are not there", missing_ - kMissingNamed));
+        messages_.warn(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
     std::vector<TextureImage> decoded(sources_.size());
     const std::vector<Uses> uses = uses_of(scene, sources_.size());

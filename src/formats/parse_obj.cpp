@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "formats/parse_number.h"
 #include "formats/triangulate_polygon.h"
@@ -120,12 +121,12 @@ public:
             missing = {missing.times + of_group.times,
                        missing.times == 0 ? of_group.first_line : std::min(missing.first_line, of_group.first_line)};
         }
-        say(missing, "corners of faces name a texture coordinate or normal that is not in the file; they go without");
-        say(bad_numbers_, "lines have numbers that are missing or cannot be read");
-        say(short_faces_, "faces have fewer than three corners; they are left out");
-        say(points_and_lines_, "points and lines are left out");
-        say(free_form_, "statements of curves and free-form surfaces are left out");
-        say(unknown_, "lines cannot be understood; they are left out");
+        say(missing, "face corner", "with a texture coordinate or normal that is not in the file: without it");
+        say(bad_numbers_, "line", "with a number missing or not readable");
+        say(short_faces_, "face", "of fewer than three corners: left out");
+        say(points_and_lines_, "statement", "of points or lines: left out");
+        say(free_form_, "statement", "of curves or free-form surfaces: left out");
+        say(unknown_, "line", "not understood: left out");
         return std::move(data_);
     }
 
@@ -134,9 +135,9 @@ private:
         return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file_, line, what));
     }
 
-    void say(const Counted& what, const char* text) const {
+    void say(const Counted& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, what.times, text));
+        messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text));
     }
 
     void statement(std::string_view line) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "formats/load_textures.h"
@@ -147,8 +148,8 @@ Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions
     }
 
     if (unknown > 0 && !options.geometry_only) {
-        messages.warn(fmt::format("{}: {} materials are in no .mtl file ({} is the first); they are grey", file,
-                                  unknown, first_unknown));
+        messages.warn(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
+                                  counted(unknown, "material"), first_unknown));
     }
 
     parallel_invoke([&] { loader.load_into(scene); },

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/message_text.h"
 #include "base/read_file.h"
 #include "formats/parse_number.h"
 #include "formats/ply_header.h"
@@ -233,7 +234,7 @@ public:
         }
         triangulate();
         if (strays_ > 0) {
-            messages.warn(fmt::format("{}: {} faces have fewer than three corners; they are left out", file_, strays_));
+            messages.warn(fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
         }
         return std::move(mesh_);
     }

@@ -1,7 +1,10 @@
 #include "formats/read_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,7 +19,7 @@ namespace pertev {
 namespace {
 
 struct Reader {
-    const char* extension;
+    std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Messages&);
 };
 
@@ -27,38 +30,40 @@ const std::array kReaders = {
     Reader{".glb", read_gltf},
 };
 
-const Reader& reader_for(const std::filesystem::path& path) {
+/// Null for an extension that no reader has.
+const Reader* find_reader(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    std::string known;
-    for (const Reader& reader : kReaders) {
-        if (extension == reader.extension) return reader;
-        known += std::string(known.empty() ? "" : " ") + reader.extension;
+    const auto found = std::ranges::find(kReaders, extension, &Reader::extension);
+    return found == kReaders.end() ? nullptr : &*found;
+}
+
+Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
+    const FileAccess access(path, options.allowed_paths);
+    if (const auto bytes = builtin_scene(path.string())) {
+        return read_gltf(path, {bytes->begin(), bytes->end()}, access, options, messages);
     }
-    throw Error(ErrorCode::BadInput,
-                fmt::format("{}: the kind of scene is told by the file's extension, one of {}", path.string(), known));
+    if (const Reader* reader = find_reader(path)) return reader->read(path, access, options, messages);
+    throw Error(ErrorCode::BadInput, fmt::format("{}: neither {}", path.string(), scene_kinds()));
 }
 
 } // namespace
 
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
-    const Reader& reader = reader_for(path);
-    const FileAccess access(path, options.allowed_paths);
-    Scene scene = reader.read(path, access, options, messages);
+    Scene scene = read_file_or_builtin(path, options, messages);
     validate(scene, path.string(), messages);
     return scene;
 }
 
-Scene read_builtin_scene(const std::string& name, Messages& messages) {
-    const auto bytes = builtin_scene(name);
-    if (!bytes) {
-        std::string known;
-        for (const std::string_view other : builtin_scene_names()) known += " " + std::string(other);
-        throw Error(ErrorCode::BadInput, fmt::format("{}: no built-in scene has this name; there are:{}", name, known));
-    }
-    Scene scene = read_gltf(name, {bytes->begin(), bytes->end()}, FileAccess(name, {}), {}, messages);
-    validate(scene, name, messages);
-    return scene;
+bool is_scene_name(const std::filesystem::path& path) {
+    return builtin_scene(path.string()).has_value() || find_reader(path) != nullptr;
+}
+
+std::string scene_kinds() {
+    std::vector<std::string_view> extensions;
+    for (const Reader& reader : kReaders) extensions.emplace_back(reader.extension);
+    return fmt::format("a scene file ({}) nor a built-in scene ({})", fmt::join(extensions, " "),
+                       fmt::join(builtin_scene_names(), " "));
 }
 
 } // namespace pertev

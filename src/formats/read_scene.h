@@ -1,7 +1,7 @@
 #pragma once
 
 // Reads a scene file of any supported kind, by its extension: .obj .ply .gltf .glb. Readers are an open set: one file
-// each (read_obj, read_ply, read_gltf), listed in the table in read_scene.cpp.
+// each (read_obj, read_ply, read_gltf), listed in the table in read_scene.cpp. Built-in scenes are read by their names.
 
 #include <filesystem>
 #include <string>
@@ -18,12 +18,14 @@ struct ReadOptions {
     bool geometry_only = false;                       // skip textures and materials: every surface grey
 };
 
-/// Throws Error(BadInput) that names the file, the place in it and what would be right. What was left out or repaired
-/// is said in `messages`. The scene has been through validate().
+/// The scene in a file, or the one that is part of the program under this name (formats/builtin_scenes.h). Throws
+/// Error(BadInput) that names the file, the place in it and what would be right. What was left out or repaired is said
+/// in `messages`. The scene has been through validate().
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
-/// A scene that is part of the program (formats/builtin_scenes.h has the names). Throws Error(BadInput) that lists
-/// them when there is none of that name.
-Scene read_builtin_scene(const std::string& name, Messages& messages);
+/// Whether a name could be a scene's: it has an extension from above or is that of a built-in scene.
+bool is_scene_name(const std::filesystem::path& path);
+/// What there is to be named, for messages: "a scene file (.obj ...) nor a built-in scene (...)".
+std::string scene_kinds();
 
 } // namespace pertev

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/write_file_atomically.h"
 #include "image/tone_map_image.h"
 #include "image/write_hdr.h"
 #include "image/write_jpeg.h"
@@ -24,6 +25,11 @@ ImageFormat image_format_for(const std::filesystem::path& path) {
         ErrorCode::BadInput,
         fmt::format("{}: {}; a picture is written as .exr, .png, .jpg (.jpeg) or .hdr", path.string(),
                     extension.empty() ? "the name has no extension" : fmt::format("unknown extension {}", extension)));
+}
+
+void check_image_output(const std::filesystem::path& path, uint32_t width, uint32_t height) {
+    if (image_format_for(path) == ImageFormat::Jpeg) check_jpeg_size(path.string(), width, height);
+    check_writable(path);
 }
 
 void write_image(const std::filesystem::path& path, const Image& linear, const WriteImageOptions& options) {

@@ -3,6 +3,7 @@
 // Writes a rendered picture in the format that its file name asks for.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -23,8 +24,12 @@ struct WriteImageOptions {
 };
 
 /// The format of a file to be written, by its extension in any case: .exr .png .jpg .jpeg .hdr. Throws
-/// Error(BadInput) that lists these for any other: to be asked before a long render.
+/// Error(BadInput) that lists these for any other.
 ImageFormat image_format_for(const std::filesystem::path& path);
+
+/// Throws, with the name, what write_image would for this name and size, Error(OverLimit) included where the format
+/// holds no picture that large: to be asked before a long render. Creates nothing that stays.
+void check_image_output(const std::filesystem::path& path, uint32_t width, uint32_t height);
 
 /// EXR and HDR hold `linear` (linear Rec. 709) as it is; PNG and JPEG hold it tone-mapped. Replaces `path` atomically.
 /// Throws Error(BadInput) for an unknown extension, Error(FileWrite) when the file cannot be written.

@@ -64,14 +64,18 @@ bool write_all(JpegWriter& writer, uint32_t width, uint32_t height, int quality,
 
 } // namespace
 
+void check_jpeg_size(const std::string& name, uint32_t width, uint32_t height) {
+    if (width > JPEG_MAX_DIMENSION || height > JPEG_MAX_DIMENSION)
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("{}: {} x {} pixels are too many for JPEG, whose limit is {} along a side; use .png",
+                                name, width, height, JPEG_MAX_DIMENSION));
+}
+
 std::vector<std::byte> encode_jpeg(const Rgba8Image& picture, int quality) {
     const std::size_t row_bytes = std::size_t(picture.width) * 4;
     PERTEV_CHECK(row_bytes > 0 && picture.height > 0 && picture.pixels.size() == row_bytes * picture.height);
     PERTEV_CHECK(quality >= 1 && quality <= 100);
-    if (picture.width > JPEG_MAX_DIMENSION || picture.height > JPEG_MAX_DIMENSION)
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("{} x {} pixels are too many for JPEG, whose limit is {} along a side; use .png",
-                                picture.width, picture.height, JPEG_MAX_DIMENSION));
+    check_jpeg_size("picture", picture.width, picture.height);
     std::vector<JSAMPROW> rows(picture.height);
     for (std::size_t y = 0; y < rows.size(); ++y) // the library only reads them
         rows[y] = const_cast<JSAMPROW>(picture.pixels.data() + y * row_bytes);

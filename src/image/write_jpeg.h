@@ -3,14 +3,19 @@
 // Writes JPEG by libjpeg-turbo: slow integer DCT, no chroma subsampling. Alpha is left out.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "image/image.h"
 
 namespace pertev {
 
-/// `quality`: libjpeg's scale, 1 to 100. Sides are at most 65500 pixels (the format's limit; OverLimit above).
+/// Throws Error(OverLimit) that starts with `name` for a side of more than 65500 pixels, the format's limit.
+void check_jpeg_size(const std::string& name, uint32_t width, uint32_t height);
+
+/// `quality`: libjpeg's scale, 1 to 100. Throws as check_jpeg_size.
 std::vector<std::byte> encode_jpeg(const Rgba8Image& picture, int quality = 95);
 
 /// Replaces `path` atomically. Throws Error(FileWrite).

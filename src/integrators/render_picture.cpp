@@ -40,12 +40,11 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
     Stopwatch watch;
     const SceneOnDevice scene(queue, prepared);
     Film film(queue, settings.width, settings.height, settings.aovs);
-    const float radius = settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
     const PathBody body = queue.is_cuda() ? PathBody::Wavefront : settings.body;
     PathSettings path = settings.path;
     path.hide_background = settings.transparent;
-    PathRenderer renderer(queue, scene.view(), camera, settings.filter, radius, path, settings.width, settings.height,
-                          body, batch_of(settings));
+    PathRenderer renderer(queue, scene.view(), camera, settings.filter, filter_radius_of(settings), path,
+                          settings.width, settings.height, body, batch_of(settings));
     if (settings.stage_seconds != nullptr) renderer.time_stages(*settings.stage_seconds);
     queue.wait();
     result.upload_seconds = watch.seconds();

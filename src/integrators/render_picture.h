@@ -26,6 +26,11 @@ struct RenderSettings {
     uint32_t pass_samples = 0;             // samples a pass; 0 = as many as fit a fraction of a second
 };
 
+/// Pixels: the one asked for, or the filter's default.
+inline float filter_radius_of(const RenderSettings& settings) {
+    return settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
+}
+
 struct RenderProgress {
     uint32_t samples_done = 0, samples = 0;
     double seconds = 0; // since the first pass began

@@ -65,16 +65,6 @@ Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
     return mesh;
 }
 
-std::filesystem::path file_of(const RecordScene& scene, const std::filesystem::path& folder) {
-    const std::filesystem::path path = folder / scene.file;
-    if (folder.empty() || !std::filesystem::exists(path)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("the scene {} needs {} under the folder that PERTEV_SCENES names (docs/scenes.md){}",
-                                scene.name, scene.file, folder.empty() ? "; it is not set" : ""));
-    }
-    return path;
-}
-
 } // namespace
 
 std::span<const RecordScene> record_scenes() { return kScenes; }
@@ -82,6 +72,16 @@ std::span<const RecordScene> record_scenes() { return kScenes; }
 const RecordScene* find_record_scene(std::string_view name) {
     const auto found = std::ranges::find(kScenes, name, &RecordScene::name);
     return found == kScenes.end() ? nullptr : &*found;
+}
+
+std::filesystem::path record_file(const RecordScene& scene, const std::filesystem::path& folder) {
+    const std::filesystem::path path = folder / scene.file;
+    if (folder.empty() || !std::filesystem::exists(path)) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("the scene {} needs {} under the folder that PERTEV_SCENES names (docs/scenes.md){}",
+                                scene.name, scene.file, folder.empty() ? "; it is not set" : ""));
+    }
+    return path;
 }
 
 Camera record_camera(const RecordScene& scene) {
@@ -97,7 +97,7 @@ Scene make_record_scene(const RecordScene& record, const std::filesystem::path& 
     if (record.file == nullptr) {
         scene.meshes.push_back(make_forest());
     } else {
-        scene.meshes.push_back(read_one_mesh(file_of(record, folder), messages));
+        scene.meshes.push_back(read_one_mesh(record_file(record, folder), messages));
         if (std::string_view(record.name) == "bunny") scene.meshes[0] = make_bunny_box(scene.meshes[0]);
     }
     scene.materials.push_back({.name = "grey"});

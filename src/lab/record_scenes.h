@@ -40,8 +40,11 @@ const RecordScene* find_record_scene(std::string_view name);
 
 Camera record_camera(const RecordScene& scene);
 
-/// Geometry in one mesh, grey, with the camera. `folder` holds the public scenes as docs/scenes.md lists them; the
-/// forest needs none. Throws Error(BadInput) where the file is wanted and not there.
+/// The file of a scene that has one, under the folder of public scenes (docs/scenes.md). Throws Error(BadInput) where
+/// it is not there.
+std::filesystem::path record_file(const RecordScene& scene, const std::filesystem::path& folder);
+
+/// Geometry in one mesh, grey, with the camera. The forest needs no folder. Throws as record_file.
 Scene make_record_scene(const RecordScene& scene, const std::filesystem::path& folder, Messages& messages);
 
 } // namespace pertev

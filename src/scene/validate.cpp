@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/message_text.h"
 #include "scene/validate_materials.h"
 #include "scene/validate_mesh.h"
 
@@ -21,7 +22,8 @@ public:
         references();
         validate_materials(scene_, file_, messages_);
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
-            repairs_ += repair_mesh(scene_.meshes[i], fmt::format("{}: mesh {} {}", file_, i, scene_.meshes[i].name));
+            repairs_ +=
+                repair_mesh(scene_.meshes[i], fmt::format("{}: {}", file_, numbered("mesh", i, scene_.meshes[i].name)));
         }
         report();
         drop_empty_meshes();
@@ -46,26 +48,27 @@ private:
         for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
             if (instance.mesh >= scene_.meshes.size()) {
-                throw bad(fmt::format("instance {} {}: mesh {} is out of range; there are {}", i, instance.name,
-                                      instance.mesh, scene_.meshes.size()));
+                throw bad(fmt::format("{}: mesh {} is out of range; there are {}",
+                                      numbered("instance", i, instance.name), instance.mesh, scene_.meshes.size()));
             }
             if (instance.material >= scene_.materials.size()) {
-                throw bad(fmt::format("instance {} {}: material {} is out of range; there are {}", i, instance.name,
-                                      instance.material, scene_.materials.size()));
+                throw bad(fmt::format("{}: material {} is out of range; there are {}",
+                                      numbered("instance", i, instance.name), instance.material,
+                                      scene_.materials.size()));
             }
         }
     }
 
     void report() {
-        const auto say = [&](uint64_t count, const char* what) {
-            if (count > 0) messages_.warn(fmt::format("{}: {} {}", file_, count, what));
+        const auto say = [&](uint64_t count, const char* thing, const char* what) {
+            if (count > 0) messages_.warn(fmt::format("{}: {} {}", file_, counted(count, thing), what));
         };
-        say(repairs_.not_finite, "triangles with a vertex that is not finite are left out");
-        say(repairs_.without_area, "triangles without area are left out");
-        say(repairs_.normals, "normals that are zero or not finite are replaced by the surface's own");
-        say(repairs_.tangents, "tangents that are zero or not finite are replaced");
-        say(repairs_.texture_coordinates, "texture coordinates that are not finite are set to 0");
-        say(repairs_.colors, "vertex colours outside [0, 1] are clamped");
+        say(repairs_.not_finite, "triangle", "with a vertex that is not finite: left out");
+        say(repairs_.without_area, "triangle", "without area: left out");
+        say(repairs_.normals, "normal", "of length zero or not finite: replaced by the surface's own");
+        say(repairs_.tangents, "tangent", "of length zero or not finite: replaced");
+        say(repairs_.texture_coordinates, "texture coordinate", "not finite: set to 0");
+        say(repairs_.colors, "vertex colour", "outside [0, 1]: clamped");
     }
 
     void drop_empty_meshes() {
@@ -92,7 +95,7 @@ private:
 
     void instance(std::size_t i) {
         const Instance& instance = scene_.instances[i];
-        const std::string of = fmt::format("instance {} {}", i, instance.name);
+        const std::string of = numbered("instance", i, instance.name);
         transform(instance.world_from_local, of);
         if (bounds_.empty()) {
             for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
@@ -109,7 +112,7 @@ private:
 
     void camera(std::size_t i) const {
         const Camera& camera = scene_.cameras[i];
-        const std::string of = fmt::format("camera {} {}", i, camera.name);
+        const std::string of = numbered("camera", i, camera.name);
         transform(camera.world_from_camera, of);
         if (!is_near(camera.world_from_camera.translation)) throw too_far(of);
         if (camera.projection == Projection::Perspective && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
@@ -132,7 +135,7 @@ private:
 
     void light(std::size_t i) {
         Light& light = scene_.lights[i];
-        const std::string of = fmt::format("light {} {}", i, light.name);
+        const std::string of = numbered("light", i, light.name);
         const Rgb e = light.intensity;
         if (!(is_finite(e) && e.r >= 0 && e.g >= 0 && e.b >= 0)) {
             throw bad(

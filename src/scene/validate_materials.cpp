@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/message_text.h"
 
 namespace pertev {
 namespace {
@@ -19,10 +20,8 @@ public:
         for (std::size_t i = 0; i < scene_.images.size(); ++i) image(i);
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) material(i);
         if (clamped_ > 0) {
-            messages_.warn(
-                fmt::format("{}: {} numbers of materials are outside their range and are clamped; the first is "
-                            "{}",
-                            file_, clamped_, first_clamped_));
+            messages_.warn(fmt::format("{}: {} of materials outside the range: clamped; the first is {}", file_,
+                                       counted(clamped_, "number"), first_clamped_));
         }
         if (scene_.environment) environment(*scene_.environment);
     }
@@ -52,13 +51,13 @@ private:
         }
         if (bad_values > 0) {
             messages_.warn(
-                fmt::format("{}: {}: {} values are negative or not finite and are set to 0", file_, of, bad_values));
+                fmt::format("{}: {}: {} negative or not finite: set to 0", file_, of, counted(bad_values, "value")));
         }
     }
 
     void image(std::size_t i) {
         TextureImage& image = scene_.images[i];
-        const std::string of = fmt::format("image {} {}", i, image.name);
+        const std::string of = numbered("image", i, image.name);
         if (image.rgba_float.pixels.empty()) {
             check_size(image.rgba8.width, image.rgba8.height, image.rgba8.pixels.size(), 4, of);
             return;
@@ -84,7 +83,7 @@ private:
 
     void material(std::size_t i) {
         Material& m = scene_.materials[i];
-        of_ = fmt::format("material {} {}", i, m.name);
+        of_ = numbered("material", i, m.name);
         colour(m.base_color, 0, 1, "base_color");
         colour(m.emission, 0, kMaxSampleValue, "emission");
         colour(m.eta, 0x1p-10f, 0x1p10f, "eta");

@@ -158,6 +158,14 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     return data;
 }
 
+uint64_t count_emissive_triangles(const Scene& scene) {
+    uint64_t count = 0;
+    for (const Instance& instance : scene.instances) {
+        if (is_light(scene.materials[instance.material])) count += scene.meshes[instance.mesh].triangle_count();
+    }
+    return count;
+}
+
 LightSetView view_of(const LightSetData& data, const TextureImageView* images, const float* linear_from_srgb) {
     LightSetView view;
     view.choice = view_of(data.choice);

@@ -27,6 +27,9 @@ struct LightSetData {
 /// `scene` has passed validate(). `linear_from_srgb` [256]. Throws Error(OverLimit) for 2^32 lights and more.
 LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages);
 
+/// Triangles that give light, each placed one a light of its own.
+uint64_t count_emissive_triangles(const Scene& scene);
+
 /// View of host memory; valid as long as the data, the images and the table are.
 LightSetView view_of(const LightSetData& data, const TextureImageView* images, const float* linear_from_srgb);
 

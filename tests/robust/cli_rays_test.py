@@ -1,10 +1,7 @@
 #!/usr/bin/env python3
 """`pertev bench rays`: what it refuses and how it says so, and that what it measures is what was asked for."""
 
-from cli_run import CliTest, main, write
-
-# A floor of 2 by 2 m at y = 0 around the origin.
-FLOOR = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n"
+from cli_run import FLOOR, CliTest, main, write
 
 
 class RaysOnTheRecord(CliTest):
@@ -38,6 +35,7 @@ class RaysOnTheRecord(CliTest):
         for of in sets:
             self.assertEqual(of["rays"], 3000)
             self.assertEqual((of["scene"], of["runs"], of["record"]), ("cornell-box", 2, None))
+            self.assertTrue(of["checked"])
             self.assertGreater(of["rays_per_second"], 0)
             self.assertLessEqual(of["least_seconds"], of["median_seconds"])
             self.assertLessEqual(of["median_seconds"], of["greatest_seconds"])
@@ -45,6 +43,10 @@ class RaysOnTheRecord(CliTest):
             self.assertLessEqual(of["hit_share"], 1)
             self.assertGreaterEqual(of["most_nodes"], of["nodes"])
         again = self.rays("--scene", "cornell-box", "--count", "3000", "--threads", "1")
+        self.assertEqual({of["checked"] for of in again}, {False})
+        text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "cornell-box", "--count", "3000",
+                            "--check").stdout
+        self.assertRegex(text, r"\ncornell-box: checked, .*\n$")
         for key in ["hit_share", "nodes", "triangles", "most_nodes"]:
             self.assertEqual([of[key] for of in sets], [of[key] for of in again])
 
@@ -55,11 +57,26 @@ class RaysOnTheRecord(CliTest):
         self.assertEqual([(of["rays"], of["hit_share"]) for of in down[1:3]], [(1000, 0)] * 2)
         up = self.rays("--scene", "floor.obj", "--count", "1000", "--eye", "0,1,0.01", "--target", "0,9,0")
         self.assertEqual([(of["rays"], of["hit_share"]) for of in up], [(1000, 0)] + [(0, 0)] * 4)
+        self.assertEqual([of["rays_per_second"] is None for of in up], [False] + [True] * 4)
+
+    def test_a_set_without_rays_is_said_to_be_empty(self):
+        write(self.path("floor.obj"), FLOOR)
+        text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "floor.obj", "--count", "1000",
+                            "--eye", "0,1,0.01", "--target", "0,9,0", "--check").stdout
+        self.assertRegex(text, r"(?m)^floor +primary +1000 +[\d.]+ ")
+        for name in ["shadow", "diffuse1", "diffuse2", "diffuse3"]:
+            self.assertRegex(text, rf"(?m)^floor +{name} +0 +empty: ")
+
+    def test_an_error_of_the_camera_names_no_flag_that_is_not_there(self):
+        outcome = self.refuse(2, "bench", "rays", "--scene", "cornell-box", "--eye", "1,2,3", "--target", "1,2,3",
+                              says=["--eye 1,2,3"])
+        self.assertNotIn("--up", outcome.stderr)
 
     def test_people_get_a_table(self):
         text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "cornell-box", "--count",
                             "1000").stdout
         self.assertRegex(text, r"Mrays/s")
+        self.assertNotIn("checked", text)
         self.assertRegex(text, r"(?m)^cornell-box +diffuse3 +1000 +[\d.]+ +[\d.]+ +[\d.]+ +0\.\d+ ")
 
 

@@ -2,11 +2,14 @@
 
 import json
 import os
+import re
 import resource
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import zlib
 
@@ -85,6 +88,15 @@ class CliTest(unittest.TestCase):
         self.assertEqual(self.files(), before, outcome)
         return outcome
 
+    def wait_while(self, program, is_listening):
+        """Until the running program begins to listen for Ctrl-C, or has heard one, or has ended."""
+        while program.poll() is None:
+            with open(f"/proc/{program.pid}/status", encoding="ascii") as file:
+                caught = int(re.search(r"SigCgt:\s*([0-9a-f]+)", file.read()).group(1), 16)
+            if bool(caught & 1 << (signal.SIGINT - 1)) != is_listening:
+                return
+            time.sleep(0.01)
+
     def render(self, *arguments, scene="cornell-box", size="16x16", spp=1, output="picture.png"):
         """A small picture on the CPU; gives the event that ends it."""
         outcome = self.succeed("render", scene, "-o", output, "--size", size, "--spp", spp, "--device", "cpu", "--json",
@@ -98,6 +110,27 @@ class CliTest(unittest.TestCase):
 def write(path, text):
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
+
+
+# A floor of 2 by 2 m at y = 0 around the origin.
+FLOOR = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n"
+
+
+def gltf_with_cameras():
+    """Two cameras, one square before them: "wide" is 2:1, "tall" 1:2."""
+    def camera(name, aspect):
+        return {"name": name, "type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1, "aspectRatio": aspect}}
+
+    positions = "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"  # (-1,-1,0) (1,-1,0) (0,1,0)
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4]}, {"camera": 1, "translation": [0, 0, 8]}],
+        "cameras": [camera("wide", 2.0), camera("tall", 0.5)],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0],
+                       "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + positions}]})
 
 
 def read_exr(path):

@@ -13,7 +13,7 @@ import subprocess
 import threading
 import time
 
-from cli_run import PROGRAM, SANITIZED, CliTest, limit_addresses, main, read_exr, write
+from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, main, read_exr, write
 
 FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
@@ -26,110 +26,6 @@ FLAGS = {
     "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --quiet -q --json",
 }
 
-# A floor of 2 by 2 m at y = 0 around the origin.
-FLOOR = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n"
-
-
-def gltf_with_cameras():
-    """Two cameras, one square before them: "wide" is 2:1, "tall" 1:2."""
-    def camera(name, aspect):
-        return {"name": name, "type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1, "aspectRatio": aspect}}
-
-    positions = "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"  # (-1,-1,0) (1,-1,0) (0,1,0)
-    return json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
-        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4]}, {"camera": 1, "translation": [0, 0, 8]}],
-        "cameras": [camera("wide", 2.0), camera("tall", 0.5)],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0],
-                       "max": [1, 1, 0]}],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}],
-        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + positions}]})
-
-
-class WhatIsRefused(CliTest):
-    def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
-        for flag in ["--foo", "--spp 0", "--spp -1", "--spp 1.5", "--spp 4294967297", "--fov nan", "--fov 0",
-                     "--fov 180", "--aperture -1", "--aperture nan", "--focus 0", "--focus inf", "--clamp nan",
-                     "--clamp 0", "--time 0", "--time nan", "--environment-scale nan", "--environment-scale -1",
-                     "--environment-rotation inf", "--exposure much", "--exposure inf", "--seed -1",
-                     "--seed 4294967296", "--threads 0", "--filter-radius nan", "--filter-radius 1e9",
-                     "--view-height inf", "--max-depth -1", "--tone-map x", "--sampler x", "--filter x",
-                     "--integrator x", "--projection x", "--aov x", "--aov albedo", "--size 10", "--size 0x10",
-                     "--size x", "--size 10x", "--size 10x10x10", "--size -1x10", "--size nanxnan", "--device gpu",
-                     "--device cuda:x", "--eye 1,2", "--eye 1,2,nan", "--target 1,2,3,4", "--up x,y,z",
-                     "--environment -1,0,0", "--environment 1,2", "--environment no.hdr", "--allow-path nowhere"]:
-            with self.subTest(flag=flag):
-                arguments = flag.split()
-                self.refuse(2, "render", "cornell-box", "-o", "x.png", *arguments, says=[arguments[0]])
-
-    def test_a_line_without_verb_scene_or_output_ends_with_2(self):
-        self.refuse(2, says=["render"])
-        self.refuse(2, "frobnicate")
-        self.refuse(2, "render", "-o", "x.png", says=["SCENE"])
-        self.refuse(2, "render", "cornell-box", says=["--output"])
-        self.refuse(2, "compare", "x.png")
-        self.refuse(2, "info")
-
-    def test_a_missing_or_foreign_file_ends_with_2_and_is_named(self):
-        os.mkdir(self.path("folder.obj"))
-        os.mkfifo(self.path("pipe.obj"))
-        os.symlink("/dev/zero", self.path("endless.png"))
-        write(self.path("empty.png"), "")
-        for name in ["nowhere.obj", "nowhere.gltf", "cornel-box", "folder.obj", "pipe.obj", "a" * 300 + ".obj"]:
-            self.refuse(2, "render", name, "-o", "x.png", says=[name])
-            self.refuse(2, "info", name, says=[name])
-        for name in ["nowhere.exr", "endless.png", "empty.png"]:
-            self.refuse(2, "info", name, says=[name])
-            self.refuse(2, "compare", name, name, says=[name])
-            self.refuse(2, "render", "cornell-box", "-o", "x.png", "--environment", name, says=[name])
-
-    def test_more_than_a_limit_ends_with_3(self):
-        for flag in ["--size 70000x70000", "--size 70000x1", "--size 65536x65536", "--size 99999999999x1",
-                     "--eye 1e30,0,0", "--target 0,2e12,0"]:
-            with self.subTest(flag=flag):
-                self.refuse(3, "render", "cornell-box", "-o", "x.png", *flag.split(), says=["limit"])
-
-    def test_a_picture_that_memory_cannot_hold_ends_with_4_and_lists_the_largest_buffers(self):
-        if SANITIZED:
-            self.skipTest("sanitizers reserve more than any limit")
-        self.refuse(4, "render", "cornell-box", "-o", "x.png", "--size", "20000x20000", "--device", "cpu",
-                    says=["film", "MiB"], preexec_fn=limit_addresses(2))
-
-    def test_cuda_without_a_gpu_ends_with_2_and_the_reason(self):
-        outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cuda", says=["--device cuda: "])
-        self.assertGreater(len(outcome.stderr.split("--device cuda: ")[1]), 20)
-
-    def test_an_eye_in_its_own_target_or_up_along_the_view_is_refused(self):
-        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "1,2,3", "--target", "1,2,3", says=["--eye"])
-        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "0,3,0", "--target", "0,0,0", "--up", "0,1,0",
-                    says=["--up"])
-        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--up", "0,0,0", says=["--up"])
-
-    def test_a_camera_that_is_not_there_is_answered_by_those_that_are(self):
-        write(self.path("two.gltf"), gltf_with_cameras())
-        for name in ["middle", "2", "-1", "0x0"]:
-            self.refuse(2, "render", "two.gltf", "-o", "x.png", "--camera", name, says=["0  wide", "1  tall"])
-
-    def test_errors_are_said_on_stderr_even_when_quiet(self):
-        for flags in [[], ["-q"], ["--json"], ["-q", "--json"]]:
-            outcome = self.refuse(2, "render", "nowhere.obj", "-o", "x.png", *flags, says=["nowhere.obj"])
-            self.assertLessEqual({event["event"] for event in outcome.events()}, {"notice"} if flags == ["--json"] else set())
-
-    def test_what_was_left_out_is_said_before_the_error_that_follows_from_it(self):
-        write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
-        outcome = self.refuse(2, "info", "flat.obj", says=["1 triangles without area", "no geometry"])
-        self.assertLess(outcome.stderr.index("without area"), outcome.stderr.index("no geometry"))
-
-    def test_a_sample_that_is_not_finite_fails_only_a_strict_render_and_is_always_counted(self):
-        light = ["--environment", "1e13,1e13,1e13", "--eye", "0,0,-3", "--target", "0,0,-9"]
-        self.assertEqual(self.render(*light)["invalid_samples"], 256)
-        outcome = self.run_pertev("render", "cornell-box", "-o", "strict.png", "--size", "16x16", "--spp", "1",
-                                  "--strict", *light)
-        self.assertEqual(outcome.status, 2, outcome)
-        self.assertIn("256 samples", outcome.stderr)
-        self.assertEqual(self.render("--strict")["invalid_samples"], 0)
-
 
 class WhatIsWritten(CliTest):
     def test_an_output_that_cannot_be_written_ends_with_6_before_the_scene_is_read(self):
@@ -140,6 +36,14 @@ class WhatIsWritten(CliTest):
         for name in ["nowhere/x.png", "folder.png", "full.png", "dangling.png", "loop.png", "/proc/x.png", "a" * 300 + ".png"]:
             with self.subTest(output=name):
                 self.refuse(6, "render", "nowhere.obj", "-o", "good.png", "-o", name, says=[name])
+
+    def test_a_picture_too_large_for_its_format_ends_with_3_before_the_scene_is_read(self):
+        for size in ["65501x1", "1x65501"]:
+            self.refuse(3, "render", "nowhere.obj", "-o", "good.png", "-o", "late.jpg", "--size", size,
+                        says=["late.jpg", "65500"])
+            self.refuse(3, "bench", "render", "--scene", "nowhere.obj", "-o", "late.jpg", "--size", size,
+                        says=["late.jpg", "65500"])
+            self.render(output="whole.png", size=size)
 
     def test_an_unknown_extension_ends_with_2_and_lists_those_known(self):
         for name in ["x.bmp", "x", "x.png.", ".png"]:
@@ -311,22 +215,14 @@ class WhenItEnds(CliTest):
 
     def test_a_second_interrupt_kills_and_nothing_is_left_behind(self):
         program = self.start("-o", "x.png", "--size", "6000x6000", "--spp", "64", "--threads", "1")
-        interrupts = 1 << (signal.SIGINT - 1)
-        while program.poll() is None and not self.signals_caught(program.pid) & interrupts:
-            time.sleep(0.01)
+        self.wait_while(program, is_listening=False)
         program.send_signal(signal.SIGINT)
-        while program.poll() is None and self.signals_caught(program.pid) & interrupts:
-            time.sleep(0.01)  # until the first is heard
+        self.wait_while(program, is_listening=True)  # until the first is heard
         self.assertIsNone(program.poll(), "the first interrupt waits for the sample to be whole")
         program.send_signal(signal.SIGINT)
         program.communicate(timeout=300)
         self.assertEqual(program.returncode, -signal.SIGINT)
         self.assertEqual(self.files(), [])
-
-    @staticmethod
-    def signals_caught(pid):
-        with open(f"/proc/{pid}/status", encoding="ascii") as file:
-            return int(re.search(r"SigCgt:\s*([0-9a-f]+)", file.read()).group(1), 16)
 
     def test_a_time_limit_ends_at_a_whole_sample_with_0(self):
         done = self.render("--time", "0.5", size="48x48", spp=100000000)
@@ -353,6 +249,50 @@ class WhatIsRendered(CliTest):
         for name in ["version", "scene", "integrator", "sampler", "filter", "device", "rays", "render_seconds",
                      "load_seconds", "build_seconds", "invalid_samples"]:
             self.assertIn(f"pertev.{name}", made)
+
+    def test_the_metadata_of_an_exr_are_the_flags_that_make_the_same_picture_again(self):
+        write(self.path("floor.obj"), FLOOR)
+        view = ["--eye", "0.3,2.1,4.7", "--target", "0.1,0.2,0"]
+        for scene, flags in [("cornell-box", view), ("floor.obj", view), ("floor.obj", ["--eye", "0,3,0", "--target", "0,0,0"]),
+                             ("floor.obj", [*view, "--up", "1,3,0.2", "--fov", "33"]),
+                             ("floor.obj", [*view, "--projection", "orthographic"]),
+                             ("floor.obj", [*view, "--projection", "orthographic", "--view-height", "1.7"]),
+                             ("floor.obj", [*view, "--aperture", "0.1"]),
+                             ("floor.obj", [*view, "--aperture", "0.1", "--focus", "3", "--filter", "tent"]),
+                             ("floor.obj", [*view, "--filter", "gaussian", "--filter-radius", "2.5"]),
+                             ("floor.obj", [*view, "--environment-rotation", "70", "--environment-scale", "0.3"]),
+                             ("floor.obj", [*view, "--environment", "1,0.5,0.25", "--environment-scale", "3"])]:
+            with self.subTest(scene=scene, flags=flags):
+                made = self.render(*flags, scene=scene, output="x.exr")
+                told = self.info("x.exr")
+                again = []
+                for name in ["eye", "target", "up", "fov", "projection", "view_height", "aperture", "focus", "filter",
+                             "filter_radius", "environment", "environment_scale", "environment_rotation"]:
+                    value = told.get("pertev." + name)
+                    if value not in [None, "made up", "none"]:
+                        again += ["--" + name.replace("_", "-"), str(value)]
+                self.assertEqual(self.render(*again, scene=scene)["hash"], made["hash"], again)
+        self.render(scene="floor.obj", output="x.exr")  # a view that is made up: as near as its numbers go
+        told = self.info("x.exr")
+        near = self.render("--eye", told["pertev.eye"], "--target", told["pertev.target"], "--up", told["pertev.up"],
+                           "--fov", told["pertev.fov"], scene="floor.obj", output="y.exr")
+        self.assertGreater(near["samples"], 0)
+        self.assertLess(self.succeed("compare", "x.exr", "y.exr", "--json").events("compare")[0]["flip"], 0.01)
+
+    def test_info_and_render_count_the_same_lights_and_one_thing_is_one(self):
+        said = self.succeed("render", "cornell-box", "-o", "x.png", "--size", "8x8", "--spp", "1").stderr
+        self.assertIn("38 triangles, 8 instances, 2 lights; ", said)
+        told = self.info("cornell-box")
+        self.assertEqual((told["lights"], told["emissive_triangles"]), (2, 2))
+        write(self.path("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        said = self.succeed("render", "one.obj", "-o", "x.png", "--size", "8x8", "--spp", "1").stderr
+        self.assertIn("one.obj: 1 triangle, 1 instance, 1 light; ", said)
+
+    def test_a_camera_without_a_name_is_told_by_its_number(self):
+        cameras = json.loads(gltf_with_cameras())
+        del cameras["cameras"][1]["name"]
+        write(self.path("two.gltf"), json.dumps(cameras))
+        self.assertEqual(self.info("two.gltf")["cameras"], ["wide", "1"])
 
     def test_aov_layers_are_in_the_exr_and_agree_with_each_other(self):
         # The tall and the short box before the open side; one sample a pixel, so that no pixel is a mean of two things.
@@ -413,6 +353,13 @@ class WhatIsRendered(CliTest):
         self.assertEqual(len(set(hashes)), len(choices))
         self.assertEqual(self.render("--aperture", "0", size="32x32", spp=2)["hash"], hashes[0])
 
+    def test_a_made_up_sky_is_an_environment_too(self):
+        write(self.path("floor.obj"), FLOOR)
+        look = ["--eye", "0,2,4", "--target", "0,0,0"]
+        hashes = {self.render(*look, *flags, scene="floor.obj")["hash"]
+                  for flags in [[], ["--environment-scale", "2"], ["--environment-rotation", "90"]]}
+        self.assertEqual(len(hashes), 3)
+
     def test_a_camera_is_chosen_by_name_or_number_and_gives_the_picture_its_shape(self):
         write(self.path("two.gltf"), gltf_with_cameras())
         shapes, hashes = {}, {}
@@ -467,6 +414,17 @@ class WhatIsCompared(CliTest):
         self.assertFalse(other["equal"])
         self.assertGreater(min(other[key] for key in ["rel_mse", "mse", "flip", "hdr_flip"]), 0)
         self.assertIn("the same to the last bit", self.succeed("compare", "a.exr", "a.exr").stdout)
+
+    def test_pictures_that_differ_in_alpha_alone_are_said_to(self):
+        self.render(output="a.exr")
+        self.render("--transparent", output="b.exr")
+        for blocks in [[], ["--blocks", "4"]]:
+            differ = self.succeed("compare", "a.exr", "b.exr", "--json", *blocks).events("compare")[0]
+            self.assertEqual((differ["equal"], differ["equal_colors"], differ["mse"]), (False, True, 0))
+            self.assertIn("same colours to the last bit, different alpha",
+                          self.succeed("compare", "a.exr", "b.exr", *blocks).stdout)
+        self.render("--seed", "1", output="c.exr")
+        self.assertFalse(self.succeed("compare", "a.exr", "c.exr", "--json").events("compare")[0]["equal_colors"])
 
     def test_pictures_of_different_sizes_are_refused_with_both_sizes(self):
         self.render(output="a.exr", size="16x8")

@@ -33,7 +33,7 @@ TEST_CASE("the Cornell box is part of the program, whole") {
 
 TEST_CASE("the Cornell box reads without a warning, and its surfaces are Lambertian") {
     Messages messages;
-    const Scene scene = read_builtin_scene("cornell-box", messages);
+    const Scene scene = read_scene("cornell-box", {}, messages);
     CHECK(messages.all().empty());
     CHECK(scene.instances.size() == 8);
     for (const Material& material : scene.materials) CHECK(material.kind == MaterialKind::Diffuse);
@@ -48,7 +48,7 @@ TEST_CASE("the Cornell box reads without a warning, and its surfaces are Lambert
 
 TEST_CASE("in the Cornell box the red wall is on the camera's left and the green one on its right") {
     Messages messages;
-    const Scene scene = read_builtin_scene("cornell-box", messages);
+    const Scene scene = read_scene("cornell-box", {}, messages);
     REQUIRE(scene.cameras.size() == 1);
     const Camera& camera = scene.cameras[0];
     CHECK(camera.fov_y == doctest::Approx(2 * std::atan(12.5 / 35)));

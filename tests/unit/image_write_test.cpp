@@ -8,6 +8,7 @@
 #include "image/read_image.h"
 #include "image/write_image.h"
 #include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -57,6 +58,24 @@ TEST_CASE("an unknown extension is an error that lists the known ones, and nothi
             CHECK(std::string(error.what()).find(".exr, .png, .jpg (.jpeg) or .hdr") != std::string::npos);
         }
     }
+    CHECK(std::filesystem::is_empty(folder));
+}
+
+TEST_CASE("what cannot be written is told before there is a picture, by its name") {
+    const std::filesystem::path folder = test::scratch_folder();
+    const auto refused = [&](const char* name, uint32_t width, uint32_t height) {
+        return test::thrown_error([&] { check_image_output(folder / name, width, height); });
+    };
+    CHECK(!refused("x.jpg", 65500, 65500));
+    for (const auto& [width, height] : {std::pair(65501u, 1u), std::pair(1u, 65501u)}) {
+        const auto error = refused("x.JPG", width, height);
+        REQUIRE(error);
+        CHECK(error->code() == ErrorCode::OverLimit);
+        CHECK(test::says(error, "x.JPG"));
+        CHECK(!refused("x.png", width, height));
+    }
+    CHECK(refused("x.bmp", 1, 1)->code() == ErrorCode::BadInput);
+    CHECK(refused("nowhere/x.png", 1, 1)->code() == ErrorCode::FileWrite);
     CHECK(std::filesystem::is_empty(folder));
 }
 

@@ -119,7 +119,7 @@ TEST_CASE("numbers that are not there or cannot be read become NaN, with a warni
     CHECK(!is_finite(p[1]));
     CHECK(!is_finite(p[2]));
     CHECK(!is_finite(p[3]));
-    CHECK(l.said("a.obj:3: 2 lines have numbers"));
+    CHECK(l.said("a.obj:3: 2 lines with a number"));
 }
 
 TEST_CASE("a vertex index that leads nowhere is an error that names the line") {
@@ -141,7 +141,7 @@ TEST_CASE("an index may lead to a vertex further down, one of a texture coordina
     const Loaded l = load_text("f 1/7 2/7 3/7\n" + kTriangle);
     CHECK(l.scene.meshes[0].triangle_count() == 1);
     CHECK(l.scene.meshes[0].uv[0].empty());
-    CHECK(l.said("a.obj:1: 3 corners"));
+    CHECK(l.said("a.obj:1: 3 face corners"));
 }
 
 TEST_CASE("lines, points, curves and garbage are left out, each kind with one warning") {

@@ -78,8 +78,8 @@ TEST_CASE("triangles with a vertex that is not finite, and those without area, a
     CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
     for (const Vec3 p : mesh.positions) CHECK(is_finite(p));
     REQUIRE(result.messages.all().size() == 2);
-    CHECK(result.messages.all()[0].text == "file: 2 triangles with a vertex that is not finite are left out");
-    CHECK(result.messages.all()[1].text == "file: 3 triangles without area are left out");
+    CHECK(result.messages.all()[0].text == "file: 2 triangles with a vertex that is not finite: left out");
+    CHECK(result.messages.all()[1].text == "file: 3 triangles without area: left out");
 }
 
 TEST_CASE("tiny and huge triangles have an area") {
@@ -224,4 +224,16 @@ TEST_CASE("an environment's pixels that are negative or not finite are set to 0 
     CHECK(result.scene.environment->image.pixels == std::vector<float>{1, 0, 0, 2, 0, 3});
     CHECK(result.messages.all().size() == 1);
     check_refused("scale", ErrorCode::BadInput, [](Scene& s) { s.environment.emplace().scale.r = -1; });
+}
+
+TEST_CASE("messages name what has a name, number the rest, and count one thing as one") {
+    const auto out_of_range = [](Scene& scene) { scene.meshes[0].indices[3] = 9; };
+    check_refused("file: mesh 0 square: triangle 1: ", ErrorCode::BadInput, out_of_range);
+    check_refused("file: mesh 0: triangle 1: ", ErrorCode::BadInput, [&](Scene& scene) {
+        scene.meshes[0].name.clear();
+        out_of_range(scene);
+    });
+    const Result result = validated([](Scene& scene) { scene.meshes[0].indices[1] = 0; });
+    REQUIRE(result.messages.all().size() == 1);
+    CHECK(result.messages.all()[0].text == "file: 1 triangle without area: left out");
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+// Counts and names as messages say them: "1 triangle", "2 triangles"; "mesh 0 floor", or "mesh 0" without a name.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace pertev {
+
+/// Of a `thing` whose plural ends in s; what follows in the message has no verb, which would have a plural too.
+inline std::string counted(uint64_t count, const char* thing) {
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+/// Place `i` of a list of the scene.
+inline std::string numbered(const char* kind, std::size_t i, const std::string& name) {
+    return fmt::format("{} {}{}{}", kind, i, name.empty() ? "" : " ", name);
+}
+
+} // namespace pertev

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""What the command line refuses, or warns of: with which exit status, naming what, and leaving nothing behind."""
+
+import json
+import os
+
+from cli_run import FLOOR, SANITIZED, CliTest, gltf_with_cameras, limit_addresses, main, write
+
+
+class WhatIsRefused(CliTest):
+    def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
+        for flag in ["--foo", "--spp 0", "--spp -1", "--spp 1.5", "--spp 4294967297", "--fov nan", "--fov 0",
+                     "--fov 180", "--aperture -1", "--aperture nan", "--focus 0", "--focus inf", "--clamp nan",
+                     "--clamp 0", "--time 0", "--time nan", "--environment-scale nan", "--environment-scale -1",
+                     "--environment-rotation inf", "--exposure much", "--exposure inf", "--seed -1",
+                     "--seed 4294967296", "--threads 0", "--filter-radius nan", "--filter-radius 1e9",
+                     "--view-height inf", "--max-depth -1", "--tone-map x", "--sampler x", "--filter x",
+                     "--integrator x", "--projection x", "--aov x", "--aov albedo", "--size 10", "--size 0x10",
+                     "--size x", "--size 10x", "--size 10x10x10", "--size -1x10", "--size nanxnan", "--device gpu",
+                     "--device cuda:x", "--eye 1,2", "--eye 1,2,nan", "--target 1,2,3,4", "--up x,y,z",
+                     "--environment -1,0,0", "--environment 1,2", "--environment no.hdr", "--allow-path nowhere"]:
+            with self.subTest(flag=flag):
+                arguments = flag.split()
+                self.refuse(2, "render", "cornell-box", "-o", "x.png", *arguments, says=[arguments[0]])
+
+    def test_a_flag_given_twice_ends_with_2_and_is_said_to_be(self):
+        for line in ["render cornell-box -o x.png --size 8x8 --size 9x9", "render cornell-box -o x.png --spp 1 --spp 2",
+                     "compare x.png x.png --blocks 2 --blocks 2", "bench --size 8x8 --size 8x8",
+                     "bench rays --count 5 --count 5", "bench render --scene a.obj --scene b.obj"]:
+            self.refuse(2, *line.split(), says=[f"{line.split()[-2]}: given 2 times"])
+
+    def test_errors_of_the_line_point_to_the_help_of_the_verb_they_are_of(self):
+        for verb in ["render", "info", "bench", "bench rays", "bench render", "compare"]:
+            self.refuse(2, *verb.split(), "--foo", says=[f"(pertev {verb} --help"])
+
+    def test_a_number_that_is_too_large_is_answered_by_the_largest(self):
+        for flag, limit in [("--time 1e300", "3.4028235e+38"), ("--clamp 1e300", "3.4028235e+38"),
+                            ("--exposure 1e300", "3.4028235e+38"), ("--eye 1e300,0,0", "3.4028235e+38"),
+                            ("--environment-rotation 1e30", "1000000"), ("--environment-scale 1e30", "1000000000000")]:
+            outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", *flag.split(), says=[*flag.split(), limit])
+            self.assertNotIn("finite", outcome.stderr)
+
+    def test_a_flag_that_the_others_make_useless_ends_with_2_before_the_scene_is_read(self):
+        for flag, output in [("--transparent", "x.jpg"), ("--transparent", "x.hdr"), ("--aov albedo", "x.png"),
+                             ("--exposure 1", "x.exr"), ("--exposure auto", "x.hdr"), ("--tone-map agx", "x.exr"),
+                             ("--view-height 2 --projection perspective", "x.png"),
+                             ("--focus 2 --aperture 0", "x.png")]:
+            with self.subTest(flag=flag, output=output):
+                self.refuse(2, "render", "nowhere.obj", "-o", output, *flag.split(), says=[flag.split()[0] + ": "])
+
+    def test_a_flag_that_the_scene_makes_useless_is_a_warning(self):
+        write(self.path("floor.obj"), FLOOR)
+        ortho = json.loads(gltf_with_cameras())
+        ortho["cameras"][0] = {"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 1, "znear": 0, "zfar": 9}}
+        write(self.path("ortho.gltf"), json.dumps(ortho))
+        look = ["--eye", "0,2,4", "--target", "0,0,0"]
+        for scene, flags, useless in [
+                ("cornell-box", ["--environment-scale", "2"], ["--environment-scale"]),
+                ("cornell-box", ["--environment-rotation", "90"], ["--environment-rotation"]),
+                ("cornell-box", ["--environment-scale", "2", "--environment", "1,1,1"], []),
+                ("floor.obj", [*look, "--environment-scale", "2", "--environment-rotation", "9"], []),
+                ("cornell-box", ["--view-height", "1"], ["--view-height"]),
+                ("cornell-box", ["--view-height", "1", "--projection", "orthographic"], []),
+                ("cornell-box", ["--fov", "30", "--projection", "orthographic"], []),
+                ("ortho.gltf", ["--view-height", "1"], []), ("ortho.gltf", ["--fov", "30"], ["--fov"]),
+                ("cornell-box", ["--focus", "1"], ["--focus"]),
+                ("cornell-box", ["--focus", "1", "--aperture", "0.01"], [])]:
+            with self.subTest(scene=scene, flags=flags):
+                outcome = self.succeed("render", scene, "-o", "x.png", "--size", "8x8", "--spp", "1", "--json", *flags)
+                self.assertEqual([event["text"].split(":")[0] for event in outcome.events("warning")], useless, outcome)
+
+    def test_a_line_without_verb_scene_or_output_ends_with_2(self):
+        self.refuse(2, says=["render"])
+        for strange in ["rendr", "--verison", "-x", "rendr cornell-box -o x.png"]:
+            self.refuse(2, *strange.split(), says=[strange.split()[0], "render, compare, info, bench, lab"])
+        self.refuse(2, "--verison", "info", "cornell-box", says=["--verison"])
+        self.refuse(2, "render", "-o", "x.png", says=["SCENE"])
+        self.refuse(2, "render", "cornell-box", says=["--output"])
+        self.refuse(2, "compare", "x.png")
+        self.refuse(2, "info")
+
+    def test_a_missing_or_foreign_file_ends_with_2_and_is_named(self):
+        os.mkdir(self.path("folder.obj"))
+        os.mkfifo(self.path("pipe.obj"))
+        os.symlink("/dev/zero", self.path("endless.png"))
+        write(self.path("empty.png"), "")
+        for name in ["nowhere.obj", "nowhere.gltf", "cornel-box", "folder.obj", "pipe.obj", "a" * 300 + ".obj"]:
+            self.refuse(2, "render", name, "-o", "x.png", says=[name])
+            self.refuse(2, "info", name, says=[name])
+        write(self.path("README"), "text")
+        for name in ["README", "spnza"]:
+            self.refuse(2, "render", name, "-o", "x.png", says=[name, ".gltf", "cornell-box"])
+            self.refuse(2, "info", name, says=[name, ".gltf", "cornell-box", ".exr"])
+        for name in ["nowhere.exr", "endless.png", "empty.png"]:
+            self.refuse(2, "info", name, says=[name])
+            self.refuse(2, "compare", name, name, says=[name])
+            self.refuse(2, "render", "cornell-box", "-o", "x.png", "--environment", name, says=[name])
+
+    def test_more_than_a_limit_ends_with_3(self):
+        for flag in ["--size 70000x70000", "--size 70000x1", "--size 65536x65536", "--size 99999999999x1",
+                     "--eye 1e30,0,0", "--target 0,2e12,0"]:
+            with self.subTest(flag=flag):
+                self.refuse(3, "render", "cornell-box", "-o", "x.png", *flag.split(), says=["limit"])
+
+    def test_a_picture_that_memory_cannot_hold_ends_with_4_and_lists_the_largest_buffers(self):
+        if SANITIZED:
+            self.skipTest("sanitizers reserve more than any limit")
+        self.refuse(4, "render", "cornell-box", "-o", "x.png", "--size", "20000x20000", "--device", "cpu",
+                    says=["film", "MiB"], preexec_fn=limit_addresses(2))
+
+    def test_cuda_without_a_gpu_ends_with_2_and_the_reason(self):
+        outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cuda", says=["--device cuda: "])
+        self.assertGreater(len(outcome.stderr.split("--device cuda: ")[1]), 20)
+
+    def test_an_eye_in_its_own_target_or_up_along_the_view_is_refused(self):
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "1,2,3", "--target", "1,2,3", says=["--eye"])
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "0,3,0", "--target", "0,0,0", "--up", "0,1,0",
+                    says=["--up"])
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--up", "0,0,0", says=["--up"])
+
+    def test_a_camera_that_is_not_there_is_answered_by_those_that_are(self):
+        write(self.path("two.gltf"), gltf_with_cameras())
+        for name in ["middle", "2", "-1", "0x0"]:
+            self.refuse(2, "render", "two.gltf", "-o", "x.png", "--camera", name, says=["0  wide", "1  tall"])
+
+    def test_errors_are_said_on_stderr_even_when_quiet(self):
+        for flags in [[], ["-q"], ["--json"], ["-q", "--json"]]:
+            outcome = self.refuse(2, "render", "nowhere.obj", "-o", "x.png", *flags, says=["nowhere.obj"])
+            self.assertLessEqual({event["event"] for event in outcome.events()}, {"notice"} if flags == ["--json"] else set())
+
+    def test_what_was_left_out_is_said_before_the_error_that_follows_from_it(self):
+        write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        outcome = self.refuse(2, "info", "flat.obj", says=["1 triangle without area: left out", "no geometry"])
+        self.assertLess(outcome.stderr.index("without area"), outcome.stderr.index("no geometry"))
+
+    def test_a_sample_that_is_not_finite_fails_only_a_strict_render_and_is_always_counted(self):
+        light = ["--environment", "1e13,1e13,1e13", "--eye", "0,0,-3", "--target", "0,0,-9"]
+        self.assertEqual(self.render(*light)["invalid_samples"], 256)
+        outcome = self.run_pertev("render", "cornell-box", "-o", "strict.png", "--size", "16x16", "--spp", "1",
+                                  "--strict", *light)
+        self.assertEqual(outcome.status, 2, outcome)
+        self.assertIn("256 samples", outcome.stderr)
+        self.assertEqual(self.render("--strict")["invalid_samples"], 0)
+
+
+if __name__ == "__main__":
+    main()
