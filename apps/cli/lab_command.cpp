@@ -131,7 +131,6 @@ int run(const LabFlags& flags) {
     }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     LabSettings settings = lab_settings(flags, queue->is_cuda());
-    listen_for_interrupt();
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 
     const Scene scene = read_lab_scene(flags, messages);
@@ -140,11 +139,16 @@ int run(const LabFlags& flags) {
     if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.say_messages();
     settings.scene = std::filesystem::path(flags.scene.scene).stem().string();
+    listen_for_interrupt();
     const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output));
     reporter.end_progress();
+    reporter.event(json_of(report));
+    if (!has_findings(report) && report.interrupted) {
+        reporter.say("interrupted before anything was measured; nothing is written");
+        return exit_status(ErrorCode::Interrupted);
+    }
     say_refusals(flags, report, reporter);
     reporter.answer(text_of(report));
-    reporter.event(json_of(report));
     if (!flags.output.empty()) write_lab_files(flags.output, report, reporter);
     fail_if_wrong(report);
     return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;

@@ -21,6 +21,16 @@ std::string file_part(std::string name) {
     return name;
 }
 
+void show(const LabProgress& now, Reporter& reporter) {
+    const double left_s = now.share > 0.01 ? now.seconds * (1 - now.share) / now.share : 0;
+    const std::string of_that = now.share_of_that > 0 ? fmt::format(" ({:.0f} %)", 100 * now.share_of_that) : "";
+    reporter.progress(
+        now.share, fmt::format("{}{}{}", now.doing, of_that, left_s > 0 ? fmt::format(", {:.0f} s left", left_s) : ""));
+    reporter.event(fmt::format(
+        R"({{"event":"progress","share":{:.4f},"doing":{},"share_of_that":{:.4f},"seconds":{:.3f},"seconds_left":{}}})",
+        now.share, json_string(now.doing), now.share_of_that, now.seconds, left_s > 0 ? json_number(left_s) : "null"));
+}
+
 } // namespace
 
 void check_lab_folder(const std::filesystem::path& folder) {
@@ -51,14 +61,13 @@ void write_lab_files(const std::filesystem::path& folder, const LabReport& repor
 }
 
 std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder) {
-    return [&reporter, folder](const LabProgress& now) {
-        const double left_s = now.share > 0.01 ? now.seconds * (1 - now.share) / now.share : 0;
-        reporter.progress(now.share,
-                          fmt::format("{}{}", now.doing, left_s > 0 ? fmt::format(", {:.0f} s left", left_s) : ""));
-        reporter.event(
-            fmt::format(R"({{"event":"progress","share":{:.4f},"doing":{},"seconds":{:.3f},"seconds_left":{}}})",
-                        now.share, json_string(now.doing), now.seconds, left_s > 0 ? json_number(left_s) : "null"));
-        if (now.so_far != nullptr && !folder.empty()) {
+    return [&reporter, folder, last_doing = std::string(), last_s = 0.0](const LabProgress& now) mutable {
+        constexpr double often_s = 0.1; // enough for eyes
+        if (now.doing != last_doing || now.seconds - last_s >= often_s) {
+            last_doing = now.doing, last_s = now.seconds;
+            show(now, reporter);
+        }
+        if (now.so_far != nullptr && !folder.empty() && has_findings(*now.so_far)) {
             write_text(folder / "report.csv", csv_of(*now.so_far));
             write_text(folder / "report.json", json_of(*now.so_far) + '\n');
         }

@@ -20,7 +20,7 @@ void write_lab_files(const std::filesystem::path& folder, const LabReport& repor
 void write_text(const std::filesystem::path& path, const std::string& text);
 
 /// A progress bar with the time left; stops at Ctrl-C. Where `folder` is not empty, what has been measured is kept
-/// there after each structure, as CSV and JSON. `reporter` outlives it.
+/// there after each structure, as CSV and JSON; nothing is written before there is something. `reporter` outlives it.
 std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder);
 
 /// Throws Error(DeviceFault) that names the combinations that differ from the proven walk, if there are any.

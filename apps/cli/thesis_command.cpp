@@ -99,19 +99,26 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     if (!output.empty()) check_lab_folder(output);
     reporter.say_messages();
     ThesisReport thesis;
+    listen_for_interrupt();
     for (const ThesisScene& scene : scenes) {
         settings.scene = scene.name;
         reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                  settings.first_depth, settings.depth));
-        thesis.scenes.push_back(
-            run_lab(queue, scene.loaded.scene, scene.camera, settings, show_lab_progress(reporter, {})));
+        LabReport report = run_lab(queue, scene.loaded.scene, scene.camera, settings, show_lab_progress(reporter, {}));
         reporter.end_progress();
-        reporter.event(json_of(thesis.scenes.back()));
-        if (!output.empty()) {
-            if (!interrupted()) add_pictures(queue, scene, settings, reporter.messages(), thesis);
-            write_files(output, thesis);
+        reporter.event(json_of(report));
+        if (has_findings(report)) {
+            thesis.scenes.push_back(std::move(report));
+            if (!output.empty()) {
+                if (!interrupted()) add_pictures(queue, scene, settings, reporter.messages(), thesis);
+                write_files(output, thesis);
+            }
         }
         if (interrupted()) break;
+    }
+    if (thesis.scenes.empty()) { // only an interrupt comes so early
+        reporter.say("interrupted before anything was measured; nothing is written");
+        return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));
     if (!output.empty()) {

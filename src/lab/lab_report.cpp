@@ -4,6 +4,11 @@
 
 namespace pertev {
 
+bool has_findings(const LabReport& report) {
+    return std::ranges::any_of(report.combinations,
+                               [](const CombinationFigures& c) { return c.wrong || !c.runs.empty(); });
+}
+
 const RunFigures* find_run(const CombinationFigures& combination, uint32_t set) {
     const auto at = std::ranges::find_if(combination.runs, [set](const RunFigures& run) { return run.set == set; });
     return at == combination.runs.end() ? nullptr : &*at;

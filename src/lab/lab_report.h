@@ -88,6 +88,9 @@ inline double mrays(const LabReport& report, const RunFigures& run) {
     return run.median_s > 0 ? static_cast<double>(report.sets[run.set].rays) / run.median_s * 1e-6 : 0;
 }
 
+/// Whether there is anything in it that was not known before: figures, or a combination that is wrong.
+bool has_findings(const LabReport& report);
+
 /// The run of a combination on a set, or null.
 const RunFigures* find_run(const CombinationFigures& combination, uint32_t set);
 

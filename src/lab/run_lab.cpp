@@ -12,6 +12,7 @@
 #include "base/stopwatch.h"
 #include "base/version.h"
 #include "device/device_timer.h"
+#include "lab/in_pieces.h"
 #include "lab/measure_rays.h"
 #include "lab/traced_set.h"
 #include "lab/walk_kernels.h"
@@ -68,7 +69,7 @@ public:
         }
         if (report_.interrupted) {
             for (CombinationFigures& c : report_.combinations) {
-                if (c.runs.size() < sets_.size() && c.refused.empty()) {
+                if ((c.runs.empty() || c.runs.size() < sets_.size()) && c.refused.empty()) {
                     c.refused = c.runs.empty() ? "interrupted before its turn" : "interrupted";
                 }
             }
@@ -77,11 +78,16 @@ public:
     }
 
 private:
-    LabProgress progress_now(std::string doing, const LabReport* so_far = nullptr) const {
-        return {std::min(1.0, work_done_ / std::max(work_, 1.0)), std::move(doing), watch_.seconds(), so_far};
+    LabProgress progress_now(std::string doing, double share_of_that = 0, const LabReport* so_far = nullptr) const {
+        return {std::min(1.0, work_done_ / std::max(work_, 1.0)), std::move(doing), share_of_that, watch_.seconds(),
+                so_far};
     }
-    void progress(const std::string& doing) {
-        if (keep_going_ && !keep_going_(progress_now(doing))) throw Stopped{};
+    void progress(const std::string& doing, double share_of_that = 0) {
+        if (keep_going_ && !keep_going_(progress_now(doing, share_of_that))) throw Stopped{};
+    }
+    /// For work that is done in pieces. `doing` outlives it.
+    PieceDone progress_of(const std::string& doing) {
+        return [this, &doing](double share) { progress(doing, share); };
     }
 
     void add_combination(const Combination& c) {
@@ -125,20 +131,26 @@ private:
         const BinaryTrees binary = build_binary_trees(triangles_, StructureKind::Binned);
         const BuiltStructure built(queue_, triangles_, StructureKind::Binned, TreeLayout::Binary, &binary);
         const auto& proven = std::get<SceneBvhView>(built.trees());
-        progress("making rays");
         const int bounces = settings_.depth - 1;
-        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, make_ray_tracer(queue_, proven)};
+        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, ray_tracer(proven)};
         const bool record = settings_.record_rays > 0;
-        const std::vector<RaySet> sets =
+        progress("making rays");
+        std::vector<RaySet> sets =
             record ? make_record_ray_sets(job, settings_.record_rays) : make_frame_ray_sets(job, bounces);
         const BruteForce oracle(queue_, triangles_);
         int depth = 0;
-        for (const RaySet& set : sets) {
+        for (RaySet& set : sets) {
             if (!set.any_hit) ++depth;
             const bool wanted = set.any_hit ? settings_.shadow : depth == 1 ? settings_.primary : settings_.diffuse;
             if (!(wanted || record) || set.rays.empty()) continue;
-            progress(fmt::format("{}: the proven walk against brute force", set.name));
-            sets_.push_back(trace_set(queue_, set, proven, oracle, triangles_, kOracleRays, kOracleNastyRays));
+            const std::string checking = fmt::format("{}: the proven walk against brute force", set.name);
+            progress(checking);
+            const uint64_t checked = check_proven_walk(queue_, set, proven, oracle, triangles_, kOracleRays,
+                                                       kOracleNastyRays, progress_of(checking));
+            const std::string tracing = fmt::format("{}: what the proven walk hits", set.name);
+            sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
+            set.rays = {}; // they are on the device
+            sets_.back().figures.brute_force_rays = checked;
             sets_.back().figures.depth = set.any_hit || record ? 0 : depth; // frames are not of the record
             report_.sets.push_back(sets_.back().figures);
         }
@@ -148,6 +160,16 @@ private:
                             ? "diffuse rays are the second of a path: they want a depth of 2 or more"
                             : "no ray of the camera meets the scene, so there are none to bounce");
         }
+    }
+
+    /// By the proven walk, in pieces.
+    RayTracer ray_tracer(const SceneBvhView& proven) {
+        return [this, trace = make_ray_tracer(queue_, proven)](std::span<const Ray> rays, std::span<RayHit> hits) {
+            const auto piece = [&](uint64_t begin, uint64_t count) {
+                trace(rays.subspan(begin, count), hits.subspan(begin, count));
+            };
+            in_pieces(rays.size(), piece, [this](double) { progress("making rays"); });
+        };
     }
 
     std::vector<CombinationFigures*> combinations_of(StructureKind structure) {
@@ -166,8 +188,12 @@ private:
         for (const auto& [layout, combinations] : of_layout) {
             const uint32_t at = static_cast<uint32_t>(report_.structures.size());
             const std::string failed = unless_memory_lacks([&] {
+                // Builders cannot be stopped inside: an interrupt is heard after the tree and after its conversion.
                 progress(fmt::format("building {}", name_of(structure)));
-                if (is_binary(structure) && !binary) binary = build_binary_trees(triangles_, structure);
+                if (is_binary(structure) && !binary) {
+                    binary = build_binary_trees(triangles_, structure);
+                    progress(fmt::format("converting {}", name_of(structure)));
+                }
                 const BuiltStructure built(queue_, triangles_, structure, layout, binary ? &*binary : nullptr);
                 report_.structures.push_back(built.figures());
                 for (CombinationFigures* c : combinations) {
@@ -180,7 +206,7 @@ private:
             report_.structures.push_back({.name = name_of(structure), .failed = failed});
             for (CombinationFigures* c : combinations) c->structure = at, c->refused = failed;
         }
-        if (keep_going_ && !keep_going_(progress_now("measured " + std::string(name_of(structure)), &report_))) {
+        if (keep_going_ && !keep_going_(progress_now("measured " + std::string(name_of(structure)), 0, &report_))) {
             throw Stopped{};
         }
     }
@@ -212,10 +238,10 @@ private:
                 const WalkKernel* kernel = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
                 PERTEV_CHECK(kernel != nullptr);
                 RunFigures run = {.set = k};
-                if (!check(c, set, *kernel, built, run)) return c.runs.clear();
+                if (!check(c, set, *kernel, built, doing, run)) return c.runs.clear();
                 if (settings_.runs > 0) {
                     time(set, *kernel, built, doing, run);
-                    count(c, set, built, run);
+                    count(c, set, built, doing, run);
                     if (!set.figures.any_hit) take_limits(c, *kernel);
                 }
                 c.runs.push_back(run);
@@ -241,16 +267,29 @@ private:
         c.occupancy = static_cast<double>(limits.occupancy);
     }
 
-    RayBatch batch_of(const TracedSet& set) const {
-        return {set.rays.data(), static_cast<uint32_t>(set.rays.size()), pool_.data()};
+    RayBatch batch_of(const TracedSet& set) const { return batch_of(set, 0, set.rays.size()); }
+    RayBatch batch_of(const TracedSet& set, uint64_t begin, uint64_t count) const {
+        return {set.rays.data() + begin, static_cast<uint32_t>(count), pool_.data()};
+    }
+    /// A GPU has the whole set at once, as when it is timed: it is soon done. A CPU may have an hour's work.
+    template <class Work>
+    void over_set(const TracedSet& set, const std::string& doing, const Work& work) {
+        const auto on_batch = [&](uint64_t begin, uint64_t count) { work(batch_of(set, begin, count), begin); };
+        if (queue_.is_cuda()) {
+            on_batch(0, set.rays.size());
+        } else {
+            in_pieces(set.rays.size(), on_batch, progress_of(doing));
+        }
     }
 
     /// False when the combination differs from the proven walk: it has no figures then.
     bool check(CombinationFigures& c, const TracedSet& set, const WalkKernel& kernel, const BuiltStructure& built,
-               RunFigures& run) {
+               const std::string& doing, RunFigures& run) {
         Buffer<RayHit> hits(queue_, set.rays.size(), "hits");
         hits.fill(0xff); // a ray that was forgotten has no result that could be right
-        kernel.trace(queue_, built.trees(), batch_of(set), hits.data());
+        over_set(set, doing, [&](const RayBatch& batch, uint64_t begin) {
+            kernel.trace(queue_, built.trees(), batch, hits.data() + begin);
+        });
         std::vector<RayHit> copy;
         run.different = count_different(hits.read(copy), set.wanted, c.combination.options.exact);
         if (run.different == 0 || !c.combination.options.exact) return true;
@@ -268,7 +307,8 @@ private:
         run.median_s = times.median, run.least_s = times.least, run.largest_s = times.greatest;
     }
 
-    void count(const CombinationFigures& c, const TracedSet& set, const BuiltStructure& built, RunFigures& run) {
+    void count(const CombinationFigures& c, const TracedSet& set, const BuiltStructure& built, const std::string& doing,
+               RunFigures& run) {
         const WalkKernel* own = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
         const WalkKernel* counting = own;
         // What a ray tests does not depend on how it came to its thread, unless its warp has a say in it.
@@ -280,7 +320,9 @@ private:
         }
         if (counting != nullptr && counting->count != nullptr) {
             const Buffer<RayWork> on_device(queue_, set.rays.size(), "ray work");
-            counting->count(queue_, built.trees(), batch_of(set), on_device.data());
+            over_set(set, doing, [&](const RayBatch& batch, uint64_t begin) {
+                counting->count(queue_, built.trees(), batch, on_device.data() + begin);
+            });
             const std::vector<RayWork> work = on_device.download();
             const WorkSummary summary = summarize_work(work);
             run.nodes = summary.nodes, run.triangles = summary.triangles;

@@ -37,6 +37,7 @@ inline constexpr uint32_t kOracleRays = 2000, kOracleNastyRays = 200;
 struct LabProgress {
     double share = 0; // done, [0, 1]
     std::string doing;
+    double share_of_that = 0;          // where that is long work, done in pieces
     double seconds = 0;                // since the start
     const LabReport* so_far = nullptr; // after each structure: what has been measured, to be kept
 };

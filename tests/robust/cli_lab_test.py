@@ -54,6 +54,19 @@ def read_text(path):
         return file.read()
 
 
+def write_grid(path, side):
+    """A PLY file of side * side squares in the unit square, two triangles each."""
+    points = b"".join(struct.pack("<3f", x / side, y / side, 0) for y in range(side + 1) for x in range(side + 1))
+    corners = (y * (side + 1) + x for y in range(side) for x in range(side))
+    face = struct.Struct("<B3iB3i")
+    faces = b"".join(face.pack(3, c, c + 1, c + side + 1, 3, c + 1, c + side + 2, c + side + 1) for c in corners)
+    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {(side + 1) ** 2}\nproperty float x\n"
+            f"property float y\nproperty float z\nelement face {2 * side * side}\n"
+            "property list uchar int vertex_indices\nend_header\n")
+    with open(path, "wb") as file:
+        file.write(head.encode() + points + faces)
+
+
 class LabTest(CliTest):
     def setUp(self):
         super().setUp()
@@ -365,14 +378,14 @@ class WhatIsWritten(LabTest):
                 for file in glob.glob(self.path("out/*")):
                     os.remove(file)
 
-    def interrupt(self, line):
-        """Sends SIGINT in the middle of the first runs that are timed; gives the report, which is the last line."""
+    def interrupt(self, line, when, after_s=0.2):
+        """Sends SIGINT so long after the first progress whose text has `when`; gives the report, the last line."""
         with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
             for text in program.stdout:
-                if json.loads(text).get("doing", "").startswith("binned ") and b": primary" in text:
+                if re.search(when, json.loads(text).get("doing", "")):
                     break
-            time.sleep(0.2)
+            time.sleep(after_s)
             program.send_signal(signal.SIGINT)
             begin = time.monotonic()
             try:
@@ -392,17 +405,45 @@ class WhatIsWritten(LabTest):
         return report
 
     def test_an_interrupt_in_the_middle_of_a_long_set_keeps_what_was_measured_and_ends_with_75(self):
-        # One of these sets takes a minute for its runs.
+        # Each of the eight sets takes a second and more for its runs.
         report = self.interrupt(self.lab("cornell-box", *SMALL, "--depths", "2", "--size", "256x192", "-o", "out",
-                                         "--json", runs=10000))
+                                         "--json", runs=100), "^binned .*: shadow")
+        self.assertEqual([run["set"] for of in report["combinations"] for run in of["runs"]][:1], ["primary"])
         with open(self.path("out/report.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file), report)
         self.read_csv(self.path("out/report.csv"))
         self.check_html(self.path("out/report.html"))
 
     def test_an_interrupted_thesis_writes_what_it_has_and_ends_with_75(self):
-        self.interrupt(self.lab("--thesis", "box.obj", *INSIDE, "-o", "out", "--json", runs=10000))
+        self.interrupt(self.lab("--thesis", "box.obj", *INSIDE, "--size", "64x48", "-o", "out", "--json", runs=1000),
+                       "^binned .*: diffuse1")
         self.check_html(self.path("out/thesis.html"))
+
+    def test_an_interrupt_before_anything_is_measured_leaves_an_earlier_report_as_it_is(self):
+        self.succeed(*self.lab("cornell-box", *SMALL, "-o", "out"))
+        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        before = self.contents("out")
+        for line in [["cornell-box", *SMALL], ["--thesis", "box.obj", *INSIDE]]:
+            with self.subTest(line=line):
+                report = self.interrupt(self.lab(*line, "--size", "256x192", "-o", "out", "--json", runs=10000),
+                                        "^binned .*: primary")
+                self.assertEqual([of["runs"] for of in report["combinations"] if of["runs"]], [])
+                self.assertEqual(self.contents("out"), before)
+
+    def test_an_interrupt_is_heard_while_rays_are_held_against_brute_force(self):
+        side = 100 if SANITIZED else 600
+        write_grid(self.path("grid.ply"), side)
+        report = self.interrupt(self.lab("grid.ply", "--eye", "0.5,0.5,1", "--target", "0.5,0.4,0", *SMALL, "--json"),
+                                "brute force", 0 if SANITIZED else 0.5)
+        self.assertEqual((report["sets"], report["structures"]), ([], []))
+
+    def contents(self, folder):
+        """Bytes of each file there, by its name."""
+        found = {}
+        for name in os.listdir(self.path(folder)):
+            with open(os.path.join(self.path(folder), name), "rb") as file:
+                found[name] = file.read()
+        return found
 
 
 if __name__ == "__main__":
