@@ -109,19 +109,19 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(length_m())
         ->group(group);
-    verb.add_option("--aperture", options.aperture_m, "radius of the lens, metres; 0: everything is sharp")
-        ->type_name("M")
-        ->check(number_between(0, kMaxCoordinate))
-        ->group(group);
-    verb.add_option("--focus", options.focus_m, "distance in focus, metres (that of the target)")
-        ->type_name("M")
-        ->check(length_m())
-        ->group(group);
     add_allow_path(verb, options.allowed_paths);
 }
 
 void add_scene_options(CLI::App& verb, SceneOptions& options) {
     add_view_options(verb, options);
+    verb.add_option("--aperture", options.aperture_m, "radius of the lens, metres; 0: everything is sharp")
+        ->type_name("M")
+        ->check(number_between(0, kMaxCoordinate))
+        ->group("Camera");
+    verb.add_option("--focus", options.focus_m, "distance in focus, metres (that of the target)")
+        ->type_name("M")
+        ->check(length_m())
+        ->group("Camera");
     const char* group = "Environment";
     verb.add_option("--environment", options.environment, "an .hdr or .exr panorama, or R,G,B: light from far away")
         ->type_name("FILE|R,G,B")
