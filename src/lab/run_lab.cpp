@@ -1,6 +1,9 @@
 #include "lab/run_lab.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <new>
 #include <optional>
@@ -12,7 +15,9 @@
 #include "base/stopwatch.h"
 #include "base/version.h"
 #include "device/device_timer.h"
+#include "lab/describe_camera.h"
 #include "lab/in_pieces.h"
+#include "lab/list_combinations.h"
 #include "lab/measure_rays.h"
 #include "lab/traced_set.h"
 #include "lab/walk_kernels.h"
@@ -26,12 +31,11 @@ struct Stopped {};
 
 bool is_binary(StructureKind kind) { return builder_of(kind).has_value(); }
 
-std::string describe(const Camera& camera) {
-    const Transform& m = camera.world_from_camera;
-    const Vec3 eye = m.translation, forward = -column(m, 2);
-    return fmt::format("at ({:g}, {:g}, {:g}) towards ({:g}, {:g}, {:g}), {:g} degrees", eye.x, eye.y, eye.z, forward.x,
-                       forward.y, forward.z, camera.fov_y * 180 / kPi);
+uint64_t host_memory_bytes() {
+    return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
 }
+
+double gibibytes(uint64_t bytes) { return static_cast<double>(bytes) / 0x1p30; }
 
 class Lab {
 public:
@@ -43,7 +47,7 @@ public:
                    .device = queue.device_name(),
                    .commit = fmt::format("{} {}", version(), git_commit()),
                    .threads = static_cast<uint32_t>(thread_count()),
-                   .camera = describe(camera),
+                   .camera = describe_camera(camera),
                    .triangles = triangles_.count(),
                    .instances = scene.instances.size(),
                    .width = settings.width,
@@ -55,7 +59,7 @@ public:
     }
 
     LabReport run() {
-        list_combinations();
+        list_structures();
         try {
             make_sets();
             for (const StructureKind structure : structures_) measure_structure(structure);
@@ -78,9 +82,9 @@ public:
     }
 
 private:
-    LabProgress progress_now(std::string doing, double share_of_that = 0, const LabReport* so_far = nullptr) const {
-        return {std::min(1.0, work_done_ / std::max(work_, 1.0)), std::move(doing), share_of_that, watch_.seconds(),
-                so_far};
+    LabProgress progress_now(std::string doing, double share_of_that = 0) const {
+        const double share = std::min(1.0, work_done_ / std::max(work_, 1.0));
+        return {share, std::move(doing), share_of_that, watch_.seconds(), nullptr, nullptr};
     }
     void progress(const std::string& doing, double share_of_that = 0) {
         if (keep_going_ && !keep_going_(progress_now(doing, share_of_that))) throw Stopped{};
@@ -90,38 +94,14 @@ private:
         return [this, &doing](double share) { progress(doing, share); };
     }
 
-    void add_combination(const Combination& c) {
-        CombinationFigures figures = {.combination = c, .name = name_of(c)};
+    void list_structures() {
         const LabMachine machine = {queue_.is_cuda(), !triangles_.top_level.instances.empty()};
-        if (const auto reason = why_not(c, machine)) {
-            figures.refused = *reason;
-        } else if (find_kernel(c, false, queue_.is_cuda()) == nullptr) {
-            figures.refused = c.options.exact ? "not compiled" : "fast tests are compiled with rta and near alone";
-        } else {
-            work_ += 1;
-        }
-        report_.combinations.push_back(std::move(figures));
-    }
-
-    void list_combinations() {
-        for (const Combination& c : settings_.only) {
-            add_combination(c);
-            if (std::ranges::find(structures_, c.structure) == structures_.end()) structures_.push_back(c.structure);
-        }
-        if (!settings_.only.empty()) return;
-        structures_ = settings_.structures;
-        bool brute_force_listed = false;
-        for (const StructureKind structure : settings_.structures) {
-            for (const WalkKind walk : settings_.walks) {
-                if (walk == WalkKind::BruteForce && brute_force_listed) continue; // one array is as good as another
-                brute_force_listed = brute_force_listed || (walk == WalkKind::BruteForce && is_binary(structure));
-                if (!settings_.by_name && why_not(structure, walk)) continue;
-                for (const Distribution distribution : settings_.distributions) {
-                    for (const WalkOptions& options : settings_.options) {
-                        add_combination({structure, walk, options, distribution});
-                    }
-                }
-            }
+        report_.combinations = list_combinations(settings_, machine);
+        check_any_can_run(report_.combinations);
+        for (const CombinationFigures& c : report_.combinations) {
+            work_ += c.refused.empty() ? 1 : 0;
+            const StructureKind structure = c.combination.structure;
+            if (std::ranges::find(structures_, structure) == structures_.end()) structures_.push_back(structure);
         }
     }
 
@@ -131,28 +111,29 @@ private:
         const BinaryTrees binary = build_binary_trees(triangles_, StructureKind::Binned);
         const BuiltStructure built(queue_, triangles_, StructureKind::Binned, TreeLayout::Binary, &binary);
         const auto& proven = std::get<SceneBvhView>(built.trees());
-        const int bounces = settings_.depth - 1;
-        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, ray_tracer(proven)};
-        const bool record = settings_.record_rays > 0;
-        progress("making rays");
-        std::vector<RaySet> sets =
-            record ? make_record_ray_sets(job, settings_.record_rays) : make_frame_ray_sets(job, bounces);
         const BruteForce oracle(queue_, triangles_);
+        with_memory_for_rays([&] { trace_sets(proven, oracle); });
+        note_heat_maps();
+    }
+
+    void trace_sets(const SceneBvhView& proven, const BruteForce& oracle) {
+        std::vector<RaySet> sets = make_rays(proven);
+        const bool record = settings_.record_rays > 0;
         int depth = 0;
+        std::string parent; // whose hits the next set starts at
         for (RaySet& set : sets) {
             if (!set.any_hit) ++depth;
             const bool wanted = set.any_hit ? settings_.shadow : depth == 1 ? settings_.primary : settings_.diffuse;
-            if (!(wanted || record) || set.rays.empty()) continue;
-            const std::string checking = fmt::format("{}: the proven walk against brute force", set.name);
-            progress(checking);
-            const uint64_t checked = check_proven_walk(queue_, set, proven, oracle, triangles_, kOracleRays,
-                                                       kOracleNastyRays, progress_of(checking));
-            const std::string tracing = fmt::format("{}: what the proven walk hits", set.name);
-            sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
-            set.rays = {}; // they are on the device
-            sets_.back().figures.brute_force_rays = checked;
-            sets_.back().figures.depth = set.any_hit || record ? 0 : depth; // frames are not of the record
-            report_.sets.push_back(sets_.back().figures);
+            if (wanted || record) {
+                if (set.rays.empty()) {
+                    report_.notes.push_back(
+                        fmt::format("{}: no rays, since none of {} meets the scene", set.name, parent));
+                } else {
+                    add_set(set, proven, oracle, set.any_hit || record ? 0 : depth); // frames are not of the record
+                }
+            }
+            if (!set.any_hit && !set.rays.empty()) parent = set.name;
+            set.rays = {}; // those wanted are on the device
         }
         if (sets_.empty()) {
             throw Error(ErrorCode::BadInput,
@@ -161,6 +142,64 @@ private:
                             : "no ray of the camera meets the scene, so there are none to bounce");
         }
     }
+
+    void add_set(const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle, int depth) {
+        const std::string checking = fmt::format("{}: the proven walk against brute force", set.name);
+        progress(checking);
+        const uint64_t checked = check_proven_walk(queue_, set, proven, oracle, triangles_, kOracleRays,
+                                                   kOracleNastyRays, progress_of(checking));
+        const std::string tracing = fmt::format("{}: what the proven walk hits", set.name);
+        sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
+        sets_.back().figures.brute_force_rays = checked;
+        sets_.back().figures.depth = depth;
+        report_.sets.push_back(sets_.back().figures);
+    }
+
+    std::vector<RaySet> make_rays(const SceneBvhView& proven) {
+        progress("making rays");
+        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, ray_tracer(proven)};
+        return settings_.record_rays > 0 ? make_record_ray_sets(job, settings_.record_rays)
+                                         : make_frame_ray_sets(job, settings_.depth - 1);
+    }
+
+    /// Runs f, and says what the memory was wanted for where it runs out. Throws Error(OutOfMemory) before, where not
+    /// even the camera rays and what they meet can be held.
+    template <class F>
+    void with_memory_for_rays(const F& f) const {
+        const bool record = settings_.record_rays > 0;
+        const uint64_t rays = record ? settings_.record_rays : uint64_t(settings_.width) * settings_.height;
+        const uint64_t bytes = rays * (sizeof(Ray) + sizeof(RayHit));
+        const int sets = record ? 5 : settings_.depth + 1;
+        const auto complain = [&](const std::string& what) {
+            return Error(ErrorCode::OutOfMemory,
+                         fmt::format("out of memory{}: {} rays and what they meet take {:.1f} GiB a set, for up to {} "
+                                     "sets, and this machine has {:.1f} GiB; {} gives fewer",
+                                     what, rays, gibibytes(bytes), sets, gibibytes(host_memory_bytes()),
+                                     record ? "a smaller --count" : "a smaller --size"));
+        };
+        if (bytes > host_memory_bytes()) throw complain("");
+        try {
+            f();
+        } catch (const std::bad_alloc&) {
+            throw complain("");
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::OutOfMemory) throw;
+            throw complain(fmt::format(" ({})", error.what()));
+        }
+    }
+
+    /// What was asked for and will not be there.
+    void note_heat_maps() {
+        if (!settings_.heat_maps) return;
+        const auto camera = std::ranges::find(report_.sets, kCameraSet, &SetFigures::name);
+        if (camera == report_.sets.end()) {
+            report_.notes.emplace_back("no heat maps: they are of camera rays, and none are traced");
+        } else if (camera->rays < pixels()) {
+            report_.notes.push_back(fmt::format("no heat maps: {} camera rays are less than a frame of {}x{}",
+                                                camera->rays, settings_.width, settings_.height));
+        }
+    }
+    uint64_t pixels() const { return uint64_t(settings_.width) * settings_.height; }
 
     /// By the proven walk, in pieces.
     RayTracer ray_tracer(const SceneBvhView& proven) {
@@ -206,9 +245,9 @@ private:
             report_.structures.push_back({.name = name_of(structure), .failed = failed});
             for (CombinationFigures* c : combinations) c->structure = at, c->refused = failed;
         }
-        if (keep_going_ && !keep_going_(progress_now("measured " + std::string(name_of(structure)), 0, &report_))) {
-            throw Stopped{};
-        }
+        LabProgress now = progress_now("measured " + std::string(name_of(structure)));
+        now.so_far = &report_;
+        if (keep_going_ && !keep_going_(now)) throw Stopped{};
     }
 
     /// Runs f; what it lacked where that was memory or a limit, else nothing.
@@ -227,6 +266,7 @@ private:
 
     void measure(CombinationFigures& c, const BuiltStructure& built) {
         measuring_ = &c;
+        heat_map_.reset();
         for (uint32_t k = 0; k < sets_.size(); ++k) {
             const TracedSet& set = sets_[k];
             const std::string doing = fmt::format("{}: {}", c.name, set.figures.name);
@@ -248,6 +288,7 @@ private:
             }
             work_done_ += 1 / static_cast<double>(sets_.size());
         }
+        if (heat_map_) keep_heat_map(c);
     }
 
     /// An any-hit search has no nearest hit, so with RTA and without it is one walk: the figures of the one measured.
@@ -326,7 +367,7 @@ private:
             const std::vector<RayWork> work = on_device.download();
             const WorkSummary summary = summarize_work(work);
             run.nodes = summary.nodes, run.triangles = summary.triangles;
-            if (settings_.heat_maps && set.figures.depth == 1) add_heat_map(c, work);
+            if (wants_heat_map(c, set)) make_heat_map(c, set, run, work);
         }
         if (queue_.is_cuda() && own->count_lanes != nullptr) count_lanes(*own, set, built, run);
     }
@@ -345,23 +386,39 @@ private:
         run.triangle_sectors = ratio(counts.triangle_sectors, counts.triangle_requests);
     }
 
-    /// One for each structure and walk, with all its switches on.
-    void add_heat_map(const CombinationFigures& c, const std::vector<RayWork>& work) {
-        const WalkOptions& o = c.combination.options;
-        const bool plain = o.rta && (o.near_first || !find_kernel_with_order(c.combination)) && o.exact &&
-                           c.combination.distribution == Distribution::OneAThread;
-        if (!plain || work.size() != std::size_t(settings_.width) * settings_.height) return;
-        HeatMap map = {c.name, settings_.width, settings_.height, {}, {}};
-        map.nodes.resize(work.size()), map.triangles.resize(work.size());
-        for (uint32_t i = 0; i < work.size(); ++i) { // rays are in the order of tiles
-            const uint32_t pixel = tiled_pixel(i, settings_.width, settings_.height);
-            map.nodes[pixel] = work[i].nodes, map.triangles[pixel] = work[i].triangles;
-        }
-        report_.heat_maps.push_back(std::move(map));
+    /// One for each structure and walk: of its first combination, which has the most switches on.
+    bool wants_heat_map(const CombinationFigures& c, const TracedSet& set) const {
+        const auto is_same = [&](const Combination& other) {
+            return other.structure == c.combination.structure && other.walk == c.combination.walk;
+        };
+        return settings_.heat_maps && set.figures.name == kCameraSet && set.rays.size() >= pixels() &&
+               std::ranges::none_of(mapped_, is_same);
     }
-    bool find_kernel_with_order(Combination c) const {
-        c.options.near_first = true;
-        return find_kernel(c, false, queue_.is_cuda()) != nullptr;
+
+    void make_heat_map(const CombinationFigures& c, const TracedSet& set, const RunFigures& run,
+                       const std::vector<RayWork>& work) {
+        heat_map_ = HeatMap{.name = c.name, .width = settings_.width, .height = settings_.height};
+        heat_map_->rays_per_second = static_cast<double>(set.rays.size()) / run.median_s;
+        heat_map_->nodes.resize(pixels()), heat_map_->triangles.resize(pixels());
+        for (uint32_t i = 0; i < pixels(); ++i) { // rays are in the order of tiles; of several frames, the first
+            const uint32_t pixel = tiled_pixel(i, settings_.width, settings_.height);
+            heat_map_->nodes[pixel] = work[i].nodes, heat_map_->triangles[pixel] = work[i].triangles;
+        }
+    }
+
+    /// Gives it away to be written, and keeps it in the report while it is among the fastest.
+    void keep_heat_map(const CombinationFigures& c) {
+        mapped_.push_back(c.combination);
+        report_.heat_map_names.push_back(c.name);
+        LabProgress now = progress_now(c.name);
+        now.heat_map = &*heat_map_;
+        const bool goes_on = !keep_going_ || keep_going_(now);
+        auto& kept = report_.heat_maps;
+        const auto at =
+            std::ranges::upper_bound(kept, heat_map_->rays_per_second, std::greater{}, &HeatMap::rays_per_second);
+        kept.insert(at, std::move(*heat_map_));
+        kept.resize(std::min(kept.size(), kHeatMapsKept));
+        if (!goes_on) throw Stopped{};
     }
 
     Queue& queue_;
@@ -376,6 +433,8 @@ private:
     LabReport report_;
     Stopwatch watch_;
     CombinationFigures* measuring_ = nullptr;
+    std::optional<HeatMap> heat_map_; // of the combination being measured
+    std::vector<Combination> mapped_; // those that have one
     double work_ = 0, work_done_ = 0; // combinations
 };
 

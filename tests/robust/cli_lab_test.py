@@ -17,7 +17,7 @@ import subprocess
 import time
 import xml.etree.ElementTree as ElementTree
 
-from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, main, write
+from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, limit_addresses, main, write
 
 # A closed box from -1 to 1, two triangles a side, and an eye for it.
 CORNERS = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
@@ -141,6 +141,42 @@ class WhatIsRefused(LabTest):
             with self.subTest(flag=flag):
                 self.refuse(2, *self.lab("cornell-box", *flag.split()), says=[flag.split()[0]])
 
+    def test_the_lens_is_not_labs_for_rays_go_through_its_middle(self):
+        for flag in ["--aperture 0.1", "--focus 2"]:
+            self.refuse(2, *self.lab("cornell-box", *flag.split()), says=[flag.split()[0]])
+
+    def test_a_flag_given_twice_is_called_that(self):
+        self.refuse(2, *self.lab("cornell-box", "--runs", "2", "--runs", "3"), says=["--runs", "more than once"])
+
+    def test_an_empty_name_of_a_folder_is_refused_before_anything_is_read(self):
+        for scene in [["nowhere.obj"], ["--thesis", "nowhere.obj"]]:
+            outcome = self.refuse(2, *self.lab(*scene, "-o", ""), says=["-o", "empty"])
+            self.assertNotIn("nowhere", outcome.stderr)
+
+    def test_a_scene_of_an_unknown_name_is_told_those_there_are(self):
+        for line in [["spnza"], ["--thesis", "spnza"], ["a" * 300]]:
+            self.refuse(2, *self.lab(*line), says=[line[-1], "cornell-box", "sponza", "bunny", "forest"])
+        # The record's scenes are scenes of --thesis too, where their files are.
+        self.refuse_unmeasured(2, "--thesis", "sponza", says=["PERTEV_SCENES", "crytek-sponza/sponza.obj"])
+
+    def test_where_nothing_asked_for_can_be_measured_it_ends_with_2_and_the_reasons(self):
+        for line, reason in [("--structures octree --walks while-while", "octree has eight cells"),
+                             ("--structures binned --walks kd", "kd-sah"), ("--structures kd-sah --walks if-if", "kd"),
+                             ("--structures sbvh --walks octree", "octree"),
+                             ("--rta off --order off --tests fast", "fast tests"),
+                             ("--structures binned --walks skip-links --order off", "no order of children")]:
+            with self.subTest(line=line):
+                self.refuse_unmeasured(2, "box.obj", *INSIDE, *line.split(), "-o", "out", says=["none", reason])
+
+    def test_more_rays_than_memory_holds_are_refused_with_the_flag_that_gives_fewer(self):
+        for line, flag in [("--rays record --count 1073741824", "--count"), ("--size 32768x32768", "--size")]:
+            self.refuse(4, *self.lab("cornell-box", *SMALL, *line.split()), preexec_fn=limit_addresses(6),
+                        says=["out of memory", "1073741824 rays", "44.0 GiB", flag])
+
+    def test_help_tells_what_depths_are(self):
+        text = " ".join(self.succeed("lab", "--help").stdout.split())
+        self.assertIn("at most 9; LAST alone is 1-LAST", text)
+
     def test_a_scene_is_required_and_must_have_triangles(self):
         self.refuse(2, *self.lab(), says=["SCENE"])
         write(self.path("points.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\n")
@@ -184,7 +220,7 @@ class WhatIsRefused(LabTest):
 
     def test_the_thesis_takes_no_choice_of_combinations_or_rays(self):
         for flag in ["--structures binned", "--walks packet", "--rta on", "--order off", "--tests fast",
-                     "--rays primary", "--rta both"]:
+                     "--rays primary", "--rta both", "--no-heat-maps"]:
             with self.subTest(flag=flag):
                 self.refuse_unmeasured(2, "--thesis", "box.obj", *flag.split(), says=["--thesis", flag.split()[0]])
 
@@ -200,7 +236,7 @@ class WhatIsMeasured(LabTest):
         self.assertNotIn("WRONG", outcome.stdout + outcome.stderr)
         structures, rates = outcome.stdout.split("million rays a second")
         for name in self.names_of("--structures"):
-            self.assertRegex(structures, rf"(?m)^{name} +[\d.]+ +\d+ +\d+ ")
+            self.assertRegex(structures, rf"(?m)^{name} +[\d.e-]+ +\d+ +\d+ ")
         for name in self.names_of("--walks"):
             if name != "brute-force":  # only when named
                 self.assertRegex(rates, rf"(?m)^[a-z-]+ {name} (no-)?rta.* \d+\.\d")
@@ -272,20 +308,53 @@ class WhatIsMeasured(LabTest):
                          {"primary": 1, "diffuse1": 1, "diffuse2": 1})
         self.assertEqual({of["walk"] for of in report["combinations"] if of["runs"]}, set(walks))
 
-    def test_a_pair_that_makes_no_sense_says_why_by_its_name(self):
-        for structure, walk, reason in [("octree", "while-while", "octree"), ("binned", "kd", "kd-sah"),
-                                        ("kd-sah", "while-while", "kd"), ("sbvh", "octree", "octree")]:
-            with self.subTest(structure=structure, walk=walk):
-                pair = ["box.obj", *INSIDE, "--structures", structure, "--walks", walk]
-                outcome = self.succeed(*self.lab(*pair))
-                self.assertRegex(outcome.stderr, rf"(?m)^(note: )?{structure} {walk} .*: .*{reason}")
-                report = self.report(*pair)
-                self.assertGreater(len(report["combinations"]), 0)
-                for of in report["combinations"]:
-                    self.assertIn(reason, of["refused"])
-                    self.assertEqual(of["runs"], [])
-        report = self.report("box.obj", *INSIDE, "--structures", "octree,binned", "--walks", "while-while")
-        self.assertEqual({of["structure"] for of in report["combinations"] if of["runs"]}, {"binned"})
+    def test_pairs_that_make_no_sense_are_listed_with_the_reason_beside_what_was_measured(self):
+        pair = ["box.obj", *INSIDE, "--structures", "octree,binned", "--walks", "while-while,kd"]
+        outcome = self.succeed(*self.lab(*pair))
+        self.assertRegex(outcome.stderr, r"(?m)^octree while-while .*: .*octree has eight cells")
+        self.assertRegex(outcome.stderr, r"(?m)^binned kd .*: the kd walk goes over .*kd-sah")
+        report = self.report(*pair)
+        for of in report["combinations"]:
+            self.assertEqual(of["runs"] == [], of["refused"] is not None)
+        self.assertEqual({of["name"] for of in report["combinations"] if of["runs"]},
+                         {"binned while-while rta near", "binned while-while no-rta near"})
+
+    def test_every_combination_has_a_name_of_its_own_refused_ones_included(self):
+        report = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--walks",
+                             ",".join(self.names_of("--walks")), "--order", "both", "--tests", "both")
+        names = [of["name"] for of in report["combinations"]]
+        self.assertEqual(sorted(set(names)), sorted(names))
+        reasons = {of["name"]: of["refused"] for of in report["combinations"]}
+        self.assertIsNone(reasons["binned skip-links rta"])
+        self.assertIn("no order", reasons["binned skip-links rta unordered"])
+
+    def test_sets_without_rays_are_told(self):
+        away = ["--eye", "0,0,9", "--target", "0,0,10"]
+        report = self.report("box.obj", *away, *SMALL)
+        self.assertEqual([rays["name"] for rays in report["sets"]], ["primary"])
+        self.assertEqual(report["notes"], [f"{name}: no rays, since none of primary meets the scene"
+                                           for name in ["shadow", "diffuse1", "diffuse2"]])
+        outcome = self.succeed(*self.lab("box.obj", *away, *SMALL, "--rays", "record", "--count", "3"))
+        for name in ["shadow", "diffuse1", "diffuse2", "diffuse3"]:
+            self.assertIn(f"{name}: no rays", outcome.stdout)
+
+    def test_one_triangle_has_a_cost_in_every_tree_and_an_array_has_none(self):
+        write(self.path("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        report = self.report("one.obj", "--structures", "binned,kd-sah,octree", "--walks",
+                             "brute-force,if-if,skip-links,wide4,kd,octree")
+        for structure in report["structures"]:
+            known = structure["name"] != "binned triangles"
+            self.assertEqual((structure["sah_cost"] is not None, structure["depth"] is not None), (known, known))
+
+    def test_the_camera_of_a_report_gives_the_same_rays_again(self):
+        for flags in [[], ["--projection", "orthographic"], ["--up", "1,1,0", "--fov", "33"]]:
+            with self.subTest(flags=flags):
+                first = self.report("cornell-box", *flags, "--eye", "0.123,1.01,3", "--target", "0.01,0.99,0", *SMALL)
+                camera = first["camera"].split(" (")[0].split()
+                again = self.report("cornell-box", *camera, *SMALL)
+                self.assertEqual(again["camera"].split()[::2], first["camera"].split()[::2])
+                for one, other in zip(first["sets"], again["sets"]):
+                    self.assertAlmostEqual(one["hit_share"], other["hit_share"], delta=0.02)
 
     def test_what_is_named_twice_is_measured_once(self):
         once = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--walks", "if-if,octree")
@@ -343,6 +412,64 @@ class WhatIsWritten(LabTest):
     def test_no_heat_maps_means_no_pictures(self):
         self.report("cornell-box", *SMALL, "--no-heat-maps", "-o", "out")
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["report.csv", "report.html", "report.json"])
+
+    def test_heat_maps_are_of_the_first_combination_of_each_structure_and_walk(self):
+        for flags, switches in [("--rta off", "no-rta-near"), ("--order off", "rta-unordered"),
+                                ("--tests fast --rta on", "rta-near-fast-tests"), ("--order both", "rta-near"),
+                                ("--rays record --count 3000", "rta-near")]:
+            with self.subTest(flags=flags):
+                report = self.report("cornell-box", "--structures", "binned", "--walks", "if-if", *flags.split(), "-o",
+                                     "out")
+                self.assertEqual(report["notes"], [])
+                self.assertEqual(sorted(name for name in os.listdir(self.path("out")) if name.endswith(".png")),
+                                 [f"nodes-binned-if-if-{switches}.png", f"triangles-binned-if-if-{switches}.png"])
+        for flags in ["--rays shadow", "--rays record --count 500"]:
+            with self.subTest(flags=flags):
+                report = self.report("cornell-box", *SMALL, *flags.split(), "-o", "none")
+                self.assertEqual(len(report["notes"]), 1)
+                self.assertIn("no heat maps", report["notes"][0])
+                self.assertIn("no heat maps", self.check_html(self.path("none/report.html")))
+
+    def test_a_report_removes_the_heat_maps_of_the_one_before_it_and_nothing_else(self):
+        self.report("cornell-box", *SMALL, "-o", "out")
+        mine = ["nodes-of-mine.png", "nodes.png", "binned.png", "notes.txt", "triangles-binned-if-if-rta-near.png.bak"]
+        for name in mine:
+            write(self.path("out/" + name), "mine")
+        os.mkdir(self.path("out/nodes-sbvh-if-if-rta-near.png"))
+        self.report("cornell-box", "--structures", "binned", "--walks", "wide8", "-o", "out")
+        self.assertEqual(sorted(os.listdir(self.path("out"))),
+                         sorted([*mine, "nodes-sbvh-if-if-rta-near.png", "nodes-binned-wide8-rta-near.png",
+                                 "triangles-binned-wide8-rta-near.png", "report.csv", "report.html", "report.json"]))
+
+    def test_a_thesis_of_fewer_figures_removes_those_of_the_one_before_it(self):
+        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1-2", "-o", "out"))
+        self.assertTrue(os.path.exists(self.path("out/figure-6.10.svg")))
+        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        self.assertFalse(os.path.exists(self.path("out/figure-6.10.svg")))
+        self.assertTrue(os.path.exists(self.path("out/thesis-2.csv")))
+
+    def test_a_name_as_long_as_names_may_be_or_of_any_bytes_is_no_trouble(self):
+        long, odd = "x" * 246, b"odd\xff\xc3"
+        write(self.path(long + ".obj"), BOX)
+        with open(os.path.join(self.folder.encode(), odd + b".obj"), "w", encoding="utf-8") as file:
+            file.write(BOX)
+        self.succeed(*self.lab("--thesis", long + ".obj", *INSIDE, "--depths", "1", "-o", "out"))
+        self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/thesis-2.csv"))}, {long})
+        name = os.fsdecode(odd + b".obj")
+        report = json.loads(subprocess.run([PROGRAM, *self.lab(name, *INSIDE, *SMALL, "-o", "out", "--json")],
+                                           cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
+                                           check=True).stdout.splitlines()[-1])
+        self.assertEqual(report["scene"], "odd\ufffd\ufffd")
+        self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {report["scene"]})
+        self.assertIn(report["scene"], self.check_html(self.path("out/report.html")))
+
+    def test_the_thesis_gives_light_to_pictures_alone_and_names_its_tree(self):
+        outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1"))
+        self.assertNotIn("light", outcome.stderr)
+        self.assertIn("the same tree: binned", outcome.stdout)
+        outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        self.assertIn("no light in the scene", outcome.stderr)
+        self.assertIn("the same tree: binned", self.check_html(self.path("out/thesis.html")))
 
     def test_a_scenes_name_is_text_in_every_file(self):
         name = 'a,"b" <i>&amp;'
