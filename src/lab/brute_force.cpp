@@ -27,13 +27,13 @@ std::vector<RayHit> BruteForce::trace(std::span<const Ray> rays, const PieceDone
         if (queue_.is_cuda()) {
             launch(queue_, "brute force", static_cast<uint32_t>(count), stage);
         } else { // few rays of much work each
-            parallel_for(count, 4, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+            parallel_for(count, 1, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
         }
     };
     if (queue_.is_cuda()) {
         trace_piece(0, rays.size()); // a thread a ray: few rays would take as long as all
     } else {
-        in_pieces(rays.size(), trace_piece, done);
+        in_pieces(rays.size(), static_cast<uint64_t>(thread_count()), trace_piece, done);
     }
     return hits.download();
 }

@@ -207,7 +207,7 @@ private:
             const auto piece = [&](uint64_t begin, uint64_t count) {
                 trace(rays.subspan(begin, count), hits.subspan(begin, count));
             };
-            in_pieces(rays.size(), piece, [this](double) { progress("making rays"); });
+            in_pieces(rays.size(), first_piece_of_rays(), piece, [this](double) { progress("making rays"); });
         };
     }
 
@@ -319,7 +319,7 @@ private:
         if (queue_.is_cuda()) {
             on_batch(0, set.rays.size());
         } else {
-            in_pieces(set.rays.size(), on_batch, progress_of(doing));
+            in_pieces(set.rays.size(), first_piece_of_rays(), on_batch, progress_of(doing));
         }
     }
 

@@ -81,7 +81,7 @@ std::vector<RayHit> trace_proven(Queue& queue, const SceneBvhView& proven, bool 
         }
         queue.wait();
     };
-    in_pieces(rays.size(), trace_piece, done);
+    in_pieces(rays.size(), first_piece_of_rays(), trace_piece, done);
     return hits.download();
 }
 
