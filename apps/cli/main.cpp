@@ -38,10 +38,6 @@ int fail(ErrorCode code, const std::string& message) {
 std::string describe(const CLI::App* app, const CLI::Error& error) {
     std::string verb = app->get_name(), what = error.what();
     for (const CLI::App* sub : app->get_subcommands()) verb += ' ' + sub->get_name();
-    // CLI11's own words for a flag given again are "--size: At Most 1 required but received 2".
-    if (const std::size_t at = what.find(": At Most 1 required"); at != std::string::npos) {
-        what = what.substr(0, at) + ": is given more than once";
-    }
     if (what.starts_with("A subcommand")) what = "a verb is required: render, compare, info, bench or lab";
     return fmt::format("pertev: {}\n({} --help lists what there is)\n", what, verb);
 }
