@@ -93,7 +93,7 @@ Cells run_head() {
             "rays_per_second",
             "median_seconds",
             "least_seconds",
-            "largest_seconds",
+            "greatest_seconds",
             "frame_depth",
             "frames_per_second",
             "seconds_per_frame",
@@ -153,7 +153,7 @@ std::string json_of(const StructureFigures& s) {
 
 std::string json_of(const LabReport& report, const CombinationFigures& c, const RunFigures& run) {
     return fmt::format(
-        R"({{"set":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"largest_seconds":{},"nodes_per_ray":{},"triangles_per_ray":{},"node_lanes":{},"triangle_lanes":{},"node_sectors":{},"triangle_sectors":{},"different":{},"is_copy":{},"price_of_exactness":{}}})",
+        R"({{"set":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"nodes_per_ray":{},"triangles_per_ray":{},"node_lanes":{},"triangle_lanes":{},"node_sectors":{},"triangle_sectors":{},"different":{},"is_copy":{},"price_of_exactness":{}}})",
         json_string(report.sets[run.set].name), json_timed(mrays(report, run) * 1e6), json_timed(run.median_s),
         json_timed(run.least_s), json_timed(run.largest_s), json_optional(run.nodes), json_optional(run.triangles),
         json_optional(run.node_lanes), json_optional(run.triangle_lanes), json_optional(run.node_sectors),

@@ -70,5 +70,5 @@ class LabTest(CliTest):
                 self.assertGreater(run["rays_per_second"], 0)
                 self.assertGreater(run["least_seconds"], 0)
                 self.assertLessEqual(run["least_seconds"], run["median_seconds"])
-                self.assertLessEqual(run["median_seconds"], run["largest_seconds"])
+                self.assertLessEqual(run["median_seconds"], run["greatest_seconds"])
                 self.assertGreater((run["nodes_per_ray"] or 0) + run["triangles_per_ray"], 0)

@@ -52,9 +52,6 @@ class WhatIsRefused(LabTest):
         for flag in ["--aperture 0.1", "--focus 2"]:
             self.refuse(2, *self.lab("cornell-box", *flag.split()), says=[flag.split()[0]])
 
-    def test_a_flag_given_twice_is_called_that(self):
-        self.refuse(2, *self.lab("cornell-box", "--runs", "2", "--runs", "3"), says=["--runs", "more than once"])
-
     def test_an_empty_name_of_a_folder_is_refused_before_anything_is_read(self):
         for scene in [["nowhere.obj"], ["--thesis", "nowhere.obj"]]:
             outcome = self.refuse(2, *self.lab(*scene, "-o", ""), says=["-o", "empty"])
