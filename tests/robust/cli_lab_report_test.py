@@ -228,8 +228,8 @@ class WhatIsWritten(LabTest):
     def test_an_interrupt_is_heard_while_rays_are_held_against_brute_force(self):
         side = 100 if SANITIZED else 600
         write_grid(self.path("grid.ply"), side)
-        report = self.interrupt(self.lab("grid.ply", "--eye", "0.5,0.5,1", "--target", "0.5,0.4,0", *SMALL, "--threads", "1",
-                                         "--json"), "brute force", 0 if SANITIZED else 0.3)
+        line = self.lab("grid.ply", "--eye", "0.5,0.5,1", "--target", "0.5,0.4,0", *SMALL, "--threads", "1", "--json")
+        report = self.interrupt(line, "brute force", 0 if SANITIZED else 0.3)
         self.assertEqual((report["sets"], report["structures"]), ([], []))
 
     def contents(self, folder):
