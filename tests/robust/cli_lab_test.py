@@ -78,7 +78,7 @@ class WhatIsRefused(LabTest):
         # The first two are more than most machines have, the third is more than it is given here.
         for line, flag, size in [("--rays record --count 1073741824", "--count", "44.0 GiB"),
                                  ("--size 32768x32768", "--size", "44.0 GiB"),
-                                 ("--rays record --count 200000000", "--count", "8.2 GiB")]:
+                                 ("--rays record --count 400000000", "--count", "16.4 GiB")]:
             self.refuse(4, *self.lab("cornell-box", *SMALL, *line.split()), preexec_fn=limit_addresses(6),
                         says=["out of memory", "rays and what they meet", size, flag])
 
