@@ -1,23 +1,23 @@
 // pertev lab: every structure and every walk side by side, on this machine and scene.
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "apps/cli/bench_parts.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
+#include "apps/cli/lab_scene.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/thesis_command.h"
 #include "base/error.h"
+#include "lab/list_combinations.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
@@ -48,8 +48,9 @@ std::pair<int, int> parse_depths(const std::string& text) {
     const auto last = whole_number_in(dash == std::string::npos ? text : text.substr(dash + 1));
     const auto first = dash == std::string::npos ? std::optional<uint64_t>(1) : whole_number_in(text.substr(0, dash));
     if (!first || !last || *first < 1 || *first > *last || *last > kMaxFrameDepth + 1) {
-        throw Error(ErrorCode::BadInput, fmt::format("--depths {}: wants a depth or a range such as 1-8, within 1-{}",
-                                                     text, kMaxFrameDepth + 1));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--depths {}: wants a largest depth or a range such as 1-8, within 1-{}", text,
+                                kMaxFrameDepth + 1));
     }
     return {static_cast<int>(*first), static_cast<int>(*last)};
 }
@@ -116,13 +117,6 @@ void say_refusals(const LabFlags& flags, const LabReport& report, Reporter& repo
     }
 }
 
-Scene read_lab_scene(const LabFlags& flags, Messages& messages) {
-    if (const RecordScene* record = find_record_scene(flags.scene.scene)) {
-        return make_record_scene(*record, public_scenes_folder(), messages);
-    }
-    return read_any_scene(flags.scene.scene, flags.scene.allowed_paths, messages);
-}
-
 int run(const LabFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
@@ -131,20 +125,25 @@ int run(const LabFlags& flags) {
     }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     LabSettings settings = lab_settings(flags, queue->is_cuda());
-    listen_for_interrupt();
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 
-    const Scene scene = read_lab_scene(flags, messages);
+    const Scene scene = read_lab_scene(flags.scene, messages);
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
+    check_any_can_run(list_combinations(settings, lab_machine(*queue, scene))); // before a folder is made
     if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.say_messages();
-    settings.scene = std::filesystem::path(flags.scene.scene).stem().string();
+    settings.scene = lab_scene_title(flags.scene.scene);
+    listen_for_interrupt();
     const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output));
     reporter.end_progress();
+    reporter.event(json_of(report));
+    if (!has_findings(report) && report.interrupted) {
+        reporter.say("interrupted before anything was measured; nothing is written");
+        return exit_status(ErrorCode::Interrupted);
+    }
     say_refusals(flags, report, reporter);
     reporter.answer(text_of(report));
-    reporter.event(json_of(report));
     if (!flags.output.empty()) write_lab_files(flags.output, report, reporter);
     fail_if_wrong(report);
     return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;
@@ -185,7 +184,11 @@ void add_lab_command(CLI::App& app, int& status) {
                {"exact", "fast", "both"});
     add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
     verb.add_option("--size", flags->size, "camera rays (1024x768)")->type_name("WIDTHxHEIGHT");
-    verb.add_option("--depths", flags->depths, "lengths of paths, in rays (1-3)")->type_name("FIRST-LAST");
+    verb.add_option("--depths", flags->depths,
+                    fmt::format("frames of paths of FIRST to LAST rays, LAST at most {}; LAST\nalone is 1-LAST (1-3; "
+                                "with --thesis 1-8)",
+                                kMaxFrameDepth + 1))
+        ->type_name("[FIRST-]LAST");
     verb.add_option("--rays", flags->rays, "primary, shadow, diffuse (all), or record: the five sets of\nbench rays")
         ->type_name("KIND,...")
         ->delimiter(',')
@@ -201,15 +204,24 @@ void add_lab_command(CLI::App& app, int& status) {
     CLI::Option* thesis = verb.add_flag(
         "--thesis", flags->thesis,
         "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found under PERTEV_SCENES), depths 1-8");
-    for (const char* flag :
-         {"--structures", "--walks", "--rta", "--order", "--tests", "--persistent", "--rays", "--count"}) {
+    for (const char* flag : {"--structures", "--walks", "--rta", "--order", "--tests", "--persistent", "--rays",
+                             "--count", "--no-heat-maps"}) {
         thesis->excludes(verb.get_option(flag)); // it is what the thesis compared
     }
-    verb.add_option("-o,--output", flags->output, "write report.csv, .json, .html and heat maps here")
-        ->type_name("DIR");
+    CLI::Option* output =
+        verb.add_option(
+                "-o,--output", flags->output,
+                "write report.html, .csv, .json and heat maps here; with --thesis\nthesis.html, its figures and "
+                "pictures, thesis-1 and -2.csv and .json")
+            ->type_name("DIR");
     add_machine_flags(verb, flags->machine);
     add_report_flags(verb, flags->report);
-    verb.callback([flags, &status] { status = run(*flags); });
+    verb.callback([flags, output, &status] {
+        if (output->count() > 0 && flags->output.empty()) {
+            throw Error(ErrorCode::BadInput, "-o: the name of the folder is empty");
+        }
+        status = run(*flags);
+    });
 }
 
 } // namespace pertev

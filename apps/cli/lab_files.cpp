@@ -1,6 +1,8 @@
 #include "apps/cli/lab_files.h"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,10 +17,45 @@
 namespace pertev {
 namespace {
 
-/// A combination's name as part of a file's.
-std::string file_part(std::string name) {
-    std::ranges::replace(name, ' ', '-');
-    return name;
+/// Of a combination's heat maps, nodes first.
+std::array<std::string, 2> heat_map_files(std::string combination) {
+    std::ranges::replace(combination, ' ', '-');
+    return {"nodes-" + combination + ".png", "triangles-" + combination + ".png"};
+}
+
+/// Of every combination there is, on any device.
+std::set<std::string> all_heat_map_files() {
+    std::set<std::string> files;
+    for (const StructureKind structure : all_structures()) {
+        for (const WalkKind walk : all_walks()) {
+            if (why_not(structure, walk)) continue;
+            for (const Distribution distribution :
+                 {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
+                for (int bits = 0; bits < 8; ++bits) {
+                    const WalkOptions options = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+                    const auto names = heat_map_files(name_of(Combination{structure, walk, options, distribution}));
+                    files.insert(names.begin(), names.end());
+                }
+            }
+        }
+    }
+    return files;
+}
+
+void write_heat_map(const std::filesystem::path& folder, const HeatMap& map) {
+    const auto [nodes, triangles] = heat_map_files(map.name);
+    write_png(folder / nodes, draw_heat_map(map.nodes, map.width, map.height, scale_end(map.nodes)));
+    write_png(folder / triangles, draw_heat_map(map.triangles, map.width, map.height, scale_end(map.triangles)));
+}
+
+void show(const LabProgress& now, Reporter& reporter) {
+    const double left_s = now.share > 0.01 ? now.seconds * (1 - now.share) / now.share : 0;
+    const std::string of_that = now.share_of_that > 0 ? fmt::format(" ({:.0f} %)", 100 * now.share_of_that) : "";
+    reporter.progress(
+        now.share, fmt::format("{}{}{}", now.doing, of_that, left_s > 0 ? fmt::format(", {:.0f} s left", left_s) : ""));
+    reporter.event(fmt::format(
+        R"({{"event":"progress","share":{:.4f},"doing":{},"share_of_that":{:.4f},"seconds":{:.3f},"seconds_left":{}}})",
+        now.share, json_string(now.doing), now.share_of_that, now.seconds, left_s > 0 ? json_number(left_s) : "null"));
 }
 
 } // namespace
@@ -36,29 +73,37 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
     write_file_atomically(path, std::as_bytes(std::span(text)));
 }
 
+void remove_files(const std::filesystem::path& folder, const std::set<std::string>& names) {
+    std::error_code error; // what cannot be removed or listed stays
+    std::vector<std::filesystem::path> found;
+    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+        const bool is_file = std::filesystem::is_regular_file(at->symlink_status(error));
+        if (is_file && names.contains(at->path().filename().string())) found.push_back(at->path());
+    }
+    for (const std::filesystem::path& file : found) std::filesystem::remove(file, error);
+}
+
 void write_lab_files(const std::filesystem::path& folder, const LabReport& report, Reporter& reporter) {
     write_text(folder / "report.csv", csv_of(report));
     write_text(folder / "report.json", json_of(report) + '\n');
     write_text(folder / "report.html", html_of(report));
-    for (const HeatMap& map : report.heat_maps) {
-        const std::string part = file_part(map.name);
-        write_png(folder / fmt::format("nodes-{}.png", part),
-                  draw_heat_map(map.nodes, map.width, map.height, scale_end(map.nodes)));
-        write_png(folder / fmt::format("triangles-{}.png", part),
-                  draw_heat_map(map.triangles, map.width, map.height, scale_end(map.triangles)));
+    std::set<std::string> stale = all_heat_map_files();
+    for (const std::string& name : report.heat_map_names) {
+        for (const std::string& file : heat_map_files(name)) stale.erase(file);
     }
+    remove_files(folder, stale);
     reporter.say(fmt::format("written: {}", (folder / "report.html").string()));
 }
 
 std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder) {
-    return [&reporter, folder](const LabProgress& now) {
-        const double left_s = now.share > 0.01 ? now.seconds * (1 - now.share) / now.share : 0;
-        reporter.progress(now.share,
-                          fmt::format("{}{}", now.doing, left_s > 0 ? fmt::format(", {:.0f} s left", left_s) : ""));
-        reporter.event(
-            fmt::format(R"({{"event":"progress","share":{:.4f},"doing":{},"seconds":{:.3f},"seconds_left":{}}})",
-                        now.share, json_string(now.doing), now.seconds, left_s > 0 ? json_number(left_s) : "null"));
-        if (now.so_far != nullptr && !folder.empty()) {
+    return [&reporter, folder, last_doing = std::string(), last_s = 0.0](const LabProgress& now) mutable {
+        constexpr double often_s = 0.1; // enough for eyes
+        if (now.doing != last_doing || now.seconds - last_s >= often_s) {
+            last_doing = now.doing, last_s = now.seconds;
+            show(now, reporter);
+        }
+        if (now.heat_map != nullptr && !folder.empty()) write_heat_map(folder, *now.heat_map);
+        if (now.so_far != nullptr && !folder.empty() && has_findings(*now.so_far)) {
             write_text(folder / "report.csv", csv_of(*now.so_far));
             write_text(folder / "report.json", json_of(*now.so_far) + '\n');
         }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 
 #include "apps/cli/reporter.h"
@@ -15,12 +16,17 @@ namespace pertev {
 /// hour of measuring.
 void check_lab_folder(const std::filesystem::path& folder);
 
-/// report.csv, report.json, report.html and a PNG for each heat map; each is replaced as a whole.
+/// Removes the regular files of these names that are there: what an earlier report wrote and this one does not.
+void remove_files(const std::filesystem::path& folder, const std::set<std::string>& names);
+
+/// report.csv, report.json and report.html, each replaced as a whole. Heat maps of an earlier report that this one does
+/// not have are removed, no other file is.
 void write_lab_files(const std::filesystem::path& folder, const LabReport& report, Reporter& reporter);
 void write_text(const std::filesystem::path& path, const std::string& text);
 
 /// A progress bar with the time left; stops at Ctrl-C. Where `folder` is not empty, what has been measured is kept
-/// there after each structure, as CSV and JSON. `reporter` outlives it.
+/// there after each structure, as CSV and JSON, and each heat map once it is made, two PNG files; nothing is written
+/// before there is something. `reporter` outlives it.
 std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder);
 
 /// Throws Error(DeviceFault) that names the combinations that differ from the proven walk, if there are any.

@@ -128,6 +128,13 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(length_m())
         ->group(group);
+    add_allow_path(verb, options.allowed_paths);
+}
+
+namespace {
+
+void add_lens_options(CLI::App& verb, SceneOptions& options) {
+    const char* group = "Camera";
     verb.add_option("--aperture", options.aperture_m, "radius of the lens, metres; 0: everything is sharp")
         ->type_name("M")
         ->check(number_between(0, kMaxCoordinate))
@@ -137,11 +144,13 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(length_m())
         ->group(group);
-    add_allow_path(verb, options.allowed_paths);
 }
+
+} // namespace
 
 void add_scene_options(CLI::App& verb, SceneOptions& options) {
     add_view_options(verb, options);
+    add_lens_options(verb, options);
     const char* group = "Environment";
     verb.add_option("--environment", options.environment, "an .hdr or .exr panorama, or R,G,B: light from far away")
         ->type_name("FILE|R,G,B")

@@ -31,7 +31,7 @@ struct SceneOptions {
 
 /// SCENE, its camera and its environment.
 void add_scene_options(CLI::App& verb, SceneOptions& options);
-/// The same without the environment, for verbs that look at geometry alone.
+/// The same without the environment and the lens, for verbs that look at geometry alone, through its middle.
 void add_view_options(CLI::App& verb, SceneOptions& options);
 /// --allow-path alone.
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);

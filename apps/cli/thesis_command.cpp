@@ -1,12 +1,15 @@
 #include "apps/cli/thesis_command.h"
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
+#include "apps/cli/lab_scene.h"
 #include "base/error.h"
 #include "image/auto_exposure.h"
 #include "image/tone_map_image.h"
@@ -14,10 +17,12 @@
 #include "integrators/render_picture.h"
 #include "lab/thesis.h"
 #include "lab/write_tables.h"
+#include "scene/defaults.h"
 
 namespace pertev {
 namespace {
 
+constexpr std::size_t kThesisScenes = 2;
 constexpr uint32_t kPictureSamples = 32, kPictureSamplesCuda = 512;
 
 std::string sibenik() {
@@ -32,15 +37,25 @@ std::string sibenik() {
 
 struct ThesisScene {
     std::string name;
-    LoadedScene loaded;
+    Scene scene;
+    bool default_light = false; // it brought none of its own
     Camera camera;
 };
 
-ThesisScene load(SceneOptions options, const std::string& scene, const LabSettings& settings, Messages& messages) {
+/// Light is for pictures alone.
+ThesisScene load(SceneOptions options, const std::string& scene, const LabSettings& settings, bool has_pictures,
+                 Messages& messages) {
     options.scene = scene;
-    ThesisScene thesis = {std::filesystem::path(scene).stem().string(), load_scene(options, messages), {}};
+    ThesisScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
+    if (has_pictures) {
+        const bool had_environment = thesis.scene.environment.has_value();
+        const std::size_t lights = thesis.scene.lights.size();
+        add_default_environment(thesis.scene, messages);
+        thesis.default_light =
+            thesis.scene.lights.size() != lights || thesis.scene.environment.has_value() != had_environment;
+    }
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    thesis.camera = choose_camera(options, thesis.loaded.scene, aspect, messages);
+    thesis.camera = choose_camera(options, thesis.scene, aspect, messages);
     return thesis;
 }
 
@@ -57,10 +72,10 @@ RenderResult render(Queue& queue, const PreparedScene& prepared, const Camera& c
 /// Local and global illumination, at one exposure: they are compared.
 void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& settings, Messages& messages,
                   ThesisReport& thesis) {
-    const PreparedScene prepared = prepare_scene(scene.loaded.scene, {}, messages);
+    const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
     const RenderResult local = render(queue, prepared, scene.camera, settings, PathLight::Direct);
     const RenderResult global = render(queue, prepared, scene.camera, settings, PathLight::Path);
-    const float stops = scene.loaded.default_light ? auto_exposure_stops(global.picture) : 0;
+    const float stops = scene.default_light ? auto_exposure_stops(global.picture) : 0;
     const auto caption = [&](const char* light, const RenderResult& result) {
         return fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result.samples,
                            interrupted() ? " (interrupted)" : "");
@@ -69,20 +84,36 @@ void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& set
     thesis.global.push_back({caption("global", global), tone_map_image(global.picture, ToneMap::Srgb, stops)});
 }
 
+/// Files of an earlier run that this one does not have are removed.
 void write_files(const std::filesystem::path& folder, const ThesisReport& thesis) {
-    write_text(folder / "thesis.html", html_of(thesis));
+    std::set<std::string> stale;
+    const auto text_file = [&](const std::string& name, const std::string& text) {
+        if (text.empty()) {
+            stale.insert(name);
+        } else {
+            write_text(folder / name, text);
+        }
+    };
+    const auto picture_file = [&](const std::string& name, const std::vector<Picture>& pictures, std::size_t i) {
+        if (i < pictures.size()) {
+            write_png(folder / name, pictures[i].image);
+        } else {
+            stale.insert(name);
+        }
+    };
+    text_file("thesis.html", html_of(thesis));
     for (const ThesisFigure& figure : figures_of(thesis)) {
-        if (!figure.svg.empty()) write_text(folder / fmt::format("figure-{}.svg", figure.number), figure.svg);
+        text_file(fmt::format("figure-{}.svg", figure.number), figure.svg);
     }
-    for (std::size_t i = 0; i < thesis.global.size(); ++i) {
-        write_png(folder / fmt::format("figure-6.{}-local.png", 7 + i), thesis.local[i].image);
-        write_png(folder / fmt::format("figure-6.{}-global.png", 7 + i), thesis.global[i].image);
+    for (std::size_t i = 0; i < kThesisScenes; ++i) {
+        picture_file(fmt::format("figure-6.{}-local.png", 7 + i), thesis.local, i);
+        picture_file(fmt::format("figure-6.{}-global.png", 7 + i), thesis.global, i);
+        // Numbered: names of scenes may be equal, or too long for a file's.
+        const bool is_there = i < thesis.scenes.size();
+        text_file(fmt::format("thesis-{}.csv", i + 1), is_there ? csv_of(thesis.scenes[i]) : "");
+        text_file(fmt::format("thesis-{}.json", i + 1), is_there ? json_of(thesis.scenes[i]) + '\n' : "");
     }
-    for (std::size_t i = 0; i < thesis.scenes.size(); ++i) { // numbered: both may have one name
-        const std::string name = fmt::format("thesis-{}-{}", i + 1, thesis.scenes[i].scene);
-        write_text(folder / (name + ".csv"), csv_of(thesis.scenes[i]));
-        write_text(folder / (name + ".json"), json_of(thesis.scenes[i]) + '\n');
-    }
+    remove_files(folder, stale);
 }
 
 } // namespace
@@ -93,25 +124,33 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     settings.primary = settings.diffuse = true;
     settings.shadow = settings.heat_maps = false;
     // Both are read before the first is measured. The camera's flags are the second's.
-    const ThesisScene scenes[] = {
-        load({}, "cornell-box", settings, reporter.messages()),
-        load(options, options.scene.empty() ? sibenik() : options.scene, settings, reporter.messages())};
+    const std::array<ThesisScene, kThesisScenes> scenes = {
+        load({}, "cornell-box", settings, !output.empty(), reporter.messages()),
+        load(options, options.scene.empty() ? sibenik() : options.scene, settings, !output.empty(),
+             reporter.messages())};
     if (!output.empty()) check_lab_folder(output);
     reporter.say_messages();
     ThesisReport thesis;
+    listen_for_interrupt();
     for (const ThesisScene& scene : scenes) {
         settings.scene = scene.name;
         reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                  settings.first_depth, settings.depth));
-        thesis.scenes.push_back(
-            run_lab(queue, scene.loaded.scene, scene.camera, settings, show_lab_progress(reporter, {})));
+        LabReport report = run_lab(queue, scene.scene, scene.camera, settings, show_lab_progress(reporter, {}));
         reporter.end_progress();
-        reporter.event(json_of(thesis.scenes.back()));
-        if (!output.empty()) {
-            if (!interrupted()) add_pictures(queue, scene, settings, reporter.messages(), thesis);
-            write_files(output, thesis);
+        reporter.event(json_of(report));
+        if (has_findings(report)) {
+            thesis.scenes.push_back(std::move(report));
+            if (!output.empty()) {
+                if (!interrupted()) add_pictures(queue, scene, settings, reporter.messages(), thesis);
+                write_files(output, thesis);
+            }
         }
         if (interrupted()) break;
+    }
+    if (thesis.scenes.empty()) { // only an interrupt comes so early
+        reporter.say("interrupted before anything was measured; nothing is written");
+        return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));
     if (!output.empty()) {

@@ -46,6 +46,16 @@ std::string json_string(std::string_view text) {
     return out + '"';
 }
 
+std::string utf8_text(std::string_view text) {
+    std::string out;
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        out += length == 0 ? "\xef\xbf\xbd" : text.substr(0, length);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return out;
+}
+
 std::string json_number(double number) { return std::isfinite(number) ? fmt::format("{:.9g}", number) : "null"; }
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// Text and numbers as JSON wants them written.
+// Text and numbers as JSON wants them written, and text as every UTF-8 file does.
 
 #include <string>
 #include <string_view>
@@ -9,6 +9,8 @@ namespace pertev {
 
 /// Text as a JSON string, quotes included.
 std::string json_string(std::string_view text);
+/// The text with U+FFFD in place of each byte that is not UTF-8: names of files may be any bytes.
+std::string utf8_text(std::string_view text);
 /// A number in JSON, to 9 digits; null where it is not finite, which JSON has no word for.
 std::string json_number(double value);
 

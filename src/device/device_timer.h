@@ -31,11 +31,12 @@ struct RunTimes {
     int runs = 0;
 };
 
-/// Of at least one run; of an even number the greater of the two in the middle, which is one that was seen.
+/// Of at least one run; the median of an even number is the mean of the two in the middle.
 inline RunTimes summarize_runs(std::vector<double> seconds) {
     PERTEV_CHECK(!seconds.empty());
     std::ranges::sort(seconds);
-    return {seconds[seconds.size() / 2], seconds.front(), seconds.back(), static_cast<int>(seconds.size())};
+    const double median = 0.5 * (seconds[(seconds.size() - 1) / 2] + seconds[seconds.size() / 2]);
+    return {median, seconds.front(), seconds.back(), static_cast<int>(seconds.size())};
 }
 
 // Runs that are given to the queue before the first is waited for, so that the device is never idle when one begins:
@@ -43,12 +44,16 @@ inline RunTimes summarize_runs(std::vector<double> seconds) {
 inline constexpr int kRunsAtOnce = 5;
 
 /// Gives run() to the queue `warm_ups` times, then `runs` times, each timed on its own. `between()` is asked after
-/// every few runs.
+/// every few runs, on a CPU after each, warm-ups included: it may throw to end them.
 template <class Run, class Between>
 RunTimes time_runs(Queue& queue, int warm_ups, int runs, const Run& run, const Between& between) {
-    for (int i = 0; i < warm_ups; ++i) run();
+    const int at_once = queue.is_cuda() ? kRunsAtOnce : 1; // a CPU's run is over when it returns
+    for (int i = 0; i < warm_ups; ++i) {
+        run();
+        if (!queue.is_cuda()) between();
+    }
     std::vector<DeviceTimer> timers;
-    for (int i = 0; i < kRunsAtOnce; ++i) timers.emplace_back(queue);
+    for (int i = 0; i < at_once; ++i) timers.emplace_back(queue);
     std::vector<double> seconds;
     while (static_cast<int>(seconds.size()) < runs) {
         const auto now = std::min<std::size_t>(timers.size(), static_cast<std::size_t>(runs) - seconds.size());

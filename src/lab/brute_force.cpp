@@ -14,19 +14,26 @@ BruteForce::BruteForce(Queue& queue, const LabTriangles& triangles) : queue_(que
     instances_ = Buffer<InstanceRecord>(queue, std::span(triangles.top_level.instances), "instances");
 }
 
-std::vector<RayHit> BruteForce::trace(std::span<const Ray> rays) const {
+std::vector<RayHit> BruteForce::trace(std::span<const Ray> rays, const PieceDone& done) const {
     const Buffer<Ray> on_device(queue_, rays, "rays");
     const Buffer<RayHit> hits(queue_, rays.size(), "hits");
-    const BruteForceRays stage = {{triangles_.front().data(), triangles_.front().size()},
-                                  meshes_.data(),
-                                  instances_.data(),
-                                  instances_.size(),
-                                  on_device.data(),
-                                  hits.data()};
+    const auto trace_piece = [&](uint64_t begin, uint64_t count) {
+        const BruteForceRays stage = {{triangles_.front().data(), triangles_.front().size()},
+                                      meshes_.data(),
+                                      instances_.data(),
+                                      instances_.size(),
+                                      on_device.data() + begin,
+                                      hits.data() + begin};
+        if (queue_.is_cuda()) {
+            launch(queue_, "brute force", static_cast<uint32_t>(count), stage);
+        } else { // few rays of much work each
+            parallel_for(count, 1, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+        }
+    };
     if (queue_.is_cuda()) {
-        launch(queue_, "brute force", static_cast<uint32_t>(rays.size()), stage);
-    } else { // few rays of much work each
-        parallel_for(rays.size(), 4, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+        trace_piece(0, rays.size()); // a thread a ray: few rays would take as long as all
+    } else {
+        in_pieces(rays.size(), static_cast<uint64_t>(thread_count()), trace_piece, done);
     }
     return hits.download();
 }

@@ -12,6 +12,7 @@
 #include "device/buffer.h"
 #include "device/launch.h"
 #include "lab/built_structure.h"
+#include "lab/in_pieces.h"
 #include "lab/trace_rays.h"
 
 namespace pertev {
@@ -60,7 +61,7 @@ private:
 class BruteForce {
 public:
     BruteForce(Queue& queue, const LabTriangles& triangles);
-    std::vector<RayHit> trace(std::span<const Ray> rays) const;
+    std::vector<RayHit> trace(std::span<const Ray> rays, const PieceDone& done) const;
 
 private:
     Queue& queue_;

@@ -190,6 +190,7 @@ void BuiltStructure::convert(Queue& queue, const LabTriangles& triangles, TreeLa
     switch (layout) {
     case TreeLayout::Triangles:
         take<Bvh>(queue, triangles, binary.parts, triangle_array_of);
+        figures_.sah_cost.reset(), figures_.depth.reset(); // are the tree's, which is not walked
         break;
     case TreeLayout::Binary:
         take<Bvh>(queue, triangles, binary.parts, [](const Bvh& bvh) { return view_of(bvh); });

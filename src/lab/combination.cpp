@@ -109,7 +109,8 @@ const char* name_of(Distribution distribution) {
 std::string name_of(const Combination& c) {
     std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.walk));
     name += c.options.rta ? " rta" : " no-rta";
-    if (has_order(c.walk)) name += c.options.near_first ? " near" : " unordered";
+    // A walk without an order is named without; switched off there it is refused, and that has a name of its own.
+    if (has_order(c.walk) || !c.options.near_first) name += c.options.near_first ? " near" : " unordered";
     if (!c.options.exact) name += " fast-tests";
     if (c.distribution != Distribution::OneAThread) name += fmt::format(" {}", name_of(c.distribution));
     return name;
@@ -128,11 +129,11 @@ std::optional<WalkKind> walk_named(const std::string& name) {
 std::optional<std::string> why_not(StructureKind structure, WalkKind walk) {
     if ((walk == WalkKind::Kd) != is_kd(structure)) {
         return walk == WalkKind::Kd
-                   ? "is the walk of a kd-tree's planes; the structures for it are kd-median and kd-sah"
+                   ? "the kd walk goes over a kd-tree's planes; the structures for it are kd-median and kd-sah"
                    : "a kd-tree has planes in place of boxes; the walk for it is kd";
     }
     if ((walk == WalkKind::Octree) != (structure == StructureKind::Octree)) {
-        return walk == WalkKind::Octree ? "walks the cells of an octree; the structure for it is octree"
+        return walk == WalkKind::Octree ? "the octree walk goes over an octree's cells; the structure for it is octree"
                                         : "an octree has eight cells a node; the walk for it is octree";
     }
     return std::nullopt;

@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kBars = 30, kCurves = 10, kHeatMaps = 10;
+constexpr std::size_t kBars = 30, kCurves = 10;
 
 enum class Family : uint32_t { BinaryStack, Stackless, Packet, Wide, Cells, BruteForce };
 constexpr std::array kFamilies = {"binary, with a stack", "binary, stackless",  "packets",
@@ -79,18 +79,6 @@ std::optional<double> whole_frame_seconds(const LabReport& report, const Combina
     return frame_seconds(report, c, largest_depth(report));
 }
 
-/// Million rays a second at camera rays; 0 where there is no such figure.
-double camera_speed(const LabReport& report, const std::string& name) {
-    for (const CombinationFigures& c : report.combinations) {
-        if (c.name != name || c.wrong) continue;
-        for (const RunFigures& run : c.runs) {
-            const SetFigures& set = report.sets[run.set];
-            if (set.depth == 1 || set.name == "primary") return mrays(report, run);
-        }
-    }
-    return 0;
-}
-
 } // namespace
 
 std::string html_bars(const LabReport& report) {
@@ -133,30 +121,26 @@ std::string html_curves(const LabReport& report) {
 
 std::string html_heat_maps(const LabReport& report) {
     if (report.heat_maps.empty()) return {};
-    std::vector<const HeatMap*> maps;
-    for (const HeatMap& map : report.heat_maps) maps.push_back(&map);
-    std::ranges::stable_sort(maps, [&](const HeatMap* a, const HeatMap* b) {
-        return camera_speed(report, a->name) > camera_speed(report, b->name);
-    });
-    maps.resize(std::min(maps.size(), kHeatMaps));
+    const std::vector<HeatMap>& maps = report.heat_maps;
     // One scale for all, so that pictures can be compared.
     uint32_t most_nodes = 1, most_triangles = 1;
-    for (const HeatMap* map : maps) {
-        most_nodes = std::max(most_nodes, scale_end(map->nodes));
-        most_triangles = std::max(most_triangles, scale_end(map->triangles));
+    for (const HeatMap& map : maps) {
+        most_nodes = std::max(most_nodes, scale_end(map.nodes));
+        most_triangles = std::max(most_triangles, scale_end(map.triangles));
     }
     std::string html = "<h2>Tests a pixel, camera rays</h2>\n<p>Dark is little, pale yellow is the number at the right "
-                       "end of the scale or more; one scale for all pictures of nodes, one for all of triangles.";
-    if (maps.size() < report.heat_maps.size()) {
-        html += fmt::format(" The {} fastest; the pictures of all {} are PNG files beside this report, each on a scale "
-                            "of its own.",
-                            maps.size(), report.heat_maps.size());
+                       "end of the scale or more; one scale for all pictures of nodes, one for all of triangles. Each "
+                       "structure and walk has one, of its first combination, which has the most switches on.";
+    if (maps.size() < report.heat_map_names.size()) {
+        html += fmt::format(" Here are those of the {} that were fastest at camera rays, of {}; all are PNG files "
+                            "beside this report, each on a scale of its own.",
+                            maps.size(), report.heat_map_names.size());
     }
     html += "</p>\n";
-    for (const HeatMap* map : maps) {
-        html += html_image(draw_heat_map(map->nodes, map->width, map->height, most_nodes), map->name + ": nodes", 512);
-        html += html_image(draw_heat_map(map->triangles, map->width, map->height, most_triangles),
-                           map->name + ": triangles", 512);
+    for (const HeatMap& map : maps) {
+        html += html_image(draw_heat_map(map.nodes, map.width, map.height, most_nodes), map.name + ": nodes", 512);
+        html += html_image(draw_heat_map(map.triangles, map.width, map.height, most_triangles),
+                           map.name + ": triangles", 512);
     }
     return html;
 }

@@ -12,7 +12,7 @@ namespace pertev {
 std::string html_bars(const LabReport& report);
 /// Of the ten fastest with exact tests; nothing where there is but one depth.
 std::string html_curves(const LabReport& report);
-/// Of the ten fastest at camera rays, all on one scale.
+/// Those that the report has, all on one scale.
 std::string html_heat_maps(const LabReport& report);
 
 } // namespace pertev

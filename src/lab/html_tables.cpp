@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "lab/svg_plot.h"
+#include "lab/text_table.h"
 
 namespace pertev {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr const char* kNodeNote =
     "<p>What a node is differs: a test of a binary node is of its children's two boxes, that of parent-links and "
     "skip-links of one box a step, of wide and compressed nodes four or eight boxes, of a kd-tree one plane, of an "
-    "octree three planes. A packet's nodes and triangles are shared among its rays.</p>\n";
+    "octree three planes. A ray of a packet counts the nodes that it takes part in.</p>\n";
 constexpr const char* kWarpNote =
     "<p>Lanes: live ones of 32 at a test. Sectors: of 32 bytes, what a warp's load of 16 bytes a lane touches, from 1 "
     "(all lanes at one place) over 16 (neighbours, perfect) to 32. Registers and local memory are those of the "
@@ -23,6 +24,9 @@ constexpr const char* kWarpNote =
 std::string cell(const std::string& text) { return "<td>" + html_text(text) + "</td>"; }
 std::string cell(const std::optional<double>& value, const char* format) {
     return cell(value ? fmt::format(fmt::runtime(format), *value) : "");
+}
+std::string fixed_cell(const std::optional<double>& value, int decimals) {
+    return cell(value ? fixed_text(*value, decimals) : "");
 }
 std::optional<double> if_timed(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
 
@@ -38,7 +42,7 @@ const RunFigures* own_run(const CombinationFigures& c, uint32_t set) {
     return run != nullptr && !run->is_copy && !c.wrong && run->median_s > 0 ? run : nullptr;
 }
 
-/// By name, and with figures: a refused one may have the same name.
+/// By name, and with figures.
 const CombinationFigures* find_measured(const LabReport& report, const Combination& wanted) {
     const std::string name = name_of(wanted);
     const auto at = std::ranges::find_if(
@@ -152,10 +156,10 @@ std::string figures_row(const LabReport& report, const CombinationFigures& c, co
     const std::optional<double> frame_s = set.depth > 0 ? frame_seconds(report, c, set.depth) : std::nullopt;
     const bool of_kernel = !set.any_hit;
     std::string row = "<tr>" + cell(c.name) + cell(set.name + (run.is_copy ? ", same walk" : "")) +
-                      cell(if_timed(mrays(report, run)), "{:.2f}");
-    row += cell(run.median_s > 0 ? std::optional(50 * (run.largest_s - run.least_s) / run.median_s) : std::nullopt,
-                "±{:.1f} %");
-    row += cell(frame_s ? std::optional(1 / *frame_s) : std::nullopt, "{:.2f}") + cell(frame_s, "{:.5f}") +
+                      fixed_cell(if_timed(mrays(report, run)), 2) +
+                      fixed_cell(if_timed(mrays(report, run, run.largest_s)), 2) +
+                      fixed_cell(if_timed(mrays(report, run, run.least_s)), 2);
+    row += fixed_cell(frame_s ? std::optional(1 / *frame_s) : std::nullopt, 2) + fixed_cell(frame_s, 5) +
            cell(price_of_exactness(report, c, run.set), "{:.3f}") + cell(run.nodes, "{:.2f}") +
            cell(run.triangles, "{:.2f}");
     if (has_warps) {
@@ -164,7 +168,7 @@ std::string figures_row(const LabReport& report, const CombinationFigures& c, co
                cell(of_kernel ? c.local_bytes : std::nullopt, "{:.0f}") +
                cell(of_kernel && c.occupancy ? std::optional(100 * *c.occupancy) : std::nullopt, "{:.0f} %");
     }
-    return row + cell(run.different > 0 ? fmt::format("{}", run.different) : "") + "</tr>\n";
+    return row + cell(fmt::format("{}", run.different)) + "</tr>\n";
 }
 
 } // namespace
@@ -188,9 +192,13 @@ std::string html_sets(const LabReport& report) {
                 cell(fmt::format("{:.1f} %", 100 * set.hit_share)) + cell(fmt::format("{}", set.brute_force_rays)) +
                 "</tr>\n";
     }
-    if (rows.empty()) return {};
+    std::string notes;
+    for (const std::string& note : report.notes) notes += "<li>" + html_text(note) + "</li>\n";
+    if (!notes.empty()) notes = "<ul>\n" + notes + "</ul>\n";
+    if (rows.empty()) return notes;
     return table({"set", "kind", "depth", "rays", "that hit", "rays the proven walk was held against brute force on"},
-                 rows);
+                 rows) +
+           notes;
 }
 
 std::string html_structures(const LabReport& report) {
@@ -204,11 +212,10 @@ std::string html_structures(const LabReport& report) {
             continue;
         }
         const double bytes = static_cast<double>(s.bytes);
-        rows += "<tr>" + cell(s.name) + cell(s.build_s, "{:.3f}") + cell(fmt::format("{}", s.nodes)) +
+        rows += "<tr>" + cell(s.name) + fixed_cell(s.build_s, 3) + cell(fmt::format("{}", s.nodes)) +
                 cell(fmt::format("{}", s.triangles)) + cell(bytes / 1048576.0, "{:.2f}") +
                 cell(bytes / static_cast<double>(std::max<uint64_t>(report.triangles, 1)), "{:.1f}") +
-                cell(s.nodes > 0 ? std::optional(s.sah_cost) : std::nullopt, "{:.2f}") +
-                cell(fmt::format("{}", s.depth)) + "</tr>\n";
+                cell(s.sah_cost, "{:.2f}") + cell(s.depth ? fmt::format("{}", *s.depth) : "") + "</tr>\n";
     }
     return rows.empty() ? "" : table(head, rows);
 }
@@ -233,9 +240,9 @@ std::string html_figures(const LabReport& report) {
         return c.registers || c.occupancy ||
                std::ranges::any_of(c.runs, [](const RunFigures& run) { return run.node_lanes || run.node_sectors; });
     });
-    std::vector<std::string> head = {
-        "combination",        "rays",        "Mrays/s",        "spread", "frames/s", "s/frame",
-        "price of exactness", "nodes a ray", "triangles a ray"};
+    std::vector<std::string> head = {"combination", "rays",           "Mrays/s", "slowest",
+                                     "fastest",     "frames/s",       "s/frame", "price of exactness",
+                                     "nodes a ray", "triangles a ray"};
     if (has_warps) {
         head.insert(head.end(), {"lanes, nodes", "lanes, triangles", "sectors, nodes", "sectors, triangles",
                                  "registers", "local bytes", "occupancy allowed"});
@@ -247,27 +254,18 @@ std::string html_figures(const LabReport& report) {
     }
     if (rows.empty()) return {};
     return "<h2>All figures</h2>\n<p>A frame of depth d is one camera ray a pixel and its d - 1 diffuse bounces. "
-           "Spread: "
-           "half of the slowest run less the fastest, of the median. \"Same walk\": an equal walk was measured for "
+           "Mrays/s are of the median run, with those of the slowest and the fastest run beside. \"Same walk\": an "
+           "equal walk was measured for "
            "another combination, and its figures stand here too. Price of exactness: time over that of the same "
            "combination with fast tests. An empty cell was not measured.</p>\n" +
            table(head, rows) + kNodeNote + (has_warps ? kWarpNote : "");
 }
 
 std::string html_not_run(const LabReport& report) {
-    std::vector<std::pair<std::string, std::string>> reasons; // in the order in which they came up
-    for (const CombinationFigures& c : report.combinations) {
-        if (c.refused.empty() || c.wrong) continue;
-        const auto at = std::ranges::find_if(reasons, [&](const auto& reason) { return reason.first == c.refused; });
-        if (at == reasons.end()) {
-            reasons.emplace_back(c.refused, c.name);
-        } else {
-            at->second += ", " + c.name;
-        }
-    }
     std::string items;
-    for (const auto& [reason, names] : reasons) {
-        items += fmt::format("<li><strong>{}</strong>: {}</li>\n", html_text(reason), html_text(names));
+    for (const auto& [reason, names] : refusals_by_reason(report.combinations)) {
+        items += fmt::format("<li><strong>{}</strong>: {}</li>\n", html_text(reason),
+                             html_text(fmt::format("{}", fmt::join(names, ", "))));
     }
     return items.empty() ? "" : "<h2>Not run</h2>\n<ul>\n" + items + "</ul>\n";
 }

@@ -10,6 +10,7 @@ namespace pertev {
 
 /// A red paragraph that names the combinations that differ from the proven walk.
 std::string html_wrong(const LabReport& report);
+/// And below them, what was asked for and is not there.
 std::string html_sets(const LabReport& report);
 std::string html_structures(const LabReport& report);
 /// Structures down, walks across, with all switches on and one ray a thread: million rays a second, a table a set.

@@ -4,6 +4,25 @@
 
 namespace pertev {
 
+std::vector<Refusal> refusals_by_reason(const std::vector<CombinationFigures>& combinations) {
+    std::vector<Refusal> refusals;
+    for (const CombinationFigures& c : combinations) {
+        if (c.refused.empty() || c.wrong) continue;
+        const auto at = std::ranges::find(refusals, c.refused, &Refusal::reason);
+        if (at == refusals.end()) {
+            refusals.push_back({c.refused, {c.name}});
+        } else {
+            at->names.push_back(c.name);
+        }
+    }
+    return refusals;
+}
+
+bool has_findings(const LabReport& report) {
+    return std::ranges::any_of(report.combinations,
+                               [](const CombinationFigures& c) { return c.wrong || !c.runs.empty(); });
+}
+
 const RunFigures* find_run(const CombinationFigures& combination, uint32_t set) {
     const auto at = std::ranges::find_if(combination.runs, [set](const RunFigures& run) { return run.set == set; });
     return at == combination.runs.end() ? nullptr : &*at;

@@ -29,8 +29,8 @@ struct StructureFigures {
     double build_s = 0;                // from triangles to what the walk reads, conversion included
     uint64_t nodes = 0, triangles = 0; // triangles: in leaves, so duplicates count
     std::size_t bytes = 0;             // nodes and triangles
-    double sah_cost = 0;               // in its builder's own unit: binary trees compare with binary trees alone
-    int depth = 0;
+    std::optional<double> sah_cost;    // in its builder's own unit: binary trees compare with binary trees alone
+    std::optional<int> depth;          // inner nodes on the longest way down; neither of a bare array of triangles
 };
 
 /// One combination on one set.
@@ -58,14 +58,21 @@ struct CombinationFigures {
 
 struct HeatMap {
     std::string name; // of the combination
+    double rays_per_second = 0;
     uint32_t width = 0, height = 0;
     std::vector<uint32_t> nodes, triangles; // [height * width] tests of the primary ray of a pixel
 };
 
+/// How many a report keeps: those of the fastest combinations.
+inline constexpr std::size_t kHeatMapsKept = 10;
+
+/// The name of the set that camera rays are in.
+inline constexpr const char* kCameraSet = "primary";
+
 struct LabReport {
     std::string scene, device, commit;
     uint32_t threads = 0; // of the CPU
-    std::string camera;   // in words
+    std::string camera;   // in flags of the command line
     uint64_t triangles = 0, instances = 0;
     uint32_t width = 0, height = 0;
     int first_depth = 1; // of the frames to show
@@ -74,7 +81,9 @@ struct LabReport {
     std::vector<SetFigures> sets;
     std::vector<StructureFigures> structures;
     std::vector<CombinationFigures> combinations;
-    std::vector<HeatMap> heat_maps;
+    std::vector<std::string> notes;          // what was asked for and is not there, and why
+    std::vector<std::string> heat_map_names; // combinations of all that were made
+    std::vector<HeatMap> heat_maps;          // of the fastest, the fastest first
 };
 
 /// A picture and what stands beneath it.
@@ -83,10 +92,22 @@ struct Picture {
     Rgba8Image image;
 };
 
-/// Million rays a second of a run.
-inline double mrays(const LabReport& report, const RunFigures& run) {
-    return run.median_s > 0 ? static_cast<double>(report.sets[run.set].rays) / run.median_s * 1e-6 : 0;
+/// Million rays a second where a run takes so long; 0 where it took no time.
+inline double mrays(const LabReport& report, const RunFigures& run, double seconds) {
+    return seconds > 0 ? static_cast<double>(report.sets[run.set].rays) / seconds * 1e-6 : 0;
 }
+/// Of the median.
+inline double mrays(const LabReport& report, const RunFigures& run) { return mrays(report, run, run.median_s); }
+
+/// Refused combinations by reason, in the order in which these come up; wrong ones are not among them.
+struct Refusal {
+    std::string reason;
+    std::vector<std::string> names;
+};
+std::vector<Refusal> refusals_by_reason(const std::vector<CombinationFigures>& combinations);
+
+/// Whether there is anything in it that was not known before: figures, or a combination that is wrong.
+bool has_findings(const LabReport& report);
 
 /// The run of a combination on a set, or null.
 const RunFigures* find_run(const CombinationFigures& combination, uint32_t set);

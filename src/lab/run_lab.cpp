@@ -1,6 +1,9 @@
 #include "lab/run_lab.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <new>
 #include <optional>
@@ -12,6 +15,9 @@
 #include "base/stopwatch.h"
 #include "base/version.h"
 #include "device/device_timer.h"
+#include "lab/describe_camera.h"
+#include "lab/in_pieces.h"
+#include "lab/list_combinations.h"
 #include "lab/measure_rays.h"
 #include "lab/traced_set.h"
 #include "lab/walk_kernels.h"
@@ -25,12 +31,11 @@ struct Stopped {};
 
 bool is_binary(StructureKind kind) { return builder_of(kind).has_value(); }
 
-std::string describe(const Camera& camera) {
-    const Transform& m = camera.world_from_camera;
-    const Vec3 eye = m.translation, forward = -column(m, 2);
-    return fmt::format("at ({:g}, {:g}, {:g}) towards ({:g}, {:g}, {:g}), {:g} degrees", eye.x, eye.y, eye.z, forward.x,
-                       forward.y, forward.z, camera.fov_y * 180 / kPi);
+uint64_t host_memory_bytes() {
+    return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
 }
+
+double gibibytes(uint64_t bytes) { return static_cast<double>(bytes) / 0x1p30; }
 
 class Lab {
 public:
@@ -42,7 +47,7 @@ public:
                    .device = queue.device_name(),
                    .commit = fmt::format("{} {}", version(), git_commit()),
                    .threads = static_cast<uint32_t>(thread_count()),
-                   .camera = describe(camera),
+                   .camera = describe_camera(camera),
                    .triangles = triangles_.count(),
                    .instances = scene.instances.size(),
                    .width = settings.width,
@@ -54,7 +59,7 @@ public:
     }
 
     LabReport run() {
-        list_combinations();
+        list_structures();
         try {
             make_sets();
             for (const StructureKind structure : structures_) measure_structure(structure);
@@ -68,7 +73,7 @@ public:
         }
         if (report_.interrupted) {
             for (CombinationFigures& c : report_.combinations) {
-                if (c.runs.size() < sets_.size() && c.refused.empty()) {
+                if ((c.runs.empty() || c.runs.size() < sets_.size()) && c.refused.empty()) {
                     c.refused = c.runs.empty() ? "interrupted before its turn" : "interrupted";
                 }
             }
@@ -77,45 +82,26 @@ public:
     }
 
 private:
-    LabProgress progress_now(std::string doing, const LabReport* so_far = nullptr) const {
-        return {std::min(1.0, work_done_ / std::max(work_, 1.0)), std::move(doing), watch_.seconds(), so_far};
+    LabProgress progress_now(std::string doing, double share_of_that = 0) const {
+        const double share = std::min(1.0, work_done_ / std::max(work_, 1.0));
+        return {share, std::move(doing), share_of_that, watch_.seconds(), nullptr, nullptr};
     }
-    void progress(const std::string& doing) {
-        if (keep_going_ && !keep_going_(progress_now(doing))) throw Stopped{};
+    void progress(const std::string& doing, double share_of_that = 0) {
+        if (keep_going_ && !keep_going_(progress_now(doing, share_of_that))) throw Stopped{};
+    }
+    /// For work that is done in pieces. `doing` outlives it.
+    PieceDone progress_of(const std::string& doing) {
+        return [this, &doing](double share) { progress(doing, share); };
     }
 
-    void add_combination(const Combination& c) {
-        CombinationFigures figures = {.combination = c, .name = name_of(c)};
+    void list_structures() {
         const LabMachine machine = {queue_.is_cuda(), !triangles_.top_level.instances.empty()};
-        if (const auto reason = why_not(c, machine)) {
-            figures.refused = *reason;
-        } else if (find_kernel(c, false, queue_.is_cuda()) == nullptr) {
-            figures.refused = c.options.exact ? "not compiled" : "fast tests are compiled with rta and near alone";
-        } else {
-            work_ += 1;
-        }
-        report_.combinations.push_back(std::move(figures));
-    }
-
-    void list_combinations() {
-        for (const Combination& c : settings_.only) {
-            add_combination(c);
-            if (std::ranges::find(structures_, c.structure) == structures_.end()) structures_.push_back(c.structure);
-        }
-        if (!settings_.only.empty()) return;
-        structures_ = settings_.structures;
-        bool brute_force_listed = false;
-        for (const StructureKind structure : settings_.structures) {
-            for (const WalkKind walk : settings_.walks) {
-                if (walk == WalkKind::BruteForce && brute_force_listed) continue; // one array is as good as another
-                brute_force_listed = brute_force_listed || (walk == WalkKind::BruteForce && is_binary(structure));
-                if (!settings_.by_name && why_not(structure, walk)) continue;
-                for (const Distribution distribution : settings_.distributions) {
-                    for (const WalkOptions& options : settings_.options) {
-                        add_combination({structure, walk, options, distribution});
-                    }
-                }
-            }
+        report_.combinations = list_combinations(settings_, machine);
+        check_any_can_run(report_.combinations);
+        for (const CombinationFigures& c : report_.combinations) {
+            work_ += c.refused.empty() ? 1 : 0;
+            const StructureKind structure = c.combination.structure;
+            if (std::ranges::find(structures_, structure) == structures_.end()) structures_.push_back(structure);
         }
     }
 
@@ -125,22 +111,29 @@ private:
         const BinaryTrees binary = build_binary_trees(triangles_, StructureKind::Binned);
         const BuiltStructure built(queue_, triangles_, StructureKind::Binned, TreeLayout::Binary, &binary);
         const auto& proven = std::get<SceneBvhView>(built.trees());
-        progress("making rays");
-        const int bounces = settings_.depth - 1;
-        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, make_ray_tracer(queue_, proven)};
-        const bool record = settings_.record_rays > 0;
-        const std::vector<RaySet> sets =
-            record ? make_record_ray_sets(job, settings_.record_rays) : make_frame_ray_sets(job, bounces);
         const BruteForce oracle(queue_, triangles_);
+        with_memory_for_rays([&] { trace_sets(proven, oracle); });
+        note_heat_maps();
+    }
+
+    void trace_sets(const SceneBvhView& proven, const BruteForce& oracle) {
+        std::vector<RaySet> sets = make_rays(proven);
+        const bool record = settings_.record_rays > 0;
         int depth = 0;
-        for (const RaySet& set : sets) {
+        std::string parent; // whose hits the next set starts at
+        for (RaySet& set : sets) {
             if (!set.any_hit) ++depth;
             const bool wanted = set.any_hit ? settings_.shadow : depth == 1 ? settings_.primary : settings_.diffuse;
-            if (!(wanted || record) || set.rays.empty()) continue;
-            progress(fmt::format("{}: the proven walk against brute force", set.name));
-            sets_.push_back(trace_set(queue_, set, proven, oracle, triangles_, kOracleRays, kOracleNastyRays));
-            sets_.back().figures.depth = set.any_hit || record ? 0 : depth; // frames are not of the record
-            report_.sets.push_back(sets_.back().figures);
+            if (wanted || record) {
+                if (set.rays.empty()) {
+                    report_.notes.push_back(
+                        fmt::format("{}: no rays, since none of {} meets the scene", set.name, parent));
+                } else {
+                    add_set(set, proven, oracle, set.any_hit || record ? 0 : depth); // frames are not of the record
+                }
+            }
+            if (!set.any_hit && !set.rays.empty()) parent = set.name;
+            set.rays = {}; // those wanted are on the device
         }
         if (sets_.empty()) {
             throw Error(ErrorCode::BadInput,
@@ -148,6 +141,74 @@ private:
                             ? "diffuse rays are the second of a path: they want a depth of 2 or more"
                             : "no ray of the camera meets the scene, so there are none to bounce");
         }
+    }
+
+    void add_set(const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle, int depth) {
+        const std::string checking = fmt::format("{}: the proven walk against brute force", set.name);
+        progress(checking);
+        const uint64_t checked = check_proven_walk(queue_, set, proven, oracle, triangles_, kOracleRays,
+                                                   kOracleNastyRays, progress_of(checking));
+        const std::string tracing = fmt::format("{}: what the proven walk hits", set.name);
+        sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
+        sets_.back().figures.brute_force_rays = checked;
+        sets_.back().figures.depth = depth;
+        report_.sets.push_back(sets_.back().figures);
+    }
+
+    std::vector<RaySet> make_rays(const SceneBvhView& proven) {
+        progress("making rays");
+        const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, ray_tracer(proven)};
+        return settings_.record_rays > 0 ? make_record_ray_sets(job, settings_.record_rays)
+                                         : make_frame_ray_sets(job, settings_.depth - 1);
+    }
+
+    /// Runs f, and says what the memory was wanted for where it runs out. Throws Error(OutOfMemory) before, where not
+    /// even the camera rays and what they meet can be held.
+    template <class F>
+    void with_memory_for_rays(const F& f) const {
+        const bool record = settings_.record_rays > 0;
+        const uint64_t rays = record ? settings_.record_rays : uint64_t(settings_.width) * settings_.height;
+        const uint64_t bytes = rays * (sizeof(Ray) + sizeof(RayHit));
+        const int sets = record ? 5 : settings_.depth + 1;
+        const auto complain = [&](const std::string& what) {
+            return Error(ErrorCode::OutOfMemory,
+                         fmt::format("out of memory{}: {} rays and what they meet take {:.1f} GiB a set, for up to {} "
+                                     "sets, and this machine has {:.1f} GiB; {} gives fewer",
+                                     what, rays, gibibytes(bytes), sets, gibibytes(host_memory_bytes()),
+                                     record ? "a smaller --count" : "a smaller --size"));
+        };
+        if (bytes > host_memory_bytes()) throw complain("");
+        try {
+            f();
+        } catch (const std::bad_alloc&) {
+            throw complain("");
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::OutOfMemory) throw;
+            throw complain(fmt::format(" ({})", error.what()));
+        }
+    }
+
+    /// What was asked for and will not be there.
+    void note_heat_maps() {
+        if (!settings_.heat_maps) return;
+        const auto camera = std::ranges::find(report_.sets, kCameraSet, &SetFigures::name);
+        if (camera == report_.sets.end()) {
+            report_.notes.emplace_back("no heat maps: they are of camera rays, and none are traced");
+        } else if (camera->rays < pixels()) {
+            report_.notes.push_back(fmt::format("no heat maps: {} camera rays are less than a frame of {}x{}",
+                                                camera->rays, settings_.width, settings_.height));
+        }
+    }
+    uint64_t pixels() const { return uint64_t(settings_.width) * settings_.height; }
+
+    /// By the proven walk, in pieces.
+    RayTracer ray_tracer(const SceneBvhView& proven) {
+        return [this, trace = make_ray_tracer(queue_, proven)](std::span<const Ray> rays, std::span<RayHit> hits) {
+            const auto piece = [&](uint64_t begin, uint64_t count) {
+                trace(rays.subspan(begin, count), hits.subspan(begin, count));
+            };
+            in_pieces(rays.size(), first_piece_of_rays(), piece, [this](double) { progress("making rays"); });
+        };
     }
 
     std::vector<CombinationFigures*> combinations_of(StructureKind structure) {
@@ -166,8 +227,12 @@ private:
         for (const auto& [layout, combinations] : of_layout) {
             const uint32_t at = static_cast<uint32_t>(report_.structures.size());
             const std::string failed = unless_memory_lacks([&] {
+                // Builders cannot be stopped inside: an interrupt is heard after the tree and after its conversion.
                 progress(fmt::format("building {}", name_of(structure)));
-                if (is_binary(structure) && !binary) binary = build_binary_trees(triangles_, structure);
+                if (is_binary(structure) && !binary) {
+                    binary = build_binary_trees(triangles_, structure);
+                    progress(fmt::format("converting {}", name_of(structure)));
+                }
                 const BuiltStructure built(queue_, triangles_, structure, layout, binary ? &*binary : nullptr);
                 report_.structures.push_back(built.figures());
                 for (CombinationFigures* c : combinations) {
@@ -180,9 +245,9 @@ private:
             report_.structures.push_back({.name = name_of(structure), .failed = failed});
             for (CombinationFigures* c : combinations) c->structure = at, c->refused = failed;
         }
-        if (keep_going_ && !keep_going_(progress_now("measured " + std::string(name_of(structure)), &report_))) {
-            throw Stopped{};
-        }
+        LabProgress now = progress_now("measured " + std::string(name_of(structure)));
+        now.so_far = &report_;
+        if (keep_going_ && !keep_going_(now)) throw Stopped{};
     }
 
     /// Runs f; what it lacked where that was memory or a limit, else nothing.
@@ -201,6 +266,7 @@ private:
 
     void measure(CombinationFigures& c, const BuiltStructure& built) {
         measuring_ = &c;
+        heat_map_.reset();
         for (uint32_t k = 0; k < sets_.size(); ++k) {
             const TracedSet& set = sets_[k];
             const std::string doing = fmt::format("{}: {}", c.name, set.figures.name);
@@ -212,16 +278,17 @@ private:
                 const WalkKernel* kernel = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
                 PERTEV_CHECK(kernel != nullptr);
                 RunFigures run = {.set = k};
-                if (!check(c, set, *kernel, built, run)) return c.runs.clear();
+                if (!check(c, set, *kernel, built, doing, run)) return c.runs.clear();
                 if (settings_.runs > 0) {
                     time(set, *kernel, built, doing, run);
-                    count(c, set, built, run);
+                    count(c, set, built, doing, run);
                     if (!set.figures.any_hit) take_limits(c, *kernel);
                 }
                 c.runs.push_back(run);
             }
             work_done_ += 1 / static_cast<double>(sets_.size());
         }
+        if (heat_map_) keep_heat_map(c);
     }
 
     /// An any-hit search has no nearest hit, so with RTA and without it is one walk: the figures of the one measured.
@@ -241,16 +308,29 @@ private:
         c.occupancy = static_cast<double>(limits.occupancy);
     }
 
-    RayBatch batch_of(const TracedSet& set) const {
-        return {set.rays.data(), static_cast<uint32_t>(set.rays.size()), pool_.data()};
+    RayBatch batch_of(const TracedSet& set) const { return batch_of(set, 0, set.rays.size()); }
+    RayBatch batch_of(const TracedSet& set, uint64_t begin, uint64_t count) const {
+        return {set.rays.data() + begin, static_cast<uint32_t>(count), pool_.data()};
+    }
+    /// A GPU has the whole set at once, as when it is timed: it is soon done. A CPU may have an hour's work.
+    template <class Work>
+    void over_set(const TracedSet& set, const std::string& doing, const Work& work) {
+        const auto on_batch = [&](uint64_t begin, uint64_t count) { work(batch_of(set, begin, count), begin); };
+        if (queue_.is_cuda()) {
+            on_batch(0, set.rays.size());
+        } else {
+            in_pieces(set.rays.size(), first_piece_of_rays(), on_batch, progress_of(doing));
+        }
     }
 
     /// False when the combination differs from the proven walk: it has no figures then.
     bool check(CombinationFigures& c, const TracedSet& set, const WalkKernel& kernel, const BuiltStructure& built,
-               RunFigures& run) {
+               const std::string& doing, RunFigures& run) {
         Buffer<RayHit> hits(queue_, set.rays.size(), "hits");
         hits.fill(0xff); // a ray that was forgotten has no result that could be right
-        kernel.trace(queue_, built.trees(), batch_of(set), hits.data());
+        over_set(set, doing, [&](const RayBatch& batch, uint64_t begin) {
+            kernel.trace(queue_, built.trees(), batch, hits.data() + begin);
+        });
         std::vector<RayHit> copy;
         run.different = count_different(hits.read(copy), set.wanted, c.combination.options.exact);
         if (run.different == 0 || !c.combination.options.exact) return true;
@@ -268,7 +348,8 @@ private:
         run.median_s = times.median, run.least_s = times.least, run.largest_s = times.greatest;
     }
 
-    void count(const CombinationFigures& c, const TracedSet& set, const BuiltStructure& built, RunFigures& run) {
+    void count(const CombinationFigures& c, const TracedSet& set, const BuiltStructure& built, const std::string& doing,
+               RunFigures& run) {
         const WalkKernel* own = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
         const WalkKernel* counting = own;
         // What a ray tests does not depend on how it came to its thread, unless its warp has a say in it.
@@ -280,11 +361,13 @@ private:
         }
         if (counting != nullptr && counting->count != nullptr) {
             const Buffer<RayWork> on_device(queue_, set.rays.size(), "ray work");
-            counting->count(queue_, built.trees(), batch_of(set), on_device.data());
+            over_set(set, doing, [&](const RayBatch& batch, uint64_t begin) {
+                counting->count(queue_, built.trees(), batch, on_device.data() + begin);
+            });
             const std::vector<RayWork> work = on_device.download();
             const WorkSummary summary = summarize_work(work);
             run.nodes = summary.nodes, run.triangles = summary.triangles;
-            if (settings_.heat_maps && set.figures.depth == 1) add_heat_map(c, work);
+            if (wants_heat_map(c, set)) make_heat_map(c, set, run, work);
         }
         if (queue_.is_cuda() && own->count_lanes != nullptr) count_lanes(*own, set, built, run);
     }
@@ -303,23 +386,39 @@ private:
         run.triangle_sectors = ratio(counts.triangle_sectors, counts.triangle_requests);
     }
 
-    /// One for each structure and walk, with all its switches on.
-    void add_heat_map(const CombinationFigures& c, const std::vector<RayWork>& work) {
-        const WalkOptions& o = c.combination.options;
-        const bool plain = o.rta && (o.near_first || !find_kernel_with_order(c.combination)) && o.exact &&
-                           c.combination.distribution == Distribution::OneAThread;
-        if (!plain || work.size() != std::size_t(settings_.width) * settings_.height) return;
-        HeatMap map = {c.name, settings_.width, settings_.height, {}, {}};
-        map.nodes.resize(work.size()), map.triangles.resize(work.size());
-        for (uint32_t i = 0; i < work.size(); ++i) { // rays are in the order of tiles
-            const uint32_t pixel = tiled_pixel(i, settings_.width, settings_.height);
-            map.nodes[pixel] = work[i].nodes, map.triangles[pixel] = work[i].triangles;
-        }
-        report_.heat_maps.push_back(std::move(map));
+    /// One for each structure and walk: of its first combination, which has the most switches on.
+    bool wants_heat_map(const CombinationFigures& c, const TracedSet& set) const {
+        const auto is_same = [&](const Combination& other) {
+            return other.structure == c.combination.structure && other.walk == c.combination.walk;
+        };
+        return settings_.heat_maps && set.figures.name == kCameraSet && set.rays.size() >= pixels() &&
+               std::ranges::none_of(mapped_, is_same);
     }
-    bool find_kernel_with_order(Combination c) const {
-        c.options.near_first = true;
-        return find_kernel(c, false, queue_.is_cuda()) != nullptr;
+
+    void make_heat_map(const CombinationFigures& c, const TracedSet& set, const RunFigures& run,
+                       const std::vector<RayWork>& work) {
+        heat_map_ = HeatMap{.name = c.name, .width = settings_.width, .height = settings_.height};
+        heat_map_->rays_per_second = static_cast<double>(set.rays.size()) / run.median_s;
+        heat_map_->nodes.resize(pixels()), heat_map_->triangles.resize(pixels());
+        for (uint32_t i = 0; i < pixels(); ++i) { // rays are in the order of tiles; of several frames, the first
+            const uint32_t pixel = tiled_pixel(i, settings_.width, settings_.height);
+            heat_map_->nodes[pixel] = work[i].nodes, heat_map_->triangles[pixel] = work[i].triangles;
+        }
+    }
+
+    /// Gives it away to be written, and keeps it in the report while it is among the fastest.
+    void keep_heat_map(const CombinationFigures& c) {
+        mapped_.push_back(c.combination);
+        report_.heat_map_names.push_back(c.name);
+        LabProgress now = progress_now(c.name);
+        now.heat_map = &*heat_map_;
+        const bool goes_on = !keep_going_ || keep_going_(now);
+        auto& kept = report_.heat_maps;
+        const auto at =
+            std::ranges::upper_bound(kept, heat_map_->rays_per_second, std::greater{}, &HeatMap::rays_per_second);
+        kept.insert(at, std::move(*heat_map_));
+        kept.resize(std::min(kept.size(), kHeatMapsKept));
+        if (!goes_on) throw Stopped{};
     }
 
     Queue& queue_;
@@ -334,6 +433,8 @@ private:
     LabReport report_;
     Stopwatch watch_;
     CombinationFigures* measuring_ = nullptr;
+    std::optional<HeatMap> heat_map_; // of the combination being measured
+    std::vector<Combination> mapped_; // those that have one
     double work_ = 0, work_done_ = 0; // combinations
 };
 

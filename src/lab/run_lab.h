@@ -37,13 +37,16 @@ inline constexpr uint32_t kOracleRays = 2000, kOracleNastyRays = 200;
 struct LabProgress {
     double share = 0; // done, [0, 1]
     std::string doing;
+    double share_of_that = 0;          // where that is long work, done in pieces
     double seconds = 0;                // since the start
     const LabReport* so_far = nullptr; // after each structure: what has been measured, to be kept
+    const HeatMap* heat_map = nullptr; // one that was just made, to be kept: the report has but a few of them
 };
 
-/// Stops early, with `interrupted` set, when keep_going returns false. Throws Error(BadInput) for a scene without
-/// triangles, Error(DeviceFault) where the proven walk itself differs from brute force. A combination that differs from
-/// the proven walk, or does not fit into memory, has no figures and says so.
+/// Stops early, with `interrupted` set, when keep_going returns false; a builder, and a run that is timed, are finished
+/// first. Throws Error(BadInput) for a scene without triangles or where no combination can be measured,
+/// Error(OutOfMemory) where the rays do not fit, Error(DeviceFault) where the proven walk itself differs from brute
+/// force. A combination that differs from the proven walk, or does not fit into memory, has no figures and says so.
 LabReport run_lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
                   const std::function<bool(const LabProgress&)>& keep_going);
 

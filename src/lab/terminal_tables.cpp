@@ -30,9 +30,10 @@ std::string structures_of(const LabReport& report) {
             failed += fmt::format("{}: {}\n", s.name, s.failed);
             continue;
         }
-        rows.push_back({s.name, fmt::format("{:.3f}", s.build_s), fmt::format("{}", s.nodes),
-                        fmt::format("{}", s.triangles), fmt::format("{:.1f}", static_cast<double>(s.bytes) / 1048576.0),
-                        s.nodes > 0 ? fmt::format("{:.2f}", s.sah_cost) : "", fmt::format("{}", s.depth)});
+        rows.push_back({s.name, fixed_text(s.build_s, 3), fmt::format("{}", s.nodes), fmt::format("{}", s.triangles),
+                        fmt::format("{:.1f}", static_cast<double>(s.bytes) / 1048576.0),
+                        s.sah_cost ? fmt::format("{:.2f}", *s.sah_cost) : "",
+                        s.depth ? fmt::format("{}", *s.depth) : ""});
     }
     return (rows.size() > 1 ? align_columns(rows) : "") + failed;
 }
@@ -55,12 +56,15 @@ std::vector<const CombinationFigures*> in_order(const LabReport& report) {
     return order;
 }
 
-/// "12.34 ±1% (10.1 + 2.3)", as much of it as was measured.
+/// "12.34 [11.90, 12.51] (10.1 + 2.3)", as much of it as was measured.
 std::string speed_of(const LabReport& report, const RunFigures& run) {
     std::string text;
     if (run.median_s > 0) {
-        const double half = 50 * (run.largest_s - run.least_s) / run.median_s;
-        text = fmt::format("{:.2f} ±{:.0f}%", mrays(report, run), half);
+        text = fixed_text(mrays(report, run), 2);
+        if (report.runs > 1) {
+            text += fmt::format(" [{}, {}]", fixed_text(mrays(report, run, run.largest_s), 2),
+                                fixed_text(mrays(report, run, run.least_s), 2));
+        }
     }
     if (run.nodes && run.triangles) {
         text += fmt::format("{}({:.1f} + {:.1f})", text.empty() ? "" : " ", *run.nodes, *run.triangles);
@@ -78,7 +82,7 @@ std::string speeds_of(const LabReport& report, const std::vector<const Combinati
             rows.back().push_back(run != nullptr ? speed_of(report, *run) : "");
         }
     }
-    return fmt::format("\nmillion rays a second on {} ±half of the runs' range (nodes + triangles tested a ray)\n{}",
+    return fmt::format("\nmillion rays a second on {} [slowest, fastest run] (nodes + triangles tested a ray)\n{}",
                        report.device, align_columns(rows));
 }
 
@@ -92,7 +96,7 @@ std::string frames_of(const LabReport& report, const std::vector<const Combinati
         rows.push_back({c->name});
         for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
             const std::optional<double> seconds = frame_seconds(report, *c, depth);
-            rows.back().push_back(seconds ? fmt::format("{:.2f}", 1 / *seconds) : "");
+            rows.back().push_back(seconds ? fixed_text(1 / *seconds, 2) : "");
         }
     }
     return rows.size() > 1 ? "\nframes a second by depth of paths\n" + align_columns(rows) : "";
@@ -143,6 +147,8 @@ std::string text_of(const LabReport& report) {
     const std::vector<const CombinationFigures*> order = in_order(report);
     std::string text = wrong_lines(report) + structures_of(report);
     if (!order.empty()) text += speeds_of(report, order) + frames_of(report, order) + warps_of(report, order);
+    if (!report.notes.empty()) text += '\n';
+    for (const std::string& note : report.notes) text += note + '\n';
     if (report.interrupted) text += "\ninterrupted: this is what had been measured\n";
     return text;
 }

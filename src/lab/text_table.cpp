@@ -1,6 +1,9 @@
 #include "lab/text_table.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
 
 namespace pertev {
 namespace {
@@ -28,6 +31,11 @@ std::string align_columns(const std::vector<std::vector<std::string>>& rows) {
         text += line + '\n';
     }
     return text;
+}
+
+std::string fixed_text(double value, int decimals) {
+    const bool is_lost = value != 0 && std::abs(value) < std::pow(10.0, 1 - decimals);
+    return is_lost ? fmt::format("{:.2g}", value) : fmt::format("{:.{}f}", value, decimals);
 }
 
 } // namespace pertev

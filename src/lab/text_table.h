@@ -11,4 +11,7 @@ namespace pertev {
 /// characters), two blanks between. Rows may be shorter than others.
 std::string align_columns(const std::vector<std::vector<std::string>>& rows);
 
+/// With so many decimals; in two digits where these would show fewer: 0.00003 is "3e-05" and not "0.000".
+std::string fixed_text(double value, int decimals);
+
 } // namespace pertev

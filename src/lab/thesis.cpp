@@ -11,6 +11,8 @@
 namespace pertev {
 namespace {
 
+constexpr const char* kTree = "Every column walks the same tree: binned, top down by the surface area heuristic.";
+
 constexpr WalkOptions kWithRta = {.rta = true, .near_first = true, .exact = true};
 constexpr WalkOptions kWithoutRta = {.rta = false, .near_first = true, .exact = true};
 constexpr WalkOptions kFast = {.rta = true, .near_first = true, .exact = false};
@@ -45,8 +47,10 @@ struct Table {
 enum class Quantity { Frames, Rays };
 
 std::string figure_text(const LabReport& report, int depth, double seconds, Quantity quantity) {
-    if (quantity == Quantity::Frames) return fmt::format("{:.2f} ({:.5f})", 1 / seconds, seconds);
-    return fmt::format("{:.2f}", static_cast<double>(frame_rays(report, depth)) / seconds * 1e-6);
+    if (quantity == Quantity::Frames) {
+        return fmt::format("{} ({})", fixed_text(1 / seconds, 2), fixed_text(seconds, 5));
+    }
+    return fixed_text(static_cast<double>(frame_rays(report, depth)) / seconds * 1e-6, 2);
 }
 
 /// Of one scene: a row a depth, a column a variant.
@@ -216,6 +220,7 @@ std::string text_of(const ThesisReport& thesis) {
     for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
         text += fmt::format("{:10} {}\n", v.name, v.meaning);
     }
+    text += fmt::format("{}\n", kTree);
     for (const Table& table : tables_of(thesis)) text += '\n' + table.title + '\n' + align_columns(table.rows);
     text += '\n';
     for (const std::string& note : notes_of(thesis)) text += note + '\n';
@@ -229,7 +234,7 @@ std::string html_of(const ThesisReport& thesis) {
     for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
         body += fmt::format("<li>{}: {}</li>\n", html_text(v.name), html_text(v.meaning));
     }
-    body += "</ul>\n";
+    body += fmt::format("</ul>\n<p>{}</p>\n", kTree);
     for (const Table& table : tables_of(thesis)) body += html_of(table);
     const std::vector<std::string> notes = notes_of(thesis);
     if (!notes.empty()) {

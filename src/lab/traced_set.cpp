@@ -68,14 +68,20 @@ bool differs(const RayHit& a, const RayHit& b, bool exact) {
     return exact ? !(a == b) : a.instance != b.instance || (a.is_hit() && a.primitive != b.primitive);
 }
 
-std::vector<RayHit> trace_proven(Queue& queue, const SceneBvhView& proven, bool any_hit, const Buffer<Ray>& rays) {
+std::vector<RayHit> trace_proven(Queue& queue, const SceneBvhView& proven, bool any_hit, const Buffer<Ray>& rays,
+                                 const PieceDone& done) {
     const Buffer<RayHit> hits(queue, rays.size(), "hits");
-    const auto count = static_cast<uint32_t>(rays.size());
-    if (any_hit) {
-        launch(queue, "proven walk", count, TraceRays<StackWalk, true>{proven, rays.data(), hits.data()});
-    } else {
-        launch(queue, "proven walk", count, TraceRays<StackWalk, false>{proven, rays.data(), hits.data()});
-    }
+    const auto trace_piece = [&](uint64_t begin, uint64_t size) {
+        const auto count = static_cast<uint32_t>(size);
+        const Ray* from = rays.data() + begin;
+        if (any_hit) {
+            launch(queue, "proven walk", count, TraceRays<StackWalk, true>{proven, from, hits.data() + begin});
+        } else {
+            launch(queue, "proven walk", count, TraceRays<StackWalk, false>{proven, from, hits.data() + begin});
+        }
+        queue.wait();
+    };
+    in_pieces(rays.size(), first_piece_of_rays(), trace_piece, done);
     return hits.download();
 }
 
@@ -90,12 +96,12 @@ std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, u
     return rays;
 }
 
-TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle,
-                    const LabTriangles& triangles, uint32_t oracle_count, uint32_t nasty_count) {
-    const std::vector<Ray> some = oracle_rays(set, triangles, oracle_count, nasty_count);
-    const std::vector<RayHit> truth = oracle.trace(some);
+uint64_t check_proven_walk(Queue& queue, const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle,
+                           const LabTriangles& triangles, uint32_t count, uint32_t nasty_count, const PieceDone& done) {
+    const std::vector<Ray> some = oracle_rays(set, triangles, count, nasty_count);
+    const std::vector<RayHit> truth = oracle.trace(some, done);
     const std::vector<RayHit> found =
-        trace_proven(queue, proven, set.any_hit, Buffer<Ray>(queue, std::span<const Ray>(some), "rays"));
+        trace_proven(queue, proven, set.any_hit, Buffer<Ray>(queue, std::span<const Ray>(some), "rays"), {});
     for (std::size_t i = 0; i < some.size(); ++i) {
         if (found[i] == wanted_of(truth[i], set.any_hit)) continue;
         throw Error(ErrorCode::DeviceFault,
@@ -104,12 +110,14 @@ TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven,
                                 set.name, text_of(some[i]), found[i].instance, truth[i].instance, found[i].primitive,
                                 truth[i].primitive, found[i].t, truth[i].t));
     }
+    return some.size();
+}
 
+TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven, const PieceDone& done) {
     TracedSet traced;
     traced.rays = Buffer<Ray>(queue, std::span<const Ray>(set.rays), set.name + " rays");
-    traced.wanted = trace_proven(queue, proven, set.any_hit, traced.rays);
-    traced.figures = {
-        .name = set.name, .any_hit = set.any_hit, .rays = set.rays.size(), .brute_force_rays = some.size()};
+    traced.wanted = trace_proven(queue, proven, set.any_hit, traced.rays, done);
+    traced.figures = {.name = set.name, .any_hit = set.any_hit, .rays = set.rays.size()};
     traced.figures.hit_share = hit_share(traced.wanted);
     return traced;
 }

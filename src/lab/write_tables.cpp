@@ -81,12 +81,9 @@ Cells kernel_cells(const CombinationFigures& c) {
 
 Cells structure_head() { return {"nodes", "leaf_triangles", "build_seconds", "sah_cost", "depth", "bytes"}; }
 Cells structure_cells(const StructureFigures& s) {
-    return {number(s.nodes),
-            number(s.triangles),
-            fmt::format("{:.4f}", s.build_s),
-            s.nodes > 0 ? fmt::format("{:.3f}", s.sah_cost) : "",
-            number(s.depth),
-            number(s.bytes)};
+    return {
+        number(s.nodes),         number(s.triangles), fmt::format("{:.6g}", s.build_s), optional(s.sah_cost, "{:.3f}"),
+        optional(s.depth, "{}"), number(s.bytes)};
 }
 
 Cells run_head() {
@@ -96,7 +93,8 @@ Cells run_head() {
             "rays_per_second",
             "median_seconds",
             "least_seconds",
-            "largest_seconds",
+            "greatest_seconds",
+            "frame_depth",
             "frames_per_second",
             "seconds_per_frame",
             "nodes_per_ray",
@@ -119,7 +117,8 @@ Cells run_cells(const LabReport& report, const CombinationFigures& c, const RunF
             timed(run.median_s, "{:.9f}"),
             timed(run.least_s, "{:.9f}"),
             timed(run.largest_s, "{:.9f}"),
-            frame_s ? fmt::format("{:.3f}", 1 / *frame_s) : "",
+            frame_s ? number(set.depth) : "",
+            frame_s ? fmt::format("{:.6g}", 1 / *frame_s) : "",
             optional(frame_s, "{:.9f}"),
             optional(run.nodes, "{:.3f}"),
             optional(run.triangles, "{:.3f}"),
@@ -148,13 +147,13 @@ std::string json_of(const StructureFigures& s) {
     }
     return fmt::format(
         R"({{"name":{},"failed":null,"build_seconds":{},"nodes":{},"triangles":{},"bytes":{},"sah_cost":{},"depth":{}}})",
-        json_string(s.name), json_number(s.build_s), s.nodes, s.triangles, s.bytes,
-        s.nodes > 0 ? json_number(s.sah_cost) : "null", s.depth);
+        json_string(s.name), json_number(s.build_s), s.nodes, s.triangles, s.bytes, json_optional(s.sah_cost),
+        json_optional(s.depth));
 }
 
 std::string json_of(const LabReport& report, const CombinationFigures& c, const RunFigures& run) {
     return fmt::format(
-        R"({{"set":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"largest_seconds":{},"nodes_per_ray":{},"triangles_per_ray":{},"node_lanes":{},"triangle_lanes":{},"node_sectors":{},"triangle_sectors":{},"different":{},"is_copy":{},"price_of_exactness":{}}})",
+        R"({{"set":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"nodes_per_ray":{},"triangles_per_ray":{},"node_lanes":{},"triangle_lanes":{},"node_sectors":{},"triangle_sectors":{},"different":{},"is_copy":{},"price_of_exactness":{}}})",
         json_string(report.sets[run.set].name), json_timed(mrays(report, run) * 1e6), json_timed(run.median_s),
         json_timed(run.least_s), json_timed(run.largest_s), json_optional(run.nodes), json_optional(run.triangles),
         json_optional(run.node_lanes), json_optional(run.triangle_lanes), json_optional(run.node_sectors),
@@ -202,7 +201,7 @@ std::string csv_of(const LabReport& report) {
 }
 
 std::string json_of(const LabReport& report) {
-    std::string sets, structures, combinations;
+    std::string sets, structures, combinations, notes;
     for (const SetFigures& set : report.sets) {
         sets += fmt::format(R"({}{{"name":{},"any_hit":{},"depth":{},"rays":{},"hit_share":{},"brute_force_rays":{}}})",
                             sets.empty() ? "" : ",", json_string(set.name), set.any_hit, set.depth, set.rays,
@@ -212,11 +211,12 @@ std::string json_of(const LabReport& report) {
     for (const CombinationFigures& c : report.combinations) {
         combinations += (combinations.empty() ? "" : ",") + json_of(report, c);
     }
+    for (const std::string& note : report.notes) notes += (notes.empty() ? "" : ",") + json_string(note);
     return fmt::format(
-        R"({{"event":"lab","scene":{},"device":{},"commit":{},"threads":{},"camera":{},"triangles":{},"instances":{},"width":{},"height":{},"first_depth":{},"runs":{},"warm_ups":{},"interrupted":{},"sets":[{}],"structures":[{}],"combinations":[{}]}})",
+        R"({{"event":"lab","scene":{},"device":{},"commit":{},"threads":{},"camera":{},"triangles":{},"instances":{},"width":{},"height":{},"first_depth":{},"runs":{},"warm_ups":{},"interrupted":{},"notes":[{}],"sets":[{}],"structures":[{}],"combinations":[{}]}})",
         json_string(report.scene), json_string(report.device), json_string(report.commit), report.threads,
         json_string(report.camera), report.triangles, report.instances, report.width, report.height, report.first_depth,
-        report.runs, report.warm_ups, report.interrupted, sets, structures, combinations);
+        report.runs, report.warm_ups, report.interrupted, notes, sets, structures, combinations);
 }
 
 } // namespace pertev

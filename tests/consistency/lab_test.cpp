@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel_for.h"
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
@@ -206,6 +207,36 @@ TEST_CASE("an interrupted laboratory keeps what it has measured") {
     const auto measured = std::ranges::count_if(report.combinations, [](const auto& c) { return !c.runs.empty(); });
     CHECK(measured > 10);
     CHECK(static_cast<std::size_t>(measured) < report.combinations.size());
+}
+
+TEST_CASE("the laboratory can be stopped inside each stage of long work, and says how far that is") {
+    Queue queue = Queue::make_cpu();
+    const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
+    LabSettings settings = all_combinations(false, false);
+    settings.width = settings.height = 32;
+    set_thread_count(1); // pieces are as many rays as threads want
+    Camera camera;
+    camera.world_from_camera = look_at({1.5f, 0.7f, 3}, {}, {0, 1, 0});
+    for (const char* stage : {"making rays", "against brute force", "what the proven walk hits", "building binned",
+                              "converting binned", "binned if-if"}) {
+        CAPTURE(stage);
+        bool stopped = false;
+        double share = 0;
+        const LabReport report = run_lab(queue, scene, camera, settings, [&](const LabProgress& now) {
+            CHECK_FALSE(stopped);
+            stopped = now.doing.find(stage) != std::string::npos;
+            share = now.share_of_that;
+            // Where a stage has pieces, in its middle.
+            const std::string name = stage;
+            const bool in_pieces = name.starts_with("against") || name.starts_with("what") || name.ends_with("if-if");
+            if (in_pieces) stopped = stopped && share > 0 && share < 1;
+            return !stopped;
+        });
+        CHECK(stopped);
+        CHECK(report.interrupted);
+        CHECK_FALSE(has_findings(report));
+    }
+    set_thread_count(0);
 }
 
 TEST_CASE("a scene without triangles is refused by a clear line") {

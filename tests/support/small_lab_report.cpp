@@ -31,8 +31,8 @@ LabReport small_report() {
     all.runs[0].least_s = 1, all.runs[0].largest_s = 4, all.runs[0].nodes = 10, all.runs[0].triangles = 0;
     const Combination kd = {.walk = WalkKind::Kd};
     report.combinations = {all, {.combination = kd, .name = name_of(kd), .refused = "no <planes>, none"}};
-    HeatMap map = {all.name, 4, 2, {0, 1, 2, 3, 4, 5, 6, 7}, {7, 6, 5, 4, 3, 2, 1, 0}};
-    report.heat_maps.push_back(map);
+    HeatMap map = {all.name, 4e6, 4, 2, {0, 1, 2, 3, 4, 5, 6, 7}, {7, 6, 5, 4, 3, 2, 1, 0}};
+    report.heat_maps.push_back(map), report.heat_map_names.push_back(map.name);
     return report;
 }
 

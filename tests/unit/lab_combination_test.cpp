@@ -24,8 +24,17 @@ TEST_CASE("every structure and walk of the laboratory has a name of its own, by 
     CHECK(!walk_named(""));
 }
 
-TEST_CASE("names of combinations differ wherever their switches do") {
+TEST_CASE("names of combinations differ wherever their switches do, those refused included") {
     std::set<std::string> names;
+    for (const WalkKind walk : all_walks()) {
+        for (const bool near_first : {true, false}) {
+            CHECK(names.insert(name_of({StructureKind::Binned, walk, {.near_first = near_first}})).second);
+        }
+    }
+    CHECK(name_of({StructureKind::Binned, WalkKind::SkipLinks, {}}) == "binned skip-links rta");
+    CHECK(name_of({StructureKind::Binned, WalkKind::SkipLinks, {.near_first = false}}) ==
+          "binned skip-links rta unordered");
+    names.clear();
     for (const bool rta : {true, false}) {
         for (const bool near_first : {true, false}) {
             for (const bool exact : {true, false}) {

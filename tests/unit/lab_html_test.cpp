@@ -78,7 +78,7 @@ TEST_CASE("ratios are of pairs that differ in one switch; copies and refused twi
     report.combinations.push_back(figures({.options = {.near_first = false}}, {timed(0, 5)}));
     report.combinations.push_back(figures({.distribution = Persistent}, {timed(0, 1)}));
     report.combinations.push_back(figures({.distribution = DynamicFetch}, {timed(2, 0.4)}));
-    // Two of one name: skip links know no order.
+    // Skip links know no order.
     const Combination skip = {.walk = WalkKind::SkipLinks},
                       skip_no_rta = {.walk = WalkKind::SkipLinks, .options = kNoRta};
     Combination refused = skip_no_rta;
@@ -132,21 +132,24 @@ TEST_CASE("curves leave fast tests and copies out") {
     CHECK(!has(html, "no-rta"));
 }
 
-TEST_CASE("of many heat maps the HTML has those of the ten fastest") {
+TEST_CASE("the HTML has the heat maps that the report kept, and says of how many these are the fastest") {
     LabReport report = small_report();
-    report.combinations.clear(), report.heat_maps.clear();
-    for (const StructureKind structure : all_structures()) { // the later the faster
-        const double seconds = 100 - static_cast<double>(report.combinations.size());
-        report.combinations.push_back(figures({.structure = structure}, {timed(0, seconds)}));
-        report.heat_maps.push_back({report.combinations.back().name, 1, 1, {1}, {2}});
-    }
-    REQUIRE(report.heat_maps.size() == 11);
+    for (const char* name : {"b", "c"}) report.heat_map_names.emplace_back(name);
+    report.heat_maps.push_back({"b", 1e6, 1, 1, {1}, {2}});
     const std::string html = html_heat_maps(report);
-    CHECK(count(html, "<img") == 20);
-    CHECK(has(html, "The 10 fastest; the pictures of all 11 are PNG files"));
-    CHECK(!has(html, report.heat_maps.front().name + ": nodes"));
-    CHECK(html.find(report.heat_maps[10].name) < html.find(report.heat_maps[9].name + ": nodes"));
+    CHECK(count(html, "<img") == 4);
+    CHECK(has(html, "those of the 2 that were fastest at camera rays, of 3; all are PNG files"));
+    CHECK(html.find(name_of(Combination{}) + ": nodes") < html.find("b: nodes"));
     CHECK(!has(html_heat_maps(small_report()), "beside this report"));
+}
+
+TEST_CASE("what was asked for and is not there is told in every report that people read, and in JSON") {
+    LabReport report = small_report();
+    report.notes = {"shadow: <none>"};
+    CHECK(has(html_of(report), "<li>shadow: &lt;none&gt;</li>"));
+    CHECK(has(text_of(report), "\nshadow: <none>\n"));
+    CHECK(has(json_of(report), R"("notes":["shadow: <none>"])"));
+    CHECK(has(json_of(small_report()), R"("notes":[])"));
 }
 
 TEST_CASE("what was not run is grouped by reason") {

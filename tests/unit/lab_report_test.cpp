@@ -92,6 +92,9 @@ TEST_CASE("in the CSV a 0 is a figure, and what was not measured is empty") {
     CHECK(field(csv, 1, "is_copy") == "0");
     CHECK(field(csv, 2, "is_copy") == "1");
     CHECK(field(csv, 2, "frames_per_second").empty()); // shadow rays are no frame
+    CHECK(field(csv, 2, "frame_depth").empty());
+    CHECK(field(csv, 3, "frame_depth") == "2");
+    CHECK(field(csv, 3, "frames_per_second") == "0.4");
     for (const char* name : {"nodes", "leaf_triangles", "build_seconds", "sah_cost", "depth", "bytes"}) {
         CAPTURE(name);
         CHECK(!field(csv, 1, name).empty());
@@ -132,6 +135,40 @@ TEST_CASE("JSON has the figures and null for what is not there") {
     CHECK(count(json, "[") == count(json, "]"));
 }
 
+TEST_CASE("short times and slow frames keep two digits") {
+    CHECK(fixed_text(1.234, 2) == "1.23");
+    CHECK(fixed_text(0.1, 2) == "0.10");
+    CHECK(fixed_text(0.034, 2) == "0.034");
+    CHECK(fixed_text(0.000039, 3) == "3.9e-05");
+    CHECK(fixed_text(0, 5) == "0.00000");
+    LabReport report = small_report();
+    report.structures[0].build_s = 3.9e-5;
+    report.combinations[0].structure = 0;
+    CHECK(field(parse_csv(csv_of(report)), 1, "build_seconds") == "3.9e-05");
+    CHECK(has(html_structures(report), "<td>3.9e-05</td>"));
+    CHECK(has(text_of(report), "3.9e-05"));
+}
+
+TEST_CASE("a tree without inner nodes has a cost and a depth, an array of triangles has neither") {
+    LabReport report = small_report();
+    report.structures[0].nodes = 0, report.structures[0].sah_cost = 1, report.structures[0].depth = 0;
+    CHECK(has(html_structures(report), "<td>1.00</td><td>0</td></tr>"));
+    CHECK(has(json_of(report), R"("sah_cost":1,"depth":0})"));
+    CHECK(field(parse_csv(csv_of(report)), 1, "sah_cost") == "1.000");
+    report.structures[0].sah_cost.reset(), report.structures[0].depth.reset();
+    CHECK(has(html_structures(report), "<td></td><td></td></tr>"));
+    CHECK(has(json_of(report), R"("sah_cost":null,"depth":null})"));
+    CHECK(field(parse_csv(csv_of(report)), 1, "depth").empty());
+}
+
+TEST_CASE("the spread of a figure is that of its slowest and its fastest run; no ray that differs is a 0") {
+    const std::string html = html_figures(small_report());
+    CHECK(has(html, "<th>Mrays/s</th><th>slowest</th><th>fastest</th>"));
+    CHECK(has(html, "<td>primary</td><td>4.00</td><td>2.00</td><td>8.00</td>"));
+    CHECK(count(html, "<td>0</td></tr>") == 3);
+    CHECK(has(html, "A ray of a packet counts the nodes that it takes part in"));
+}
+
 TEST_CASE("columns of text are as wide as their longest cell, counted in characters") {
     CHECK(align_columns({{"name", "a"}, {"longer name", "±1%"}, {"x"}}) == "name           a\nlonger name  ±1%\nx\n");
     CHECK(align_columns({}).empty());
@@ -146,14 +183,13 @@ TEST_CASE("the terminal's table places figures by set, gaps included, and spread
     report.interrupted = true;
     const std::string text = text_of(report);
     const std::string table = text.substr(text.find("million rays"));
-    CHECK(has(line_with(table, "binned while-while"), "4.00 ±75% (10.0 + 0.0)"));
+    CHECK(has(line_with(table, "binned while-while"), "4.00 [2.00, 8.00] (10.0 + 0.0)"));
     const std::string head = line_with(table, "primary"), row = line_with(table, name_of(gap));
-    const auto characters = [](const std::string& line) { return line.size() - count(line, "±"); }; // "±" is two bytes
     CHECK(head.ends_with("diffuse1"));
-    CHECK(row.ends_with("1.00 ±0%"));
-    CHECK(characters(head) == characters(row)); // below it, not below shadow
-    CHECK(has(row, "2.00 ±0%            "));    // nothing below shadow
-    CHECK(count(row, "±") == 2);
+    CHECK(row.ends_with("1.00 [1.00, 1.00]"));
+    CHECK(head.size() == row.size());                 // below it, not below shadow
+    CHECK(has(row, "2.00 [2.00, 2.00]            ")); // nothing below shadow
+    CHECK(count(row, "[") == 2);
     const std::string frames = text.substr(text.find("frames a second by depth"));
     CHECK(has(line_with(frames, "binned while-while"), "0.50     0.40"));
     CHECK(text.ends_with("interrupted: this is what had been measured\n"));

@@ -82,6 +82,8 @@ TEST_CASE("the thesis's tables have a row a depth and a column a variant") {
                                   "Table 6.5: sibenik <hall>, frames", "Table 6.6: sibenik <hall>, million"}) {
             CHECK(has(text, title));
         }
+        CHECK(has(text, "the same tree: binned"));
+        CHECK(has(html, "the same tree: binned"));
         CHECK(count(text, "50.00 (0.02000)") == 2 * variants); // depth 2
         CHECK(count(html, "<td>75.00</td>") == 2 * variants);  // 1.5 million rays in 0.02 s
         CHECK(!has(text, "WRONG"));

@@ -1,0 +1,35 @@
+#include "apps/cli/lab_scene.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "apps/cli/bench_parts.h"
+#include "base/error.h"
+#include "base/json_text.h"
+#include "formats/builtin_scenes.h"
+#include "lab/record_scenes.h"
+
+namespace pertev {
+
+Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
+    const std::string& name = options.scene;
+    if (const RecordScene* record = find_record_scene(name)) {
+        return make_record_scene(*record, public_scenes_folder(), messages);
+    }
+    std::error_code no_such_name; // of a name too long for a file, too
+    if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
+        std::string known;
+        for (const std::string_view other : builtin_scene_names()) known += std::string(other) + ", ";
+        for (const RecordScene& record : record_scenes()) known += std::string(record.name) + ", ";
+        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a file nor a scene of this name; there are {}", name,
+                                                     known.substr(0, known.size() - 2)));
+    }
+    return read_any_scene(name, options.allowed_paths, messages);
+}
+
+std::string lab_scene_title(const std::string& scene) {
+    return utf8_text(std::filesystem::path(scene).stem().string());
+}
+
+} // namespace pertev

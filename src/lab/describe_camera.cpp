@@ -1,0 +1,31 @@
+#include "lab/describe_camera.h"
+
+#include <fmt/format.h>
+
+#include "math/scalar.h"
+#include "math/vec3.h"
+
+namespace pertev {
+namespace {
+
+/// The fewest digits that give the same floats; no "-0".
+std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x + 0.0f, v.y + 0.0f, v.z + 0.0f); }
+
+} // namespace
+
+std::string describe_camera(const Camera& camera) {
+    const Transform& m = camera.world_from_camera;
+    const Vec3 eye = m.translation, forward = -column(m, 2);
+    // As far away as the eye is from the origin: nearer, their difference would lose digits of the direction.
+    float distance = 1;
+    while (distance < max_component(abs(eye))) distance *= 2;
+    const std::string place = fmt::format("--eye {} --target {} --up {}", text_of(eye),
+                                          text_of(eye + distance * forward), text_of(column(m, 1)));
+    if (camera.projection == Projection::Orthographic) {
+        return fmt::format("{} --projection orthographic --view-height {} (metres)", place, camera.ortho_height);
+    }
+    return fmt::format("{} --projection perspective --fov {} (vertical field of view, degrees)", place,
+                       camera.fov_y * 180 / kPi);
+}
+
+} // namespace pertev

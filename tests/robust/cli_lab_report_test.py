@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""`pertev lab`: what it writes, what it leaves alone, and how it ends when it is interrupted."""
+
+import csv
+import glob
+import json
+import os
+import re
+import signal
+import struct
+import subprocess
+import time
+import xml.etree.ElementTree as ElementTree
+
+from cli_lab_run import BOX, INSIDE, SMALL, LabTest
+from cli_run import PATIENCE_S, PROGRAM, SANITIZED, main, write
+
+
+def read_text(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return file.read()
+
+
+def write_grid(path, side):
+    """A PLY file of side * side squares in the unit square, two triangles each."""
+    points = b"".join(struct.pack("<3f", x / side, y / side, 0) for y in range(side + 1) for x in range(side + 1))
+    corners = (y * (side + 1) + x for y in range(side) for x in range(side))
+    face = struct.Struct("<B3iB3i")
+    faces = b"".join(face.pack(3, c, c + 1, c + side + 1, 3, c + 1, c + side + 2, c + side + 1) for c in corners)
+    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {(side + 1) ** 2}\nproperty float x\n"
+            f"property float y\nproperty float z\nelement face {2 * side * side}\n"
+            "property list uchar int vertex_indices\nend_header\n")
+    with open(path, "wb") as file:
+        file.write(head.encode() + points + faces)
+
+
+class WhatIsWritten(LabTest):
+    def check_html(self, path):
+        """Opens without the network and is not cut short."""
+        html = re.sub(r"data:image/png;base64,[A-Za-z0-9+/=]+", "data:", read_text(path))
+        self.assertNotIn("http", html.replace('"http://www.w3.org/2000/svg"', ""))
+        self.assertNotRegex(html, r"@import|url\(|<link|<script[^>]*src")
+        self.assertEqual(set(re.findall(r'\b(?:src|href)="([^"]*)"', html)) - {"data:"}, set())
+        self.assertTrue(html.lstrip().lower().startswith("<!doctype html"))
+        self.assertTrue(html.rstrip().endswith("</html>"))
+        for tag in ["html", "body", "table", "tr", "td", "th", "svg"]:
+            self.assertEqual(len(re.findall(rf"<{tag}[ >]", html)), html.count(f"</{tag}>"), tag)
+        return html
+
+    def read_csv(self, path):
+        rows = list(csv.DictReader(read_text(path).splitlines(), restkey="too many", restval=None))
+        for row in rows:
+            self.assertNotIn("too many", row)
+            self.assertNotIn(None, row.values())
+        return rows
+
+    def test_tables_report_and_heat_maps_are_written_and_agree(self):
+        for _ in range(2):  # into a new folder, then over what is there
+            report = self.report("cornell-box", *SMALL, "-o", "new/out")
+        with open(self.path("new/out/report.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), report)
+        rows = self.read_csv(self.path("new/out/report.csv"))
+        self.assertEqual([(row["combination"], row["set"]) for row in rows],
+                         [(of["name"], run["set"]) for of in report["combinations"] for run in of["runs"]])
+        for row in rows:
+            self.assertEqual((row["scene"], row["scene_triangles"], row["refused"]), ("cornell-box", "38", ""))
+            self.assertGreater(float(row["rays_per_second"]), 0)
+        html = self.check_html(self.path("new/out/report.html"))
+        for of in report["combinations"]:
+            self.assertIn(of["name"], html)
+        pictures = glob.glob(self.path("new/out/*.png"))
+        for kind in ["nodes", "triangles"]:
+            for walk in ["if-if", "wide8"]:
+                self.assertIn(self.path(f"new/out/{kind}-binned-{walk}-rta-near.png"), pictures)
+        for picture in pictures:
+            with open(picture, "rb") as file:
+                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+            self.info(picture)
+
+    def test_no_heat_maps_means_no_pictures(self):
+        self.report("cornell-box", *SMALL, "--no-heat-maps", "-o", "out")
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["report.csv", "report.html", "report.json"])
+
+    def test_heat_maps_are_of_the_first_combination_of_each_structure_and_walk(self):
+        for flags, switches in [("--rta off", "no-rta-near"), ("--order off", "rta-unordered"),
+                                ("--tests fast --rta on", "rta-near-fast-tests"), ("--order both", "rta-near"),
+                                ("--rays record --count 3000", "rta-near")]:
+            with self.subTest(flags=flags):
+                report = self.report("cornell-box", "--structures", "binned", "--walks", "if-if", *flags.split(), "-o",
+                                     "out")
+                self.assertEqual(report["notes"], [])
+                self.assertEqual(sorted(name for name in os.listdir(self.path("out")) if name.endswith(".png")),
+                                 [f"nodes-binned-if-if-{switches}.png", f"triangles-binned-if-if-{switches}.png"])
+        for flags in ["--rays shadow", "--rays record --count 500"]:
+            with self.subTest(flags=flags):
+                report = self.report("cornell-box", *SMALL, *flags.split(), "-o", "none")
+                self.assertEqual(len(report["notes"]), 1)
+                self.assertIn("no heat maps", report["notes"][0])
+                self.assertIn("no heat maps", self.check_html(self.path("none/report.html")))
+
+    def test_a_report_removes_the_heat_maps_of_the_one_before_it_and_nothing_else(self):
+        self.report("cornell-box", *SMALL, "-o", "out")
+        mine = ["nodes-of-mine.png", "nodes.png", "binned.png", "notes.txt", "triangles-binned-if-if-rta-near.png.bak"]
+        for name in mine:
+            write(self.path("out/" + name), "mine")
+        os.mkdir(self.path("out/nodes-sbvh-if-if-rta-near.png"))
+        self.report("cornell-box", "--structures", "binned", "--walks", "wide8", "-o", "out")
+        self.assertEqual(sorted(os.listdir(self.path("out"))),
+                         sorted([*mine, "nodes-sbvh-if-if-rta-near.png", "nodes-binned-wide8-rta-near.png",
+                                 "triangles-binned-wide8-rta-near.png", "report.csv", "report.html", "report.json"]))
+
+    def test_a_thesis_of_fewer_figures_removes_those_of_the_one_before_it(self):
+        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1-2", "-o", "out"))
+        self.assertTrue(os.path.exists(self.path("out/figure-6.10.svg")))
+        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        self.assertFalse(os.path.exists(self.path("out/figure-6.10.svg")))
+        self.assertTrue(os.path.exists(self.path("out/thesis-2.csv")))
+
+    def test_a_name_as_long_as_names_may_be_or_of_any_bytes_is_no_trouble(self):
+        long, odd = "x" * 246, b"odd\xff\xc3"
+        write(self.path(long + ".obj"), BOX)
+        with open(os.path.join(self.folder.encode(), odd + b".obj"), "w", encoding="utf-8") as file:
+            file.write(BOX)
+        self.succeed(*self.lab("--thesis", long + ".obj", *INSIDE, "--depths", "1", "-o", "out"))
+        self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/thesis-2.csv"))}, {long})
+        name = os.fsdecode(odd + b".obj")
+        report = json.loads(subprocess.run([PROGRAM, *self.lab(name, *INSIDE, *SMALL, "-o", "out", "--json")],
+                                           cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
+                                           check=True).stdout.splitlines()[-1])
+        self.assertEqual(report["scene"], "odd\ufffd\ufffd")
+        self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {report["scene"]})
+        self.assertIn(report["scene"], self.check_html(self.path("out/report.html")))
+
+    def test_the_thesis_gives_light_to_pictures_alone_and_names_its_tree(self):
+        outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1"))
+        self.assertNotIn("light", outcome.stderr)
+        self.assertIn("the same tree: binned", outcome.stdout)
+        outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        self.assertIn("no light in the scene", outcome.stderr)
+        self.assertIn("the same tree: binned", self.check_html(self.path("out/thesis.html")))
+
+    def test_a_scenes_name_is_text_in_every_file(self):
+        name = 'a,"b" <i>&amp;'
+        write(self.path(name + ".obj"), BOX)
+        report = self.report(name + ".obj", *INSIDE, *SMALL, "-o", "out")
+        self.assertEqual(report["scene"], name)
+        self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {name})
+        html = self.check_html(self.path("out/report.html"))
+        self.assertNotIn("<i>", html)
+        self.assertIn("&lt;i&gt;&amp;amp;", html)
+
+    def test_the_thesis_writes_a_report_and_a_table_for_each_scene_even_of_one_name(self):
+        os.mkdir(self.path("mine"))
+        write(self.path("mine/cornell-box.obj"), BOX)
+        for scene in ["box.obj", "mine/cornell-box.obj"]:
+            with self.subTest(scene=scene):
+                outcome = self.succeed(*self.lab("--thesis", scene, *INSIDE, "--depths", "1-2", "-o", "out", "--json"))
+                self.assertEqual([event["triangles"] for event in outcome.events("lab")], [38, 12])
+                for report in outcome.events("lab"):
+                    for of in report["combinations"]:
+                        self.assertIsNone(of["refused"])
+                        self.assertEqual(len(of["frame_seconds"]), 2)
+                html = self.check_html(self.path("out/thesis.html"))
+                self.assertEqual(html.count("<img"), 4)
+                figures = glob.glob(self.path("out/figure-6.*.svg"))
+                self.assertEqual(len(figures), 2)
+                for figure in figures:
+                    ElementTree.parse(figure)
+                self.assertEqual(len(glob.glob(self.path("out/figure-6.[78]-*al.png"))), 4)
+                tables = glob.glob(self.path("out/*.csv"))
+                counts = [{row["scene_triangles"] for row in self.read_csv(table)} for table in tables]
+                self.assertCountEqual(counts, [{"38"}, {"12"}])
+                for file in glob.glob(self.path("out/*")):
+                    os.remove(file)
+
+    def interrupt(self, line, when, after_s=0.2):
+        """Sends SIGINT so long after the first progress whose text has `when`; gives the report, the last line."""
+        with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
+            for text in program.stdout:
+                if re.search(when, json.loads(text).get("doing", "")):
+                    break
+            time.sleep(after_s)
+            program.send_signal(signal.SIGINT)
+            begin = time.monotonic()
+            try:
+                stdout, stderr = program.communicate(timeout=PATIENCE_S if SANITIZED else 10)
+            except subprocess.TimeoutExpired:
+                program.kill()
+                program.communicate()
+                self.fail("10 s after an interrupt it still runs")
+        self.assertEqual(program.returncode, 75, stderr)
+        if not SANITIZED:
+            self.assertLess(time.monotonic() - begin, 5)
+        report = json.loads(stdout.splitlines()[-1])
+        self.assertEqual((report["event"], report["interrupted"]), ("lab", True))
+        for of in report["combinations"]:
+            self.assertTrue(of["runs"] or of["refused"], of)
+        self.assertIn("interrupt", report["combinations"][-1]["refused"])
+        return report
+
+    def test_an_interrupt_in_the_middle_of_a_long_set_keeps_what_was_measured_and_ends_with_75(self):
+        # Each set takes a third of a second and more for its runs, and there are twelve.
+        report = self.interrupt(self.lab("cornell-box", *SMALL, "--depths", "2", "--size", "256x192", "--threads", "1",
+                                         "-o", "out", "--json", runs=100), "^binned .*: shadow")
+        self.assertEqual([run["set"] for of in report["combinations"] for run in of["runs"]][:1], ["primary"])
+        with open(self.path("out/report.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), report)
+        self.read_csv(self.path("out/report.csv"))
+        self.check_html(self.path("out/report.html"))
+
+    def test_an_interrupted_thesis_writes_what_it_has_and_ends_with_75(self):
+        self.interrupt(self.lab("--thesis", "box.obj", *INSIDE, "--size", "64x48", "--threads", "1", "-o", "out",
+                                "--json", runs=1000), "^binned .*: diffuse1")
+        self.check_html(self.path("out/thesis.html"))
+
+    def test_an_interrupt_before_anything_is_measured_leaves_an_earlier_report_as_it_is(self):
+        self.succeed(*self.lab("cornell-box", *SMALL, "-o", "out"))
+        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        before = self.contents("out")
+        for line in [["cornell-box", *SMALL], ["--thesis", "box.obj", *INSIDE]]:
+            with self.subTest(line=line):
+                report = self.interrupt(self.lab(*line, "--size", "256x192", "-o", "out", "--json", runs=10000),
+                                        "^binned .*: primary")
+                self.assertEqual([of["runs"] for of in report["combinations"] if of["runs"]], [])
+                self.assertEqual(self.contents("out"), before)
+
+    def test_an_interrupt_is_heard_while_rays_are_held_against_brute_force(self):
+        side = 100 if SANITIZED else 600
+        write_grid(self.path("grid.ply"), side)
+        line = self.lab("grid.ply", "--eye", "0.5,0.5,1", "--target", "0.5,0.4,0", *SMALL, "--threads", "1", "--json")
+        report = self.interrupt(line, "brute force", 0 if SANITIZED else 0.3)
+        self.assertEqual((report["sets"], report["structures"]), ([], []))
+
+    def contents(self, folder):
+        """Bytes of each file there, by its name."""
+        found = {}
+        for name in os.listdir(self.path(folder)):
+            with open(os.path.join(self.path(folder), name), "rb") as file:
+                found[name] = file.read()
+        return found
+
+
+if __name__ == "__main__":
+    main()

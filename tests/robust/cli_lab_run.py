@@ -1,0 +1,74 @@
+"""What the tests of `pertev lab` share: small scenes, and the command line.
+
+Most scenes are closed boxes with the eye inside: every camera ray and every bounce hits, whatever the walk, and no
+shadow ray does where the box stands alone. No figure of time is compared with anything but 0.
+"""
+
+import re
+
+from cli_run import CliTest, write
+
+# A closed box from -1 to 1, two triangles a side, and an eye for it.
+CORNERS = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+SIDES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+INSIDE = ["--eye", "0.1,0.2,0.3", "--target", "0,0,-1"]
+
+BOX = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(
+    "f " + " ".join(str(corner + 1) for corner in side) + "\n" for side in SIDES)
+
+FRAME_SETS = ["primary", "shadow", "diffuse1", "diffuse2"]
+SMALL = ["--structures", "binned", "--walks", "if-if,wide8"]
+
+
+class LabTest(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.environment.pop("PERTEV_SCENES", None)
+        write(self.path("box.obj"), BOX)
+
+    def lab(self, *arguments, runs=1, device="cpu", size="16x12"):
+        """A command line of lab, small where it does not say otherwise."""
+        arguments = [str(argument) for argument in arguments]
+        given = [("--runs", runs), ("--device", device)]
+        if "record" not in arguments:  # its frame follows from --count
+            given.append(("--size", size))
+        return ["lab", *arguments, *(str(part) for pair in given if pair[0] not in arguments for part in pair)]
+
+    def report(self, *arguments):
+        """The last JSON line of a run that succeeds."""
+        last = self.succeed(*self.lab(*arguments, "--json")).events()[-1]
+        self.assertEqual((last["event"], last["interrupted"]), ("lab", False))
+        return last
+
+    def refuse_unmeasured(self, status, *arguments, says=(), **options):
+        """Refused as `refuse` has it, and before any work began."""
+        outcome = self.refuse(status, *self.lab(*arguments, "--json"), says=says, **options)
+        self.assertEqual([event for event in outcome.events() if event["event"] in ("progress", "lab")], [], outcome)
+
+    def names_of(self, flag):
+        """What a flag may be given, by its own word."""
+        outcome = self.refuse(2, *self.lab("box.obj", flag, "nonsense"), says=[flag, "nonsense is not one of"])
+        names = re.search("is not one of (.*)", outcome.stderr).group(1).split(", ")
+        self.assertGreater(len(names), 3, outcome)
+        return names
+
+    def check_hits(self, report, allowed_refusals=()):
+        """Every combination that is not refused has figures for closest hits, and its hits are the right ones."""
+        self.assertGreater(len(report["combinations"]), 0)
+        self.assertEqual({rest["name"] for rest in report["structures"] if rest["failed"]}, set())
+        for of in report["combinations"]:
+            if of["refused"]:
+                self.assertTrue(any(text in of["refused"] for text in allowed_refusals), of)
+                self.assertEqual(of["runs"], [])
+                continue
+            # Some walks are for closest hits alone.
+            wanted = {known["name"] for known in report["sets"]}
+            self.assertLessEqual({run["set"] for run in of["runs"]}, wanted, of)
+            self.assertLessEqual(wanted - {run["set"] for run in of["runs"]}, {"shadow"}, of)
+            for run in of["runs"]:
+                self.assertEqual(run["different"], 0, of)
+                self.assertGreater(run["rays_per_second"], 0)
+                self.assertGreater(run["least_seconds"], 0)
+                self.assertLessEqual(run["least_seconds"], run["median_seconds"])
+                self.assertLessEqual(run["median_seconds"], run["greatest_seconds"])
+                self.assertGreater((run["nodes_per_ray"] or 0) + run["triangles_per_ray"], 0)
