@@ -44,15 +44,23 @@ for part in "${parts[@]}"; do
         ;;
     profile)
         command -v ncu >/dev/null || { echo "--- profile: ncu is not installed"; continue; }
-        for pair in while-while:WhileWhileWalk speculative:SpeculativeWalk packet:WarpPacketWalk \
-            compressed:CompressedWalk; do
-            walk=${pair%:*}
-            # Five launches a set (one checked, three to warm up, one timed), five sets, each way of handing out rays.
-            ncu --csv --clock-control none --kernel-name-base demangled --launch-count 75 \
-                --kernel-name "regex:(TraceRays<|run_dynamic_fetch<).*${pair#*:}" \
-                --section SpeedOfLight --section Occupancy --section WarpStateStats --section MemoryWorkloadAnalysis --section SchedulerStats \
-                "$bin/pertev" lab sponza "${record[@]}" --structures sbvh --walks "$walk" --rta on --runs 1 \
-                --device cuda -q >"$out/profile-$walk.csv" || status=1
+        stalls=(long_scoreboard short_scoreboard lg_throttle math_pipe_throttle not_selected wait no_instruction
+            branch_resolving dispatch_stall selected)
+        metrics=smsp__issue_active.avg.pct_of_peak_sustained_active,smsp__inst_executed.sum
+        metrics+=,smsp__thread_inst_executed_per_inst_executed.ratio,sm__warps_active.avg.pct_of_peak_sustained_active
+        metrics+=,sm__inst_executed_pipe_alu.avg.pct_of_peak_sustained_active,gpu__time_duration.sum
+        metrics+=,l1tex__t_sector_hit_rate.pct,l1tex__throughput.avg.pct_of_peak_sustained_elapsed
+        metrics+=,lts__t_sector_hit_rate.pct,lts__throughput.avg.pct_of_peak_sustained_elapsed
+        metrics+=,dram__throughput.avg.pct_of_peak_sustained_elapsed
+        for stall in "${stalls[@]}"; do
+            metrics+=,smsp__average_warps_issue_stalled_${stall}_per_issue_active.ratio
+        done
+        for pair in compressed:CompressedWalk speculative:SpeculativeWalk while-while:WhileWhileWalk packet:WarpPacketWalk; do
+            # Five launches a set (one checked, three to warm up, one timed): the last one of each is looked at.
+            ncu --csv --page raw --clock-control none --kernel-name-base demangled --metrics "$metrics" \
+                --kernel-id "::regex:(TraceRays<|run_dynamic_fetch<).*${pair#*:}:5|10|15|20" \
+                "$bin/pertev" lab sponza "${record[@]}" --structures sbvh --walks "${pair%:*}" --rta on --runs 1 \
+                --device cuda -q >"$out/profile-${pair%:*}.csv" || status=1
         done
         ;;
     *) echo "no such part: $part" && status=1 ;;
