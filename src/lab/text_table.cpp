@@ -34,7 +34,9 @@ std::string align_columns(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string fixed_text(double value, int decimals) {
-    const bool is_lost = value != 0 && std::abs(value) < std::pow(10.0, 1 - decimals);
+    double least = 10;
+    for (int i = 0; i < decimals; ++i) least /= 10;
+    const bool is_lost = value != 0 && std::abs(value) < least;
     return is_lost ? fmt::format("{:.2g}", value) : fmt::format("{:.{}f}", value, decimals);
 }
 
