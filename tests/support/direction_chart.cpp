@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace pertev::test {
 
@@ -9,32 +10,112 @@ namespace {
 
 constexpr double kFullTurn = 6.283185307179586;
 
-ChartIntegral gauss(const DirectionChart& chart, const ChartRectangle& r, const std::function<ChartIntegral(Vec3)>& f) {
+/// The circle of directions of one height z in the chart's polar coordinates, a the angle from the axis, y the turn:
+///     height = normal.z cos(a) + across(y) sin(a),   across(y) = tangent.z cos(2 pi y) + bitangent.z sin(2 pi y).
+struct HeightCircle {
+    double along, most_across, turn_of_most; // normal.z; the largest across and its y, in radians
+    double height, width;                    // width of the chart
+
+    HeightCircle(const DirectionChart& chart, double h)
+        : along(static_cast<double>(chart.frame.normal.z)), height(h), width(chart.width) {
+        const double x = static_cast<double>(chart.frame.tangent.z), y = static_cast<double>(chart.frame.bitangent.z);
+        most_across = std::hypot(x, y);
+        turn_of_most = std::atan2(y, x);
+    }
+
+    /// Appends the two x at which the circle crosses the line y, moved into [x0, x1]; x1 for one that is missing.
+    void add_crossings(double y, double x0, double x1, std::vector<double>& xs) const {
+        const double across = most_across * std::cos(kFullTurn * y - turn_of_most), r = std::hypot(along, across);
+        const double middle = std::atan2(across, along), half = std::fabs(height) < r ? std::acos(height / r) : 0;
+        for (const double angle : {middle - half, middle + half}) {
+            const double wrapped = std::remainder(angle, kFullTurn);
+            double x = x1;
+            if (half > 0 && wrapped > 0) {
+                const double t = std::tan(0.5 * wrapped);
+                x = std::clamp(t / (t + width), x0, x1);
+            }
+            xs.push_back(x);
+        }
+    }
+
+    /// Appends the y at which the circle crosses the line x.
+    void add_turns(double x, std::vector<double>& ys) const {
+        if (!(x > 0 && x < 1)) return;
+        const double angle = 2 * std::atan(width * x / (1 - x));
+        add_turns_of_across((height - along * std::cos(angle)) / std::sin(angle), ys);
+    }
+
+    /// Appends the y of the lines that touch the circle.
+    void add_touching_turns(std::vector<double>& ys) const {
+        const double square = height * height - along * along;
+        if (square < 0) return;
+        add_turns_of_across(std::sqrt(square), ys);
+        add_turns_of_across(-std::sqrt(square), ys);
+    }
+
+private:
+    void add_turns_of_across(double across, std::vector<double>& ys) const {
+        if (!(std::fabs(across) < most_across)) return;
+        const double half = std::acos(across / most_across);
+        for (const double angle : {turn_of_most - half, turn_of_most + half}) {
+            const double y = angle / kFullTurn;
+            ys.push_back(y - std::floor(y));
+        }
+    }
+};
+
+/// Part of a rectangle of the chart between two neighbouring circles: for each y of a strip from one circle's x to the
+/// next one's. Integrands see it as a rectangle of s in [0, 1] across and y.
+struct Piece {
+    const DirectionChart& chart;
+    const ChartRectangle& rectangle;
+    const std::vector<HeightCircle>& circles;
+    size_t index; // 0: from the rectangle's x0 to the first circle
+
+    struct Sides {
+        double x0, x1;
+    };
+    Sides sides_at(double y) const {
+        if (circles.empty()) return {rectangle.x0, rectangle.x1};
+        std::vector<double> xs = {rectangle.x0, rectangle.x1};
+        for (const HeightCircle& circle : circles) circle.add_crossings(y, rectangle.x0, rectangle.x1, xs);
+        std::sort(xs.begin(), xs.end());
+        return {xs[index], xs[index + 1]};
+    }
+};
+
+using Integrand = std::function<ChartIntegral(Vec3)>;
+
+ChartIntegral gauss(const Piece& piece, const ChartRectangle& r, const Integrand& f) {
     constexpr int kPoints = 4;
     constexpr double kNode[kPoints] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                        0.8611363115940526};
     constexpr double kWeight[kPoints] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                          0.3478548451374538};
-    const double half_x = 0.5 * (r.x1 - r.x0), half_y = 0.5 * (r.y1 - r.y0);
+    const double half_s = 0.5 * (r.x1 - r.x0), half_y = 0.5 * (r.y1 - r.y0);
     ChartIntegral sum;
-    for (int j = 0; j < kPoints; j++)
+    for (int j = 0; j < kPoints; j++) {
+        const double y = r.y0 + half_y * (1 + kNode[j]);
+        const auto [x0, x1] = piece.sides_at(y);
         for (int i = 0; i < kPoints; i++) {
-            const auto place = chart.place_of({r.x0 + half_x * (1 + kNode[i]), r.y0 + half_y * (1 + kNode[j])});
+            const double s = r.x0 + half_s * (1 + kNode[i]);
+            const auto place = piece.chart.place_of({x0 + s * (x1 - x0), y});
             const ChartIntegral value = f(place.direction);
-            const double weight = kWeight[i] * kWeight[j] * half_x * half_y * place.area;
+            const double weight = kWeight[i] * kWeight[j] * half_s * half_y * (x1 - x0) * place.area;
             for (int c = 0; c < 3; c++) sum.value[c] += weight * value.value[c];
         }
+    }
     return sum;
 }
 
-ChartIntegral refine(const DirectionChart& chart, const ChartRectangle& r, double tolerance,
-                     const std::function<ChartIntegral(Vec3)>& f, const ChartIntegral& whole, int depth) {
+ChartIntegral refine(const Piece& piece, const ChartRectangle& r, double tolerance, const Integrand& f,
+                     const ChartIntegral& whole, int depth) {
     const double xm = 0.5 * (r.x0 + r.x1), ym = 0.5 * (r.y0 + r.y1);
     const ChartRectangle quarters[4] = {
         {r.x0, xm, r.y0, ym}, {xm, r.x1, r.y0, ym}, {r.x0, xm, ym, r.y1}, {xm, r.x1, ym, r.y1}};
     ChartIntegral parts[4], sum;
     for (int k = 0; k < 4; k++) {
-        parts[k] = gauss(chart, quarters[k], f);
+        parts[k] = gauss(piece, quarters[k], f);
         for (int c = 0; c < 3; c++) sum.value[c] += parts[k].value[c];
     }
     double error = 0;
@@ -42,7 +123,7 @@ ChartIntegral refine(const DirectionChart& chart, const ChartRectangle& r, doubl
     if (depth == 0 || error <= tolerance) return sum;
     sum = {};
     for (int k = 0; k < 4; k++) {
-        const ChartIntegral part = refine(chart, quarters[k], tolerance, f, parts[k], depth - 1);
+        const ChartIntegral part = refine(piece, quarters[k], 0.5 * tolerance, f, parts[k], depth - 1);
         for (int c = 0; c < 3; c++) sum.value[c] += part.value[c];
     }
     return sum;
@@ -69,8 +150,35 @@ DirectionChart::Place DirectionChart::place_of(Point p) const {
 }
 
 ChartIntegral integrate_over(const DirectionChart& chart, const ChartRectangle& rectangle, double tolerance,
-                             const std::function<ChartIntegral(Vec3)>& f) {
-    return refine(chart, rectangle, tolerance, f, gauss(chart, rectangle, f), 8);
+                             const std::function<ChartIntegral(Vec3)>& f, std::span<const double> jumps) {
+    constexpr int kMostQuarterings = 8;
+    // Strips of y in which the same circles cross the same sides of the rectangle.
+    std::vector<double> turns;
+    std::vector<HeightCircle> circles;
+    for (const double height : jumps) {
+        const HeightCircle circle(chart, height);
+        circle.add_turns(rectangle.x0, turns);
+        circle.add_turns(rectangle.x1, turns);
+        circle.add_touching_turns(turns);
+        circles.push_back(circle);
+    }
+    std::erase_if(turns, [&](double y) { return !(y > rectangle.y0 && y < rectangle.y1); });
+    turns.push_back(rectangle.y0);
+    turns.push_back(rectangle.y1);
+    std::sort(turns.begin(), turns.end());
+
+    ChartIntegral sum;
+    for (size_t strip = 0; strip + 1 < turns.size(); strip++) {
+        const ChartRectangle whole = {0, 1, turns[strip], turns[strip + 1]};
+        for (size_t k = 0; k < 2 * circles.size() + 1; k++) {
+            const Piece piece = {chart, rectangle, circles, k};
+            const auto [x0, x1] = piece.sides_at(0.5 * (whole.y0 + whole.y1));
+            if (x1 <= x0) continue;
+            const ChartIntegral part = refine(piece, whole, tolerance, f, gauss(piece, whole, f), kMostQuarterings);
+            for (int c = 0; c < 3; c++) sum.value[c] += part.value[c];
+        }
+    }
+    return sum;
 }
 
 } // namespace pertev::test

@@ -5,6 +5,7 @@
 // tangent of half the angle to the axis, y in [0, 1] the turn about it.
 
 #include <functional>
+#include <span>
 
 #include "math/frame.h"
 #include "math/vec3.h"
@@ -30,12 +31,14 @@ struct ChartRectangle {
     double x0, x1, y0, y1;
 };
 
-/// Integral over the rectangle by solid angle, in up to three channels at once; quartered until two rules agree to
-/// `tolerance` or down to 1/256 of the side.
 struct ChartIntegral {
     double value[3] = {0, 0, 0};
 };
+/// Integral over the rectangle by solid angle, in up to three channels at once; quartered until two rules agree to
+/// `tolerance` (half of it for each further quartering) or down to 1/256 of the side. `jumps` are the heights
+/// direction.z at which f may jump: the rectangle is first cut along these circles, for two rules also agree when both
+/// step over a sliver.
 ChartIntegral integrate_over(const DirectionChart& chart, const ChartRectangle& rectangle, double tolerance,
-                             const std::function<ChartIntegral(Vec3)>& f);
+                             const std::function<ChartIntegral(Vec3)>& f, std::span<const double> jumps = {});
 
 } // namespace pertev::test
