@@ -53,8 +53,7 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
     const InstancedScene s = make_instanced_scene(3000);
     std::vector<BvhView> views;
     for (const Bvh& tree : s.trees) views.push_back(view_of(tree));
-    const std::vector<WideBvhNode<8>> wide_torus = make_wide_nodes(s.trees[0]),
-                                      wide_soup = make_wide_nodes(s.trees[2]);
+    const std::vector<WideBvhNode<8>> wide_torus = make_wide_nodes(s.trees[0]), wide_soup = make_wide_nodes(s.trees[2]);
     views[0].wide = wide_torus.data();
     views[2].wide = wide_soup.data();
     for (const bool with_baked : {false, true}) {
