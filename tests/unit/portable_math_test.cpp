@@ -3,6 +3,7 @@
 // The long setting (--long) goes through all 2^32 floats.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -81,8 +82,10 @@ double error_in_ulp(float ours, double exact) {
     }
     if (exact == 0 && (ours != 0 || std::signbit(ours) != std::signbit(exact))) return infinite;
     if (exact != 0 && ours != 0 && std::signbit(ours) != std::signbit(exact)) return infinite;
-    const int exponent = std::max(exact == 0 ? -149 : std::ilogb(exact) - 23, -149);
-    return std::ldexp(std::fabs(static_cast<double>(ours) - exact), -exponent);
+    const auto biased = static_cast<int64_t>(std::bit_cast<uint64_t>(exact) >> 52 & 0x7ff); // ilogb() would be slow
+    const int64_t exponent = std::max<int64_t>(biased - 1023 - 23, -149);
+    const double ulps = std::bit_cast<double>(static_cast<uint64_t>(1023 - exponent) << 52);
+    return std::fabs(static_cast<double>(ours) - exact) * ulps;
 }
 
 double stated_bound(int function) {
@@ -96,9 +99,12 @@ struct Worst {
 };
 
 void add_error(Worst& worst, int function, uint32_t input) {
+    const uint32_t bits = test::portable_math_value(function, input);
+    const bool of_both =
+        function == 10 || function == 11; // sin_cos, which is sin and cos: these are measured themselves
+    if (of_both && bits == test::portable_math_value(function - 10, input)) return;
     const float x = float_of(input), y = test::portable_second_argument(input);
-    const float ours = float_of(test::portable_math_value(function, input));
-    const double error = error_in_ulp(ours, reference(function, x, y, input));
+    const double error = error_in_ulp(float_of(bits), reference(function, x, y, input));
     if (error > worst.error) worst = {error, input};
 }
 
@@ -170,25 +176,31 @@ TEST_CASE("pow and atan2 treat zeros, infinities, integers and NaN as C does") {
 }
 
 TEST_CASE("pow keeps its bound where the result neither overflows nor vanishes, atan2 at every angle") {
-    double worst_pow = 0, worst_atan2 = 0;
-    const auto count = static_cast<uint32_t>(test::effort(500'000, 1u << 30));
-    for (uint32_t i = 0; i < count; i++) {
-        const Hash4 random = hash_words(i, 1, 2, 3);
-        // A base from anywhere, or next to 1; an exponent that takes it somewhere into [2^-150, 2^128].
-        const float x = (random.x & 1) != 0 ? float_of(random.y >> 1) : 1 + (unit_interval(random.y) - 0.5f) * 0x1p-6f;
-        if (x == 1 || x == 0 || !is_finite(x)) continue;
-        const double y_wanted =
-            (static_cast<double>(unit_interval(random.z)) * 278 - 150) / std::log2(static_cast<double>(x));
-        const auto y = static_cast<float>(y_wanted);
-        worst_pow =
-            std::max(worst_pow, error_in_ulp(pow(x, y), std::pow(static_cast<double>(x), static_cast<double>(y))));
+    constexpr uint32_t kChunks = 256;
+    double pow_errors[kChunks] = {}, atan2_errors[kChunks] = {};
+    const auto chunk_size = static_cast<uint32_t>(test::effort(2000, 1u << 20));
+    parallel_for(kChunks, 1, [&](uint64_t chunk) {
+        double& worst_pow = pow_errors[chunk];
+        double& worst_atan2 = atan2_errors[chunk];
+        for (uint32_t i = 0; i < chunk_size; i++) {
+            const Hash4 random = hash_words(i, static_cast<uint32_t>(chunk), 2, 3);
+            // A base from anywhere, or next to 1; an exponent that takes it somewhere into [2^-150, 2^128].
+            const float x =
+                (random.x & 1) != 0 ? float_of(random.y >> 1) : 1 + (unit_interval(random.y) - 0.5f) * 0x1p-6f;
+            if (x == 1 || x == 0 || !is_finite(x)) continue;
+            const double wide_x = static_cast<double>(x);
+            const auto y =
+                static_cast<float>((static_cast<double>(unit_interval(random.z)) * 278 - 150) / std::log2(wide_x));
+            worst_pow = std::max(worst_pow, error_in_ulp(pow(x, y), std::pow(wide_x, static_cast<double>(y))));
 
-        const float a = float_of(random.w), b = a * (0x1p-8f / unit_interval(random.z));
-        worst_atan2 = std::max(worst_atan2,
-                               error_in_ulp(atan2(a, b), std::atan2(static_cast<double>(a), static_cast<double>(b))));
-        worst_atan2 = std::max(worst_atan2,
-                               error_in_ulp(atan2(b, a), std::atan2(static_cast<double>(b), static_cast<double>(a))));
-    }
+            const float a = float_of(random.w), b = a * (0x1p-8f / unit_interval(random.z));
+            const double wide_a = static_cast<double>(a), wide_b = static_cast<double>(b);
+            worst_atan2 = std::max({worst_atan2, error_in_ulp(atan2(a, b), std::atan2(wide_a, wide_b)),
+                                    error_in_ulp(atan2(b, a), std::atan2(wide_b, wide_a))});
+        }
+    });
+    const double worst_pow = *std::ranges::max_element(pow_errors);
+    const double worst_atan2 = *std::ranges::max_element(atan2_errors);
     MESSAGE("pow: at most " << worst_pow << " ulp off, atan2: " << worst_atan2);
     CHECK(worst_pow <= 1);
     CHECK(worst_atan2 <= 2);
