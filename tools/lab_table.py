@@ -20,10 +20,10 @@ def main():
     parser.add_argument("report")
     parser.add_argument("set")
     parser.add_argument("--column", default="rays_per_second")
-    parser.add_argument("--filter", action="append", default=[], help="NAME=VALUE of a column; rta=1 near_first=1 exact=1 "
+    parser.add_argument("--filter", action="append", default=[], help="NAME=VALUE of a column; rta=1 near_first=1 tests=exact "
                         "distribution=one-a-thread unless given")
     arguments = parser.parse_args()
-    wanted = {"rta": "1", "near_first": "1", "exact": "1", "distribution": "one-a-thread", "set": arguments.set}
+    wanted = {"rta": "1", "near_first": "1", "tests": "exact", "distribution": "one-a-thread", "set": arguments.set}
     wanted.update(f.split("=", 1) for f in arguments.filter)
     cells, walks = {}, []
     with open(arguments.report, newline="", encoding="utf-8") as file:

@@ -31,10 +31,12 @@ std::set<std::string> all_heat_map_files() {
             if (why_not(structure, walk)) continue;
             for (const Distribution distribution :
                  {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
-                for (int bits = 0; bits < 8; ++bits) {
-                    const WalkOptions options = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
-                    const auto names = heat_map_files(name_of(Combination{structure, walk, options, distribution}));
-                    files.insert(names.begin(), names.end());
+                for (const TestKind tests : all_tests()) {
+                    for (int bits = 0; bits < 4; ++bits) {
+                        const WalkOptions options = {(bits & 1) != 0, (bits & 2) != 0, tests};
+                        const auto names = heat_map_files(name_of(Combination{structure, walk, options, distribution}));
+                        files.insert(names.begin(), names.end());
+                    }
                 }
             }
         }

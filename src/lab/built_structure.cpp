@@ -17,6 +17,8 @@ namespace {
 
 const char* suffix_of(TreeLayout layout) {
     switch (layout) {
+    case TreeLayout::Woop:
+        return " woop";
     case TreeLayout::Skip:
         return " skip links";
     case TreeLayout::Wide4:
@@ -46,13 +48,14 @@ std::size_t bytes_of(const std::vector<T>& values) {
 
 } // namespace
 
-TreeLayout layout_of(WalkKind walk) {
-    switch (walk) {
+TreeLayout layout_of(const Combination& combination) {
+    switch (combination.walk) {
     case WalkKind::BruteForce:
         return TreeLayout::Triangles;
-    case WalkKind::IfIf:
     case WalkKind::WhileWhile:
     case WalkKind::Speculative:
+        return combination.options.tests == TestKind::Woop ? TreeLayout::Woop : TreeLayout::Binary;
+    case WalkKind::IfIf:
     case WalkKind::RestartTrail:
     case WalkKind::ShortStack:
     case WalkKind::ParentLinks:
@@ -130,6 +133,9 @@ View BuiltStructure::place(Queue& queue, const Tree& tree, View view) {
     if constexpr (requires { tree.references; }) {
         view.references = keep(queue, std::span(tree.references), figures_.name + " references");
     }
+    if constexpr (requires { tree.transforms; }) {
+        view.transforms = keep(queue, std::span(tree.transforms), figures_.name + " transforms");
+    }
     return view;
 }
 
@@ -153,6 +159,7 @@ void BuiltStructure::take(Queue& queue, const LabTriangles& triangles, std::shar
             figures_.bytes += bytes_of(tree.references);
             figures_.triangles += tree.references.size() - tree.triangles.size();
         }
+        if constexpr (requires { tree.transforms; }) figures_.bytes += bytes_of(tree.transforms);
         if constexpr (requires { tree.sah_cost, tree.depth; }) {
             if (part == 0 || tree.triangles.size() > largest) {
                 largest = tree.triangles.size();
@@ -201,6 +208,9 @@ void BuiltStructure::convert(Queue& queue, const LabTriangles& triangles, TreeLa
         figures_.sah_cost = static_cast<double>(largest.sah_cost), figures_.depth = largest.depth; // the same tree
         break;
     }
+    case TreeLayout::Woop:
+        build(queue, triangles, [&](std::size_t part) { return make_woop_bvh(parts[part]); });
+        break;
     case TreeLayout::Wide4:
         build(queue, triangles, [&](std::size_t part) { return make_wide_bvh<4>(parts[part]); });
         break;

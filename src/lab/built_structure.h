@@ -13,6 +13,7 @@
 #include "accel/bvh/skip_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "accel/bvh/wide_bvh.h"
+#include "accel/bvh/woop_bvh.h"
 #include "accel/kd_tree/kd_tree.h"
 #include "accel/octree/octree.h"
 #include "device/buffer.h"
@@ -25,11 +26,11 @@ namespace pertev {
 
 using AnyTrees = std::variant<SceneTrees<BvhView>, SceneTrees<SkipBvhView>, SceneTrees<WideBvhView<4>>,
                               SceneTrees<WideBvhView<8>>, SceneTrees<CompressedBvhView>, SceneTrees<KdTreeView>,
-                              SceneTrees<OctreeView>, SceneTrees<TriangleArrayView>>;
+                              SceneTrees<OctreeView>, SceneTrees<TriangleArrayView>, SceneTrees<WoopBvhView>>;
 
 /// What a binary tree is turned into for a walk, or what stands in its place.
-enum class TreeLayout { Triangles, Binary, Skip, Wide4, Wide8, Compressed, Kd, Octree };
-TreeLayout layout_of(WalkKind walk);
+enum class TreeLayout { Triangles, Binary, Woop, Skip, Wide4, Wide8, Compressed, Kd, Octree };
+TreeLayout layout_of(const Combination& combination);
 
 /// A scene's triangles as builders take them: the baked ones, and those of each mesh that keeps a tree of its own.
 struct LabTriangles {

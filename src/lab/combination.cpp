@@ -17,6 +17,15 @@ constexpr std::array kWalks = {
     WalkKind::ShortStack, WalkKind::ParentLinks, WalkKind::SkipLinks,   WalkKind::Packet,     WalkKind::Wide4,
     WalkKind::Wide8,      WalkKind::Wide8Simd,   WalkKind::Compressed,  WalkKind::Kd,         WalkKind::Octree};
 
+constexpr std::array kTests = {TestKind::Exact, TestKind::Fast, TestKind::Woop};
+
+/// Of `all`; nothing when no kind is named so.
+template <class Kinds>
+auto kind_named(const Kinds& all, const std::string& name) {
+    const auto at = std::ranges::find_if(all, [&](auto kind) { return name == name_of(kind); });
+    return at == all.end() ? std::nullopt : std::optional(*at);
+}
+
 bool is_kd(StructureKind kind) { return kind == StructureKind::KdMedian || kind == StructureKind::KdSah; }
 
 /// Whether the walk knows nearer children from farther ones.
@@ -26,6 +35,7 @@ bool has_order(WalkKind walk) { return walk != WalkKind::BruteForce && walk != W
 
 std::span<const StructureKind> all_structures() { return kStructures; }
 std::span<const WalkKind> all_walks() { return kWalks; }
+std::span<const TestKind> all_tests() { return kTests; }
 
 std::optional<BvhBuilder> builder_of(StructureKind kind) {
     switch (kind) {
@@ -106,25 +116,31 @@ const char* name_of(Distribution distribution) {
     return "";
 }
 
+const char* name_of(TestKind kind) {
+    switch (kind) {
+    case TestKind::Exact:
+        return "exact";
+    case TestKind::Fast:
+        return "fast";
+    case TestKind::Woop:
+        return "woop";
+    }
+    return "";
+}
+
 std::string name_of(const Combination& c) {
     std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.walk));
     name += c.options.rta ? " rta" : " no-rta";
     // A walk without an order is named without; switched off there it is refused, and that has a name of its own.
     if (has_order(c.walk) || !c.options.near_first) name += c.options.near_first ? " near" : " unordered";
-    if (!c.options.exact) name += " fast-tests";
+    if (!c.options.is_exact()) name += fmt::format(" {}-tests", name_of(c.options.tests));
     if (c.distribution != Distribution::OneAThread) name += fmt::format(" {}", name_of(c.distribution));
     return name;
 }
 
-std::optional<StructureKind> structure_named(const std::string& name) {
-    const auto at = std::ranges::find_if(kStructures, [&](StructureKind kind) { return name == name_of(kind); });
-    return at == kStructures.end() ? std::nullopt : std::optional(*at);
-}
-
-std::optional<WalkKind> walk_named(const std::string& name) {
-    const auto at = std::ranges::find_if(kWalks, [&](WalkKind kind) { return name == name_of(kind); });
-    return at == kWalks.end() ? std::nullopt : std::optional(*at);
-}
+std::optional<StructureKind> structure_named(const std::string& name) { return kind_named(kStructures, name); }
+std::optional<WalkKind> walk_named(const std::string& name) { return kind_named(kWalks, name); }
+std::optional<TestKind> tests_named(const std::string& name) { return kind_named(kTests, name); }
 
 std::optional<std::string> why_not(StructureKind structure, WalkKind walk) {
     if ((walk == WalkKind::Kd) != is_kd(structure)) {
@@ -143,6 +159,9 @@ std::optional<std::string> why_not(const Combination& c, const LabMachine& machi
     if (auto reason = why_not(c.structure, c.walk)) return reason;
     if (!c.options.near_first && !has_order(c.walk)) return "there is no order of children to switch off";
     if (!c.options.rta && c.walk == WalkKind::BruteForce) return "without nodes there is no redundant traversal";
+    if (c.options.tests == TestKind::Woop && c.walk != WalkKind::WhileWhile && c.walk != WalkKind::Speculative) {
+        return "Woop's triangle test is for the walks of Aila and Laine: while-while and speculative";
+    }
     if (c.walk == WalkKind::Wide8Simd && machine.is_cuda)
         return "eight boxes at once by the CPU's vector unit; on a GPU take wide8";
     if (c.distribution != Distribution::OneAThread && !machine.is_cuda) {

@@ -62,6 +62,7 @@ struct Combination {
 /// All there are, in the order above.
 std::span<const StructureKind> all_structures();
 std::span<const WalkKind> all_walks();
+std::span<const TestKind> all_tests();
 
 /// None for kd-trees and the octree: the others are binary hierarchies.
 std::optional<BvhBuilder> builder_of(StructureKind kind);
@@ -69,12 +70,14 @@ std::optional<BvhBuilder> builder_of(StructureKind kind);
 const char* name_of(StructureKind kind);
 const char* name_of(WalkKind kind);
 const char* name_of(Distribution distribution);
+const char* name_of(TestKind kind);
 /// "sbvh while-while rta near persistent"
 std::string name_of(const Combination& combination);
 
 /// Nothing when no kind is named so.
 std::optional<StructureKind> structure_named(const std::string& name);
 std::optional<WalkKind> walk_named(const std::string& name);
+std::optional<TestKind> tests_named(const std::string& name);
 
 struct LabMachine {
     bool is_cuda = false;

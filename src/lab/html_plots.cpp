@@ -51,7 +51,8 @@ std::string bars_of(const LabReport& report, uint32_t set) {
         const RunFigures* run = find_run(c, set);
         if (run == nullptr || run->is_copy || c.wrong || !(run->least_s > 0)) continue;
         const double rays = static_cast<double>(report.sets[set].rays) * 1e-6;
-        const BarStyle style = {static_cast<uint32_t>(family_of(c.combination.walk)), !c.combination.options.exact};
+        const BarStyle style = {static_cast<uint32_t>(family_of(c.combination.walk)),
+                                !c.combination.options.is_exact()};
         bars.push_back({c.name, rays / run->median_s, rays / run->largest_s, rays / run->least_s, style});
     }
     std::ranges::stable_sort(bars, [](const Bar& a, const Bar& b) { return a.value > b.value; });
@@ -64,7 +65,7 @@ std::string bars_of(const LabReport& report, uint32_t set) {
         }
     }
     if (std::ranges::any_of(bars, [](const Bar& bar) { return bar.style.is_hollow; })) {
-        legend.push_back({"hollow: fast tests, which lose rays at edges", {kBarColors - 2, true}}); // grey
+        legend.push_back({"hollow: fast tests and Woop's, which lose rays at edges", {kBarColors - 2, true}}); // grey
     }
     std::string html = svg_bars(report.sets[set].name, "Mrays/s", bars, legend);
     if (all > kBars) html += fmt::format("<p>The {} fastest of {}; the table below has all.</p>\n", kBars, all);
@@ -75,7 +76,7 @@ std::string bars_of(const LabReport& report, uint32_t set) {
 std::optional<double> whole_frame_seconds(const LabReport& report, const CombinationFigures& c) {
     const bool copied = std::ranges::any_of(
         c.runs, [&](const RunFigures& run) { return run.is_copy && report.sets[run.set].depth > 0; });
-    if (c.wrong || copied || !c.combination.options.exact) return std::nullopt;
+    if (c.wrong || copied || !c.combination.options.is_exact()) return std::nullopt;
     return frame_seconds(report, c, largest_depth(report));
 }
 

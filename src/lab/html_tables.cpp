@@ -82,8 +82,15 @@ std::vector<Ratio> ratios() {
             {"The price of exactness",
              "Time with exact tests over time with fast ones, which lose rays at edges; above 1 exactness costs.",
              [](Combination c) {
-                 const bool has = std::exchange(c.options.exact, false);
-                 return has ? std::optional(c) : std::nullopt;
+                 const TestKind had = std::exchange(c.options.tests, TestKind::Fast);
+                 return had == TestKind::Exact ? std::optional(c) : std::nullopt;
+             },
+             true},
+            {"The price of exactness against Woop's unit-triangle test",
+             "The same over time with the test of Aila and Laine's kernels.",
+             [](Combination c) {
+                 const TestKind had = std::exchange(c.options.tests, TestKind::Woop);
+                 return had == TestKind::Exact ? std::optional(c) : std::nullopt;
              },
              true}};
 }
@@ -115,7 +122,7 @@ std::string html_of(const LabReport& report, const Ratio& ratio) {
 }
 
 bool is_plain(const Combination& c) {
-    return c.options.rta && c.options.near_first && c.options.exact && c.distribution == Distribution::OneAThread;
+    return c.options.rta && c.options.near_first && c.options.is_exact() && c.distribution == Distribution::OneAThread;
 }
 
 std::string matrix_of(const LabReport& report, uint32_t set) {
@@ -257,7 +264,7 @@ std::string html_figures(const LabReport& report) {
            "Mrays/s are of the median run, with those of the slowest and the fastest run beside. \"Same walk\": an "
            "equal walk was measured for "
            "another combination, and its figures stand here too. Price of exactness: time over that of the same "
-           "combination with fast tests. An empty cell was not measured.</p>\n" +
+           "combination with fast or Woop's tests. An empty cell was not measured.</p>\n" +
            table(head, rows) + kNodeNote + (has_warps ? kWarpNote : "");
 }
 

@@ -53,9 +53,9 @@ int largest_depth(const LabReport& report) {
 }
 
 std::optional<double> price_of_exactness(const LabReport& report, const CombinationFigures& combination, uint32_t set) {
-    if (!combination.combination.options.exact) return std::nullopt;
+    if (!combination.combination.options.is_exact()) return std::nullopt;
     Combination fast = combination.combination;
-    fast.options.exact = false;
+    fast.options.tests = TestKind::Fast;
     const std::string name = name_of(fast);
     const auto at = std::ranges::find_if(
         report.combinations, [&](const CombinationFigures& c) { return c.name == name && !c.runs.empty(); });

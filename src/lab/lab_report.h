@@ -40,7 +40,7 @@ struct RunFigures {
     std::optional<double> nodes, triangles;               // tests a ray; what a node is differs between layouts
     std::optional<double> node_lanes, triangle_lanes;     // live lanes of 32 at a test
     std::optional<double> node_sectors, triangle_sectors; // of 32 bytes, a load of 16 bytes a lane: 1 to 32
-    uint64_t different = 0; // rays that meet something else: fast tests alone may have any
+    uint64_t different = 0; // rays that meet something else: tests that leak alone may have any
     /// The same walk was measured for another combination (any hit with RTA on, say) and its figures stand here too.
     bool is_copy = false;
 };

@@ -16,7 +16,8 @@ CombinationFigures figures_of(const Combination& c, const LabMachine& machine) {
     if (const auto reason = why_not(c, machine)) {
         figures.refused = *reason;
     } else if (find_kernel(c, false, machine.is_cuda) == nullptr) {
-        figures.refused = c.options.exact ? "not compiled" : "fast tests are compiled with rta and near alone";
+        figures.refused =
+            c.options.is_exact() ? "not compiled" : "fast and woop tests are compiled with rta and near alone";
     }
     return figures;
 }

@@ -221,7 +221,7 @@ private:
 
     void measure_structure(StructureKind structure) {
         std::map<TreeLayout, std::vector<CombinationFigures*>> of_layout;
-        for (CombinationFigures* c : combinations_of(structure)) of_layout[layout_of(c->combination.walk)].push_back(c);
+        for (CombinationFigures* c : combinations_of(structure)) of_layout[layout_of(c->combination)].push_back(c);
         if (of_layout.empty()) return;
         std::optional<BinaryTrees> binary;
         for (const auto& [layout, combinations] : of_layout) {
@@ -332,8 +332,8 @@ private:
             kernel.trace(queue_, built.trees(), batch, hits.data() + begin);
         });
         std::vector<RayHit> copy;
-        run.different = count_different(hits.read(copy), set.wanted, c.combination.options.exact);
-        if (run.different == 0 || !c.combination.options.exact) return true;
+        run.different = count_different(hits.read(copy), set.wanted, c.combination.options.is_exact());
+        if (run.different == 0 || !c.combination.options.is_exact()) return true;
         c.wrong = true;
         c.refused = fmt::format("WRONG: {} of {} {} rays differ from the proven walk; please report it", run.different,
                                 set.rays.size(), set.figures.name);

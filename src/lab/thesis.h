@@ -3,8 +3,7 @@
 // Chapter 6 of Bellek, "Realtime photo-realistic rendering using modern GPU systems", M.Sc. thesis, ITU 2014, measured
 // anew: tables 6.3 to 6.6 (frames a second, seconds a frame and rays a second over the depth of paths, in the Cornell
 // box and in Sibenik cathedral at 1024x768) and figures 6.7 to 6.11. P = persistent threads, R = without redundant
-// traversal avoidance, A = a kernel after Aila and Laine's: dynamic fetch and fast tests, Moeller-Trumbore in place of
-// their unit triangles.
+// traversal avoidance, A = Aila and Laine's kernel: dynamic fetch, Woop's unit-triangle test, boxes that are not grown.
 
 #include <string>
 #include <vector>

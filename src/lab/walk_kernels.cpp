@@ -50,7 +50,7 @@ const WalkKernel* find_kernel(const Combination& c, bool any_hit, bool on_cuda) 
         const bool rta = any_hit || row.options.rta == c.options.rta;
         return (on_cuda ? row.on_cuda : row.on_cpu) && row.walk == c.walk && row.distribution == c.distribution &&
                row.any_hit == any_hit && rta && row.options.near_first == c.options.near_first &&
-               row.options.exact == c.options.exact;
+               row.options.tests == c.options.tests;
     });
     return at == rows.end() ? nullptr : &*at;
 }

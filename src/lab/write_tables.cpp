@@ -59,7 +59,7 @@ Cells report_cells(const LabReport& r) {
 }
 
 Cells combination_head() {
-    return {"combination", "structure", "walk", "rta", "near_first", "exact", "distribution", "refused", "wrong"};
+    return {"combination", "structure", "walk", "rta", "near_first", "tests", "distribution", "refused", "wrong"};
 }
 Cells combination_cells(const CombinationFigures& c) {
     const WalkOptions& o = c.combination.options;
@@ -68,7 +68,7 @@ Cells combination_cells(const CombinationFigures& c) {
             name_of(c.combination.walk),
             number(o.rta),
             number(o.near_first),
-            number(o.exact),
+            name_of(o.tests),
             name_of(c.combination.distribution),
             c.refused,
             number(c.wrong)};
@@ -169,10 +169,10 @@ std::string json_of(const LabReport& report, const CombinationFigures& c) {
     }
     const StructureFigures* structure = structure_of(report, c);
     return fmt::format(
-        R"({{"name":{},"structure":{},"structure_kind":"{}","walk":"{}","rta":{},"near_first":{},"exact":{},"distribution":"{}","refused":{},"wrong":{},"registers":{},"local_bytes":{},"occupancy":{},"frame_seconds":[{}],"runs":[{}]}})",
+        R"({{"name":{},"structure":{},"structure_kind":"{}","walk":"{}","rta":{},"near_first":{},"tests":"{}","distribution":"{}","refused":{},"wrong":{},"registers":{},"local_bytes":{},"occupancy":{},"frame_seconds":[{}],"runs":[{}]}})",
         json_string(c.name), structure != nullptr ? json_string(structure->name) : "null",
         name_of(c.combination.structure), name_of(c.combination.walk), c.combination.options.rta,
-        c.combination.options.near_first, c.combination.options.exact, name_of(c.combination.distribution),
+        c.combination.options.near_first, name_of(c.combination.options.tests), name_of(c.combination.distribution),
         c.refused.empty() ? "null" : json_string(c.refused), c.wrong, json_optional(c.registers),
         json_optional(c.local_bytes), json_optional(c.occupancy), frames, runs);
 }

@@ -80,9 +80,10 @@ HD inline CompressedAxis make_compressed_axis(const CompressedBvhNode& node, int
     return r;
 }
 
-/// Bit s: the box of slot s may hold a hit with ray.t_min < t <= t_limit. Bits of empty slots mean nothing.
+/// Bit s: the box of slot s may hold a hit with ray.t_min < t <= t_limit, and is entered at entries[s] or
+/// later. Bits and entries of empty slots mean nothing.
 HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, const CompressedBvhNode& node,
-                                float t_limit) {
+                                float t_limit, float (&entries)[8]) {
     const CompressedAxis x = make_compressed_axis(node, 0, ray.origin.x, r.inv.x, r.grow);
     const CompressedAxis y = make_compressed_axis(node, 1, ray.origin.y, r.inv.y, r.grow);
     const CompressedAxis z = make_compressed_axis(node, 2, ray.origin.z, r.inv.z, r.grow);
@@ -100,6 +101,7 @@ HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, con
                           at(z.near_planes[w], k, z.step, z.near));
         const float exit = least_bits(at(x.far_planes[w], k, x.step, x.far), at(y.far_planes[w], k, y.step, y.far),
                                       at(z.far_planes[w], k, z.step, z.far));
+        entries[s] = entry;
         // The sign of a difference of floats is that of the comparison; equal gives +0. Entries and exits are finite.
         const uint32_t missed = bits_of(exit - entry) | bits_of(exit - ray.t_min) | bits_of(t_limit - entry);
 #if PERTEV_ON_DEVICE
@@ -109,6 +111,15 @@ HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, con
 #endif
     }
     return ~mask & 0xffu;
+}
+
+/// The least of the entries of `slots`, as the upper half of a float's bits, rounded down; of none, infinity.
+HD inline uint32_t least_entry(const float (&entries)[8], uint32_t slots) {
+    // Floats from 0 on are in the order of their bits as integers; lesser ones count as 0.
+    const auto at = [&](int s) { return (slots & 1u << s) != 0 ? static_cast<int>(bits_of(entries[s])) : 0x7f800000; };
+    const int a = min(min(at(0), at(1)), at(2)), b = min(min(at(3), at(4)), at(5));
+    const int c = min(min(a, at(6)), at(7));
+    return static_cast<uint32_t>(max(min(b, c), 0)) >> 16;
 }
 
 /// The bit of the slot that comes first for a ray with 1 / direction `inv`: least s ^ the ray's octant. `slots` is not

@@ -9,9 +9,8 @@
 // and only those go to the stack. How long they are put off is a matter of the warp; the hits are not. On the host,
 // where a warp is one ray, nothing is put off.
 //
-// RTA: boxes are compared with the nearest hit so far, at the node test. A group carries no distances, so nothing is
-// dropped at a pop: what was entered before the hit came near is fetched once more, and there all its boxes fail. On
-// Sponza those are 8 to 15 % of all nodes, and only an entry kept for each child, not one a group, would save them.
+// RTA: boxes are compared with the nearest hit so far at the node test, and a group carries where the ray enters the
+// nearest of its waiting children, so that it is dropped at a pop when that lies beyond. The source has no such thing.
 // near_first off: in the order of slots.
 
 #include <cstdint>
@@ -37,9 +36,11 @@ HD inline int lanes_for_triangles(int working) { return (13 * working + 31) / 32
 /// The children of one node that are still to be entered.
 struct NodeGroup {
     uint32_t base; // CompressedBvhNode::child_base
-    uint32_t left; // bits 0 to 7: slots to be entered; 24 to 31: all inner slots, at least one
+    uint32_t left; // bits 0 to 7: slots to be entered; 8 to 23: with RTA, the upper half of a float that no entry of
+                   // those after the first is less than; 24 to 31: all inner slots, at least one
 
     HD bool is_empty() const { return (left & 0xffu) == 0; }
+    HD float entry() const { return float_of((left & 0xffff00u) << 8); }
 };
 
 /// The triangles of one node that are still to be tested.
@@ -80,14 +81,15 @@ struct CompressedPlace {
     }
     HD void push(uint32_t lower, uint32_t left) { slots[size++] = uint64_t(left) << 32 | lower; }
 
-    /// Takes what comes next from the stack. Triangles that meet others which are put off stay there, and the ray
-    /// waits.
-    HD void refill(const CompressedBvhView& bvh) {
+    /// Takes what comes next from the stack, but for nodes entered beyond `limit`. Triangles that meet others which are
+    /// put off stay there, and the ray waits.
+    HD void refill(const CompressedBvhView& bvh, float limit) {
         while (nodes.is_empty() && size > 0) {
             const Slot top = slots[size - 1];
             const uint32_t lower = static_cast<uint32_t>(top), left = static_cast<uint32_t>(top >> 32);
             if (left >= 1u << 24) {
-                nodes = {lower, left};
+                const NodeGroup group = {lower, left};
+                if (!kOptions.rta || group.entry() <= limit) nodes = group;
             } else if (triangles.is_empty()) {
                 triangles = {bvh.nodes[lower].triangle_base, bvh.nodes[lower].triangles, left};
             } else {
@@ -125,8 +127,7 @@ struct CompressedWalk {
     template <class Visitor, class Counter>
     HD static bool turn(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
                         const Counter& counter, LaneMask lanes, int working) {
-        if (!place.nodes.is_empty())
-            step_down<kOptions.near_first>(bvh, ray, skip_beyond<kOptions>(visitor, ray), place, counter);
+        if (!place.nodes.is_empty()) step_down(bvh, ray, skip_beyond<kOptions>(visitor, ray), place, counter);
         const int enough = lanes_for_triangles(working);
         bool ended = false;
         while (count_lanes(ballot(lanes, !place.triangles.is_empty())) >= enough) { // all of `lanes` come to each vote
@@ -136,31 +137,38 @@ struct CompressedWalk {
                 place.stop();
             }
         }
-        place.refill(bvh);
+        place.refill(bvh, skip_beyond<kOptions>(visitor, ray));
         return ended;
     }
 
 private:
+    /// Of slots, not none, the one to enter first.
+    HD static uint32_t first_slot(uint32_t slots, const RayCompressedBoxes& boxes) {
+        return kOptions.near_first ? nearest_slot(slots, boxes.inv) : slots & (0u - slots);
+    }
+
     /// Tests the boxes of the next node. Its children come before what is left of its group.
-    template <bool kNear, class Counter>
+    template <class Counter>
     HD static void step_down(const CompressedBvhView& bvh, const Ray& ray, float limit, Place& place,
                              const Counter& counter) {
         NodeGroup group = place.nodes;
-        const uint32_t slots = group.left & 0xffu;
-        const uint32_t slot = kNear ? nearest_slot(slots, place.boxes.inv) : slots & (0u - slots); // one bit
+        const uint32_t slot = first_slot(group.left & 0xffu, place.boxes); // one bit
         const uint32_t index = group.base + count_ones(group.left & (slot * (1u << 24) - (1u << 24)));
         group.left ^= slot;
         if (!group.is_empty()) place.push(group.base, group.left);
         counter.add_node(bvh.nodes + index);
         const CompressedBvhNode node = load_aligned(bvh.nodes + index);
-        const uint32_t entered = enters_slots(ray, place.boxes, node, limit);
+        float entries[8];
+        const uint32_t entered = enters_slots(ray, place.boxes, node, limit, entries);
         const uint32_t found = triangles_of_slots(node, entered);
         if (place.triangles.is_empty()) {
             place.triangles = {node.triangle_base, node.triangles, found};
         } else if (found != 0) {
             place.push(index, found);
         }
-        place.nodes = {node.child_base, (node.exponents_and_inner & 0xff000000u) | (entered & inner_slots(node))};
+        const uint32_t inner = entered & inner_slots(node);
+        place.nodes = {node.child_base, (node.exponents_and_inner & 0xff000000u) | inner};
+        if (kOptions.rta) place.nodes.left |= least_entry(entries, inner ^ first_slot(inner, place.boxes)) << 8;
     }
 
     template <class Visitor, class Counter>

@@ -30,19 +30,11 @@ HD inline float box_max(float a, float b) { return a > b ? a : b; }
 // exit too large: a box is then entered in vain, never missed.
 HD inline float greatest_bits(float a, float b, float c) {
     const int x = static_cast<int>(bits_of(a)), y = static_cast<int>(bits_of(b)), z = static_cast<int>(bits_of(c));
-#if PERTEV_ON_DEVICE
-    return float_of(static_cast<uint32_t>(__vimax3_s32(x, y, z)));
-#else
     return float_of(static_cast<uint32_t>(max(max(x, y), z)));
-#endif
 }
 HD inline float least_bits(float a, float b, float c) {
     const int x = static_cast<int>(bits_of(a)), y = static_cast<int>(bits_of(b)), z = static_cast<int>(bits_of(c));
-#if PERTEV_ON_DEVICE
-    return float_of(static_cast<uint32_t>(__vimin3_s32(x, y, z)));
-#else
     return float_of(static_cast<uint32_t>(min(min(x, y), z)));
-#endif
 }
 
 struct RayBoxes {

@@ -15,24 +15,23 @@ namespace pertev {
 
 template <WalkOptions kOptions>
 struct SpeculativeWalk {
-    using Tree = BvhView;
+    using Tree = BinaryTreeOf<kOptions>;
     using Tests = TestsOf<kOptions>;
     using Place = WalkPlace<kOptions>;
 
     template <class Visitor>
-    HD static void start(const BvhView& bvh, const Ray& ray, Place& place) {
+    HD static void start(const Tree& bvh, const Ray& ray, Place& place) {
         place.start(bvh, ray);
     }
 
     template <class Visitor, class Counter>
-    HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
-                        const Counter& counter) {
+    HD static bool walk(const Tree& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
         return walk_by_turns<SpeculativeWalk>(bvh, ray, instance, visitor, counter);
     }
 
     /// Down until all lanes that run together have found a leaf, and the leaves found. True when the visitor ended it.
     template <class Visitor, class Counter>
-    HD static bool turn(const BvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
+    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {
         uint32_t link = place.link, postponed = kNoLink;
         while (!(link & kLeafBit)) {
@@ -51,7 +50,7 @@ struct SpeculativeWalk {
             const bool was_postponed = postponed != kNoLink;
             const uint32_t leaf = was_postponed ? postponed : link;
             if (!(leaf & kLeafBit) || leaf == kNoLink) break;
-            if (test_leaf<Tests>(bvh.triangles, leaf, ray, place.prepared, instance, visitor, counter)) return true;
+            if (test_leaf<Tests>(bvh, leaf, ray, place.prepared, instance, visitor, counter)) return true;
             postponed = kNoLink;
             if (!was_postponed) link = place.stack.pop(skip_beyond<kOptions>(visitor, ray));
         }

@@ -1,18 +1,27 @@
 #pragma once
 
-// What can be switched in every walk of the laboratory. Only `exact` changes hits.
+// What can be switched in every walk of the laboratory. Only `tests` changes hits.
 
 #include <type_traits>
 
 #include "trace/ray_tests.h"
+#include "trace/woop_tests.h"
 
 namespace pertev {
+
+enum class TestKind {
+    Exact,
+    Fast,
+    Woop, // for the walks of Aila and Laine
+};
 
 struct WalkOptions {
     bool rta = true; // redundant traversal avoidance: skip what is entered beyond the nearest hit so far; off: only
                      // what is entered beyond the ray's own t_max
     bool near_first = true; // of several children, the one entered first; off: the builder's order
-    bool exact = true;      // ExactTests; off: FastTests
+    TestKind tests = TestKind::Exact;
+
+    constexpr bool is_exact() const { return tests == TestKind::Exact; }
 };
 
 /// What an any-hit search is compiled with: it has no nearest hit to skip beyond, so its stack need hold no entries.
@@ -22,7 +31,12 @@ constexpr WalkOptions for_any_hit(WalkOptions options) {
 }
 
 template <WalkOptions kOptions>
-using TestsOf = std::conditional_t<kOptions.exact, ExactTests, FastTests>;
+using TestsOf = std::conditional_t<kOptions.tests == TestKind::Woop, WoopTests,
+                                   std::conditional_t<kOptions.is_exact(), ExactTests, FastTests>>;
+
+/// The binary tree with what the tests want of its triangles.
+template <WalkOptions kOptions>
+using BinaryTreeOf = std::conditional_t<kOptions.tests == TestKind::Woop, WoopBvhView, BvhView>;
 
 /// What a box's entry is compared with: greater is skipped.
 template <WalkOptions kOptions, class Visitor>

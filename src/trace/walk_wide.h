@@ -64,7 +64,7 @@ struct LeafOfFour {
         const auto visit = [&](const BvhTriangle& t, const TriangleHit& hit) {
             return visitor.visit(instance == kNoHit ? t.instance : instance, t.primitive, hit);
         };
-        if constexpr (kOptions.exact) {
+        if constexpr (kOptions.is_exact()) {
             TriangleHit4 hits;
             unsigned hit = intersect_4_triangles(ray.origin, prepared, shear4, ray.t_min, ray.t_max, visitor.limit(),
                                                  first, count, hits);
@@ -84,7 +84,7 @@ struct LeafOfFour {
 
 private:
     RayShear shear_of(const Ray& r) const {
-        if constexpr (kOptions.exact) {
+        if constexpr (kOptions.is_exact()) {
             return prepared;
         } else {
             return make_ray_shear(r.direction); // not used

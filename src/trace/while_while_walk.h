@@ -41,24 +41,23 @@ struct WalkPlace {
 
 template <WalkOptions kOptions>
 struct WhileWhileWalk {
-    using Tree = BvhView;
+    using Tree = BinaryTreeOf<kOptions>;
     using Tests = TestsOf<kOptions>;
     using Place = WalkPlace<kOptions>;
 
     template <class Visitor>
-    HD static void start(const BvhView& bvh, const Ray& ray, Place& place) {
+    HD static void start(const Tree& bvh, const Ray& ray, Place& place) {
         place.start(bvh, ray);
     }
 
     template <class Visitor, class Counter>
-    HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
-                        const Counter& counter) {
+    HD static bool walk(const Tree& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
         return walk_by_turns<WhileWhileWalk>(bvh, ray, instance, visitor, counter);
     }
 
     /// Down to the next leaf, and its triangles. True when the visitor ended the walk.
     template <class Visitor, class Counter>
-    HD static bool turn(const BvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
+    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {
         uint32_t link = place.link;
         while (!(link & kLeafBit)) {
@@ -68,7 +67,7 @@ struct WhileWhileWalk {
                                                   place.stack);
         }
         if (link != kNoLink) {
-            if (test_leaf<Tests>(bvh.triangles, link, ray, place.prepared, instance, visitor, counter)) return true;
+            if (test_leaf<Tests>(bvh, link, ray, place.prepared, instance, visitor, counter)) return true;
             link = place.stack.pop(skip_beyond<kOptions>(visitor, ray));
         }
         place.link = link;

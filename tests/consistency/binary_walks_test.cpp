@@ -192,7 +192,7 @@ TEST_CASE("so they do over instances, with and without a baked tree") {
 
 TEST_CASE("a box entered just where the nearest hit lies is still entered: of coincident triangles the first counts") {
     // Boxes of no thickness that the fast tests do not grow, and numbers without rounding: entry and hit are equal.
-    constexpr WalkOptions kFast = {.exact = false};
+    constexpr WalkOptions kFast = {.tests = TestKind::Fast};
     std::vector<BvhTriangle> triangles;
     for (uint32_t i = 0; i < 100; ++i) {
         triangles.push_back({.a = {1, 0, 0}, .primitive = (i * 37 + 50) % 100, .b = {1, 2, 0}, .c = {1, 0, 2}});
@@ -265,7 +265,7 @@ TEST_CASE("walks with a stack visit the same, walks without one visit more, brut
 }
 
 TEST_CASE("with the laboratory's fast tests every walk finds the same surfaces, but for rays at edges") {
-    constexpr WalkOptions kFast = {.exact = false};
+    constexpr WalkOptions kFast = {.tests = TestKind::Fast};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     const SkipBvh skip = make_skip_bvh(bvh);
     const std::vector<Ray> rays = rays_at_shells(1001);

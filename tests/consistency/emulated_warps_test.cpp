@@ -61,7 +61,7 @@ void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t bl
     CAPTURE(std::string(walk.walk));
     CAPTURE(way);
     CAPTURE(walk.rta);
-    CAPTURE(walk.exact);
+    CAPTURE(std::string(walk.tests));
     CAPTURE(walk.any);
     CAPTURE(walk.cut_outs);
     CAPTURE(count);
@@ -90,24 +90,46 @@ void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t bl
     }
 }
 
+/// Of the same triangles, in each layout.
+struct HostTrees {
+    Bvh bvh;
+    CompressedBvh compressed_bvh;
+    WoopBvh woop_bvh;
+    BvhView binary;
+    CompressedBvhView compressed;
+    WoopBvhView woop;
+
+    explicit HostTrees(const std::vector<BvhTriangle>& triangles)
+        : bvh(build_bvh(triangles)), compressed_bvh(make_compressed_bvh(bvh)), woop_bvh(make_woop_bvh(bvh)),
+          binary(view_of(bvh)), compressed(view_of(compressed_bvh)), woop(view_of(woop_bvh)) {}
+
+    std::string run(const EmulatedWalk& walk, const EmulatedBatch& batch) const {
+        return walk.run({&binary, &compressed, &woop}, batch);
+    }
+};
+
 /// The host's hits by the same tests; exact ones are those of every walk.
 struct HostHits {
-    std::vector<Hit> exact, cut_outs, fast_binary, fast_compressed;
+    std::vector<Hit> exact, cut_outs, fast_binary, fast_compressed, woop;
 
-    HostHits(const BvhView& binary, const CompressedBvhView& compressed, const std::vector<Ray>& rays) {
-        constexpr WalkOptions kFast = {.exact = false};
+    HostHits(const HostTrees& trees, const std::vector<Ray>& rays) {
+        constexpr WalkOptions kFast = {.tests = TestKind::Fast}, kWoop = {.tests = TestKind::Woop};
+        const SingleTree<BvhView> binary = {trees.binary};
         for (const Ray& ray : rays) {
-            trace_closest(SingleTree<BvhView>{binary}, ray, AcceptAll{}, exact.emplace_back());
-            trace_closest(SingleTree<BvhView>{binary}, ray, AcceptSome{}, cut_outs.emplace_back());
-            trace_closest<WhileWhileWalk<kFast>>(SingleTree<BvhView>{binary}, ray, AcceptAll{},
-                                                 fast_binary.emplace_back());
-            trace_closest<CompressedWalk<kFast>>(SingleTree<CompressedBvhView>{compressed}, ray, AcceptAll{},
+            trace_closest(binary, ray, AcceptAll{}, exact.emplace_back());
+            trace_closest(binary, ray, AcceptSome{}, cut_outs.emplace_back());
+            trace_closest<WhileWhileWalk<kFast>>(binary, ray, AcceptAll{}, fast_binary.emplace_back());
+            trace_closest<CompressedWalk<kFast>>(SingleTree<CompressedBvhView>{trees.compressed}, ray, AcceptAll{},
                                                  fast_compressed.emplace_back());
+            trace_closest<WhileWhileWalk<kWoop>>(SingleTree<WoopBvhView>{trees.woop}, ray, AcceptAll{},
+                                                 woop.emplace_back());
         }
     }
     const std::vector<Hit>& of(const EmulatedWalk& walk) const {
         if (walk.cut_outs) return cut_outs;
-        return walk.exact ? exact : std::string(walk.walk) == "compressed" ? fast_compressed : fast_binary;
+        const std::string tests = walk.tests;
+        if (tests == "woop") return woop;
+        return tests == "exact" ? exact : std::string(walk.walk) == "compressed" ? fast_compressed : fast_binary;
     }
 };
 
@@ -119,19 +141,16 @@ TEST_CASE("on warps, every walk by every way of handing out rays gives each ray 
     for (const NastyMesh& c : nasty_meshes(500)) {
         CAPTURE(std::string(c.name));
         const bool has_ties = c.extent != 1 || std::string(c.name).find("soup") != 0;
-        const Bvh bvh = build_bvh(c.triangles);
-        const CompressedBvh compressed = make_compressed_bvh(bvh);
-        const BvhView binary_view = view_of(bvh);
-        const CompressedBvhView compressed_view = view_of(compressed);
+        const HostTrees trees(c.triangles);
         for (uint32_t round = 0; round < rounds; ++round) {
             const std::vector<Ray> rays = nasty_rays(kRays, c, 7 + round);
-            const HostHits host(binary_view, compressed_view, rays);
+            const HostHits host(trees, rays);
             for (const EmulatedWalk& walk : emulated_walks()) {
-                // By fast tests what is hit at a tie depends on what was skipped before.
-                if (walk.run == nullptr || walk.counts_lanes || (!walk.exact && has_ties)) continue;
-                check_batch(walk, {rays, host.of(walk)}, 2, ++seed, [&](const EmulatedBatch& batch) {
-                    return walk.run({&binary_view, &compressed_view}, batch);
-                });
+                // By tests that leak what is hit at a tie depends on what was skipped before.
+                if (walk.run == nullptr || walk.counts_lanes || (walk.tests != std::string("exact") && has_ties))
+                    continue;
+                check_batch(walk, {rays, host.of(walk)}, 2, ++seed,
+                            [&](const EmulatedBatch& batch) { return trees.run(walk, batch); });
             }
         }
     }
@@ -139,10 +158,7 @@ TEST_CASE("on warps, every walk by every way of handing out rays gives each ray 
 
 TEST_CASE("so they do for any number of rays and of warps") {
     const NastyMesh mesh = nasty_meshes()[3];
-    const Bvh bvh = build_bvh(mesh.triangles);
-    const CompressedBvh compressed = make_compressed_bvh(bvh);
-    const BvhView binary_view = view_of(bvh);
-    const CompressedBvhView compressed_view = view_of(compressed);
+    const HostTrees trees(mesh.triangles);
     uint32_t seed = 0;
     struct Size {
         uint32_t rays, blocks;
@@ -151,14 +167,13 @@ TEST_CASE("so they do for any number of rays and of warps") {
                           {32, 1}, {33, 2}, {100, 4}, {257, 9}, {kMostRays, 3}};
     for (const auto [count, blocks] : sizes) {
         const std::vector<Ray> rays = nasty_rays(count, mesh, 3);
-        const HostHits host(binary_view, compressed_view, rays);
+        const HostHits host(trees, rays);
         for (const EmulatedWalk& walk : emulated_walks()) {
             if (walk.run == nullptr || walk.counts_lanes) continue;
             const uint32_t rounds = static_cast<uint32_t>(effort(count < 1000 ? kFew : 1, 100));
             for (uint32_t round = 0; round < rounds; ++round) {
-                check_batch(walk, {rays, host.of(walk)}, blocks, ++seed, [&](const EmulatedBatch& batch) {
-                    return walk.run({&binary_view, &compressed_view}, batch);
-                });
+                check_batch(walk, {rays, host.of(walk)}, blocks, ++seed,
+                            [&](const EmulatedBatch& batch) { return trees.run(walk, batch); });
             }
         }
     }
@@ -190,10 +205,7 @@ TEST_CASE("so they do over instances, where rays of a warp come to different mes
 }
 
 TEST_CASE("on warps, live lanes add up to the visits of the rays") {
-    const Bvh bvh = build_bvh(triangles_of(make_torus(40, 24)));
-    const CompressedBvh compressed = make_compressed_bvh(bvh);
-    const BvhView binary_view = view_of(bvh);
-    const CompressedBvhView compressed_view = view_of(compressed);
+    const HostTrees trees(triangles_of(make_torus(40, 24)));
     Random random(4);
     std::vector<Ray> rays(static_cast<std::size_t>(effort(kRays, 20'011)));
     std::vector<Hit> expected;
@@ -201,7 +213,7 @@ TEST_CASE("on warps, live lanes add up to the visits of the rays") {
     for (Ray& ray : rays) {
         ray.origin = random.point(-3, 3);
         ray.direction = random.point(-1, 1) - ray.origin;
-        trace_closest<WhileWhileWalk<WalkOptions{}>>(SingleTree<BvhView>{binary_view}, ray, AcceptAll{},
+        trace_closest<WhileWhileWalk<WalkOptions{}>>(SingleTree<BvhView>{trees.binary}, ray, AcceptAll{},
                                                      expected.emplace_back(), WalkCounter{&nodes, &triangles});
     }
     int runs = 0;
@@ -211,10 +223,7 @@ TEST_CASE("on warps, live lanes add up to the visits of the rays") {
         LaneCounts sums;
         check_batch(
             walk, {rays, expected}, 2, static_cast<uint32_t>(++runs),
-            [&](const EmulatedBatch& batch) {
-                return walk.run({&binary_view, &compressed_view}, batch);
-            },
-            &sums);
+            [&](const EmulatedBatch& batch) { return trees.run(walk, batch); }, &sums);
         if (std::string(walk.walk) == "while-while") {
             CHECK(sums.node_lanes == nodes);
             CHECK(sums.triangle_lanes == triangles);

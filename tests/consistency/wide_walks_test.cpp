@@ -211,7 +211,7 @@ TEST_CASE("wide and compressed trees of instances give the hits of testing every
 
 namespace {
 
-constexpr WalkOptions kFast = {.exact = false};
+constexpr WalkOptions kFast = {.tests = TestKind::Fast};
 
 template <class Walk>
 void check_nearly_equal(const typename Walk::Tree& tree, const std::vector<Ray>& rays,

@@ -67,7 +67,8 @@ class WhatIsRefused(LabTest):
         for line, reason in [("--structures octree --walks while-while", "octree has eight cells"),
                              ("--structures binned --walks kd", "kd-sah"), ("--structures kd-sah --walks if-if", "kd"),
                              ("--structures sbvh --walks octree", "octree"),
-                             ("--rta off --order off --tests fast", "fast tests"),
+                             ("--rta off --order off --tests fast", "fast and woop tests"),
+                             ("--structures binned --walks if-if --tests woop", "Aila and Laine"),
                              ("--structures binned --walks skip-links --order off", "no order of children")]:
             with self.subTest(line=line):
                 self.refuse_unmeasured(2, "box.obj", *INSIDE, *line.split(), "-o", "out", says=["none", reason])
@@ -230,7 +231,7 @@ class WhatIsMeasured(LabTest):
 
     def test_every_combination_has_a_name_of_its_own_refused_ones_included(self):
         report = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--walks",
-                             ",".join(self.names_of("--walks")), "--order", "both", "--tests", "both")
+                             ",".join(self.names_of("--walks")), "--order", "both", "--tests", "exact,fast,woop")
         names = [of["name"] for of in report["combinations"]]
         self.assertEqual(sorted(set(names)), sorted(names))
         reasons = {of["name"]: of["refused"] for of in report["combinations"]}

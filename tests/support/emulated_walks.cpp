@@ -95,7 +95,7 @@ namespace {
 
 namespace device = pertev_emulated;
 using device::AcceptAll, device::AcceptSome, device::LaneCounter, device::NoWalkCounter, device::SingleTree,
-    device::WalkOptions;
+    device::TestKind, device::WalkOptions;
 
 /// The host's object as the device sees it.
 template <class Device, class Host>
@@ -125,6 +125,8 @@ template <class Walk>
 const auto* pick(const auto& trees) {
     if constexpr (std::is_same_v<typename Walk::Tree, device::CompressedBvhView>) {
         return trees.compressed;
+    } else if constexpr (std::is_same_v<typename Walk::Tree, device::WoopBvhView>) {
+        return trees.woop;
     } else {
         return trees.binary;
     }
@@ -132,6 +134,7 @@ const auto* pick(const auto& trees) {
 
 enum class Way { OneAThread, Persistent, Dynamic };
 constexpr const char* kWays[] = {"one a thread", "persistent", "dynamic fetch"};
+constexpr const char* kTests[] = {"exact", "fast", "woop"}; // of TestKind
 
 template <class Walk, bool kAny, Way kWay, class Accept, class Counter, class Scene>
 std::string run_in(const Scene& scene, const EmulatedBatch& batch) {
@@ -159,8 +162,9 @@ using Rows = std::vector<EmulatedWalk>;
 template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, Way kWay>
 void add_way(const char* name, Rows& rows) {
     using W = Walk<kAny ? device::for_any_hit(kOptions) : kOptions>;
-    constexpr bool kPlain = kOptions.rta && kOptions.near_first && kOptions.exact;
-    EmulatedWalk row = {name, kWays[static_cast<int>(kWay)], kOptions.rta, kOptions.near_first, kOptions.exact, kAny};
+    constexpr bool kPlain = kOptions.rta && kOptions.near_first && kOptions.is_exact();
+    EmulatedWalk row = {name,         kWays[static_cast<int>(kWay)], kTests[static_cast<int>(kOptions.tests)],
+                        kOptions.rta, kOptions.near_first,           kAny};
     row.run = run_tree<W, kAny, kWay>;
     rows.push_back(row);
     if constexpr (kPlain && !kAny) {
@@ -187,13 +191,19 @@ void add_ways(const char* name, Rows& rows) {
     if constexpr (kDynamic) add_way<Walk, kOptions, kAny, Way::Dynamic>(name, rows);
 }
 
+template <template <WalkOptions> class Walk>
+void add_woop(const char* name, Rows& rows) {
+    add_ways<Walk, WalkOptions{true, true, TestKind::Woop}, false, true>(name, rows);
+    add_ways<Walk, WalkOptions{true, true, TestKind::Woop}, true, true>(name, rows);
+}
+
 template <template <WalkOptions> class Walk, bool kDynamic>
 void add_all(const char* name, Rows& rows) {
-    add_ways<Walk, WalkOptions{true, true, true}, false, kDynamic>(name, rows);
-    add_ways<Walk, WalkOptions{true, true, true}, true, kDynamic>(name, rows);
-    add_ways<Walk, WalkOptions{false, false, true}, false, kDynamic>(name, rows);
-    add_ways<Walk, WalkOptions{true, true, false}, false, kDynamic>(name, rows);
-    add_ways<Walk, WalkOptions{true, true, false}, true, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{}, false, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{}, true, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{false, false}, false, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{true, true, TestKind::Fast}, false, kDynamic>(name, rows);
+    add_ways<Walk, WalkOptions{true, true, TestKind::Fast}, true, kDynamic>(name, rows);
 }
 
 } // namespace
@@ -202,6 +212,8 @@ std::vector<EmulatedWalk> emulated_walks() {
     Rows rows;
     add_all<device::WhileWhileWalk, true>("while-while", rows);
     add_all<device::SpeculativeWalk, true>("speculative", rows);
+    add_woop<device::WhileWhileWalk>("while-while", rows);
+    add_woop<device::SpeculativeWalk>("speculative", rows);
     add_all<device::CompressedWalk, true>("compressed", rows);
     add_all<device::WarpPacketWalk, false>("warp packet", rows);
     return rows;

@@ -13,6 +13,7 @@ struct CompressedBvhView;
 struct Hit;
 struct LaneCounts;
 struct Ray;
+struct WoopBvhView;
 template <class Tree>
 struct SceneTrees;
 } // namespace pertev
@@ -35,6 +36,7 @@ struct EmulatedBatch {
 struct EmulatedTrees {
     const BvhView* binary;
     const CompressedBvhView* compressed;
+    const WoopBvhView* woop;
 };
 struct EmulatedScenes {
     const SceneTrees<BvhView>* binary;
@@ -44,7 +46,8 @@ struct EmulatedScenes {
 struct EmulatedWalk {
     const char* walk;
     const char* distribution;
-    bool rta, near_first, exact, any;
+    const char* tests; // "exact", "fast", "woop"
+    bool rta, near_first, any;
     bool cut_outs = false; // AcceptSome of tests/support/check_walk.h
     bool counts_lanes = false;
     // One of them; what went wrong.

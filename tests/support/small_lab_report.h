@@ -10,7 +10,7 @@
 namespace pertev::test {
 
 inline constexpr WalkOptions kNoRta = {.rta = false};
-inline constexpr WalkOptions kFastTests = {.exact = false};
+inline constexpr WalkOptions kFastTests = {.tests = TestKind::Fast};
 
 /// Of structure 0, with its own name.
 CombinationFigures figures(const Combination& c, std::vector<RunFigures> runs);

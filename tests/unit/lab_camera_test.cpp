@@ -30,7 +30,7 @@ TEST_CASE("combinations that cannot be measured are listed with the reason; wher
     LabSettings settings;
     settings.structures = {StructureKind::Binned};
     settings.walks = {WalkKind::Kd, WalkKind::SkipLinks};
-    settings.options = {{true, true, true}, {true, false, true}};
+    settings.options = {{true, true}, {true, false}};
     settings.by_name = true;
     const auto list = list_combinations(settings, {});
     REQUIRE(list.size() == 4);

@@ -37,10 +37,10 @@ TEST_CASE("names of combinations differ wherever their switches do, those refuse
     names.clear();
     for (const bool rta : {true, false}) {
         for (const bool near_first : {true, false}) {
-            for (const bool exact : {true, false}) {
+            for (const TestKind tests : all_tests()) {
                 for (const Distribution d :
                      {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
-                    CHECK(names.insert(name_of({StructureKind::Ploc, WalkKind::IfIf, {rta, near_first, exact}, d}))
+                    CHECK(names.insert(name_of({StructureKind::Ploc, WalkKind::IfIf, {rta, near_first, tests}, d}))
                               .second);
                 }
             }
@@ -71,6 +71,9 @@ TEST_CASE("a combination that makes no sense says why") {
     CHECK_FALSE(reason({StructureKind::Binned, WalkKind::Kd, on, OneAThread}, cpu).empty());
     CHECK_FALSE(reason({StructureKind::KdSah, WalkKind::IfIf, on, OneAThread}, cpu).empty());
     CHECK_FALSE(reason({StructureKind::Binned, WalkKind::Wide8Simd, on, OneAThread}, gpu).empty());
-    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::SkipLinks, {true, false, true}, OneAThread}, cpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::SkipLinks, {true, false}, OneAThread}, cpu).empty());
     CHECK_FALSE(reason({StructureKind::Binned, WalkKind::RestartTrail, on, DynamicFetch}, gpu).empty());
+    const WalkOptions woop = {.tests = TestKind::Woop};
+    CHECK(reason({StructureKind::Binned, WalkKind::Speculative, woop, DynamicFetch}, gpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::IfIf, woop, OneAThread}, cpu).empty());
 }

@@ -24,7 +24,7 @@ ThesisReport full_thesis(const std::string& device) {
             CombinationFigures c = {.combination = v.combination, .name = name_of(v.combination)};
             for (uint32_t set = 0; set < 3; ++set) {
                 c.runs.push_back({.set = set, .median_s = 0.01, .least_s = 0.01, .largest_s = 0.01});
-                if (!v.combination.options.exact) c.runs.back().different = 40 + set;
+                if (!v.combination.options.is_exact()) c.runs.back().different = 40 + set;
             }
             report.combinations.push_back(c);
         }
@@ -119,7 +119,7 @@ TEST_CASE("wrong, refused and missing variants are named with the reason") {
     CombinationFigures& refused = variant(thesis.scenes[1], "PPacket", true);
     refused.refused = "shared <meshes>", refused.runs.clear();
     std::erase_if(thesis.scenes[1].combinations,
-                  [](const CombinationFigures& c) { return c.combination.options.exact == false; });
+                  [](const CombinationFigures& c) { return !c.combination.options.is_exact(); });
     const std::string text = text_of(thesis), html = html_of(thesis);
     CHECK(has(text, "cornell-box, PSWW: WRONG: 3 of 9 rays differ\n"));
     CHECK(has(text, "sibenik <hall>, PPacket: shared <meshes>\n"));

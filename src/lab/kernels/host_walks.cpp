@@ -99,11 +99,11 @@ void add_kernels(std::vector<WalkKernel>& rows) {
 } // namespace
 
 void add_host_kernels(std::vector<WalkKernel>& rows) {
-    add_kernels<WalkOptions{true, true, true}>(rows);
-    add_kernels<WalkOptions{false, true, true}>(rows);
-    add_kernels<WalkOptions{true, false, true}>(rows);
-    add_kernels<WalkOptions{false, false, true}>(rows);
-    add_kernels<WalkOptions{true, true, false}>(rows);
+    add_kernels<WalkOptions{true, true}>(rows);
+    add_kernels<WalkOptions{false, true}>(rows);
+    add_kernels<WalkOptions{true, false}>(rows);
+    add_kernels<WalkOptions{false, false}>(rows);
+    add_kernels<WalkOptions{true, true, TestKind::Fast}>(rows);
 }
 
 } // namespace pertev

@@ -139,27 +139,33 @@ void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>
 
 template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kDynamic>
 void add_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
-    constexpr bool kLanes = kOptions.near_first && kOptions.exact;
+    constexpr bool kLanes = kOptions.near_first && kOptions.is_exact();
     add_rows<Walk<kOptions>, false, kDynamic, kLanes>(kind, kOptions, rows);
     if constexpr (kOptions.rta) add_rows<Walk<for_any_hit(kOptions)>, true, kDynamic, kLanes>(kind, kOptions, rows);
 }
 
-/// Every useful set of switches: fast tests only with everything else on.
+/// Every useful set of switches: tests that leak only with everything else on.
 template <template <WalkOptions> class Walk, bool kDynamic = false>
 void add_all_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
-    add_kernels<Walk, WalkOptions{true, true, true}, kDynamic>(kind, rows);
-    add_kernels<Walk, WalkOptions{false, true, true}, kDynamic>(kind, rows);
-    add_kernels<Walk, WalkOptions{true, false, true}, kDynamic>(kind, rows);
-    add_kernels<Walk, WalkOptions{false, false, true}, kDynamic>(kind, rows);
-    add_kernels<Walk, WalkOptions{true, true, false}, kDynamic>(kind, rows);
+    add_kernels<Walk, WalkOptions{true, true}, kDynamic>(kind, rows);
+    add_kernels<Walk, WalkOptions{false, true}, kDynamic>(kind, rows);
+    add_kernels<Walk, WalkOptions{true, false}, kDynamic>(kind, rows);
+    add_kernels<Walk, WalkOptions{false, false}, kDynamic>(kind, rows);
+    add_kernels<Walk, WalkOptions{true, true, TestKind::Fast}, kDynamic>(kind, rows);
+}
+
+/// Those with the transforms of accel/bvh/woop_bvh.h.
+template <template <WalkOptions> class Walk>
+void add_woop_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
+    add_kernels<Walk, WalkOptions{true, true, TestKind::Woop}, true>(kind, rows);
 }
 
 /// For a walk without an order of children.
 template <template <WalkOptions> class Walk>
 void add_unordered_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
-    add_kernels<Walk, WalkOptions{true, true, true}, false>(kind, rows);
-    add_kernels<Walk, WalkOptions{false, true, true}, false>(kind, rows);
-    add_kernels<Walk, WalkOptions{true, true, false}, false>(kind, rows);
+    add_kernels<Walk, WalkOptions{true, true}, false>(kind, rows);
+    add_kernels<Walk, WalkOptions{false, true}, false>(kind, rows);
+    add_kernels<Walk, WalkOptions{true, true, TestKind::Fast}, false>(kind, rows);
 }
 
 } // namespace pertev

@@ -5,6 +5,7 @@ namespace pertev {
 
 void add_while_while_kernels(std::vector<WalkKernel>& rows) {
     add_all_kernels<WhileWhileWalk, true>(WalkKind::WhileWhile, rows);
+    add_woop_kernels<WhileWhileWalk>(WalkKind::WhileWhile, rows);
 }
 
 } // namespace pertev
