@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Markdown tables for docs/lab.md out of a report.csv of `pertev lab`: structures down, walks across, Mrays/s of one set.
 
-lab_table.py REPORT.csv SET [--filter walk=... --filter rta=1 ...] [--column nodes_per_ray]
+lab_table.py REPORT.csv SET [--filter walk=... --filter rta=on ...] [--column nodes_per_ray]
 """
 
 import argparse
@@ -20,10 +20,10 @@ def main():
     parser.add_argument("report")
     parser.add_argument("set")
     parser.add_argument("--column", default="rays_per_second")
-    parser.add_argument("--filter", action="append", default=[], help="NAME=VALUE of a column; rta=1 near_first=1 tests=exact "
+    parser.add_argument("--filter", action="append", default=[], help="NAME=VALUE of a column; rta=on near_first=1 tests=exact "
                         "distribution=one-a-thread unless given")
     arguments = parser.parse_args()
-    wanted = {"rta": "1", "near_first": "1", "tests": "exact", "distribution": "one-a-thread", "set": arguments.set}
+    wanted = {"rta": "on", "near_first": "1", "tests": "exact", "distribution": "one-a-thread", "set": arguments.set}
     wanted.update(f.split("=", 1) for f in arguments.filter)
     cells, walks = {}, []
     with open(arguments.report, newline="", encoding="utf-8") as file:

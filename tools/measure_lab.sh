@@ -35,10 +35,10 @@ for part in "${parts[@]}"; do
     sibenik) lab sibenik "$scenes/sibenik/sibenik.obj" "${record[@]}" --rta on ;;
     dragon) lab dragon "$scenes/stanford/dragon_res2.ply" "${record[@]}" --rta on ;;
     forest) lab forest forest "${record[@]}" --rta on ;;
-    switches) lab switches sponza "${record[@]}" --structures sbvh,kd-sah,octree --rta both --order both --tests exact,fast ;;
+    switches) lab switches sponza "${record[@]}" --structures sbvh,kd-sah,octree --rta both,nodes --order both --tests exact,fast ;;
     peers)
         for scene in sponza bunny forest; do
-            lab "peers-$scene" $scene "${record[@]}" --structures binned,sbvh --rta on --order both --tests exact,fast,woop \
+            lab "peers-$scene" $scene "${record[@]}" --structures binned,sbvh --rta on,nodes --order both --tests exact,fast,woop \
                 --walks while-while,speculative,wide8,compressed --runs 25
         done
         ;;

@@ -29,7 +29,8 @@ namespace {
 struct LabFlags {
     SceneOptions scene;
     std::vector<std::string> structures, walks, rays = {"primary", "shadow", "diffuse"}, tests = {"exact"};
-    std::string rta = "both", order = "on", persistent = "both", size, depths;
+    std::vector<std::string> rta = {"both"};
+    std::string order = "on", persistent = "both", size, depths;
     std::string output;
     uint32_t runs = 20, count = 0;
     bool no_heat_maps = false, thesis = false;
@@ -40,6 +41,19 @@ struct LabFlags {
 std::vector<bool> on_off(const std::string& value) {
     if (value == "both") return {true, false};
     return {value == "on"};
+}
+
+/// Of on, off and nodes, each once.
+std::vector<std::string> rta_values(const std::vector<std::string>& flags) {
+    std::vector<std::string> values;
+    const auto add = [&](const std::string& value) {
+        if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+    };
+    for (const std::string& flag : flags) {
+        if (flag != "both") add(flag);
+        if (flag == "both") add("on"), add("off");
+    }
+    return values;
 }
 
 /// "1-8" or "8": first and last.
@@ -73,8 +87,10 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     // A brute-force walk over all of a frame's rays takes hours: only when asked for.
     if (flags.walks.empty()) std::erase(settings.walks, WalkKind::BruteForce);
     for (const TestKind tests : chosen(flags.tests, all_tests(), tests_named)) {
-        for (const bool rta : on_off(flags.rta)) {
-            for (const bool near_first : on_off(flags.order)) settings.options.push_back({rta, near_first, tests});
+        for (const std::string& rta : rta_values(flags.rta)) {
+            for (const bool near_first : on_off(flags.order)) {
+                settings.options.push_back({rta != "off", near_first, tests, rta != "nodes"});
+            }
         }
     }
     settings.distributions.clear();
@@ -177,7 +193,14 @@ void add_lab_command(CLI::App& app, int& status) {
         ->type_name("NAME,...")
         ->delimiter(',')
         ->check(one_of(names_of(all_walks())));
-    add_switch(verb, "--rta", flags->rta, "redundant traversal avoidance: skip what lies beyond the\nnearest hit");
+    verb.add_option(
+            "--rta", flags->rta,
+            "redundant traversal avoidance: skip what lies beyond the\nnearest hit: on, off, both, or nodes (at "
+            "pops not, compressed\nalone)")
+        ->type_name("WHICH,...")
+        ->delimiter(',')
+        ->check(one_of({"on", "off", "both", "nodes"}))
+        ->capture_default_str();
     add_switch(verb, "--order", flags->order, "nearer children first");
     verb.add_option("--tests", flags->tests,
                     "exact, fast (leaks at edges, as most tracers do), woop\n(Woop's unit triangles, as Aila and Laine "

@@ -32,8 +32,8 @@ std::set<std::string> all_heat_map_files() {
             for (const Distribution distribution :
                  {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
                 for (const TestKind tests : all_tests()) {
-                    for (int bits = 0; bits < 4; ++bits) {
-                        const WalkOptions options = {(bits & 1) != 0, (bits & 2) != 0, tests};
+                    for (int bits = 0; bits < 8; ++bits) { // rta off, at nodes alone, on
+                        const WalkOptions options = {(bits & 3) != 0, (bits & 4) != 0, tests, (bits & 3) != 1};
                         const auto names = heat_map_files(name_of(Combination{structure, walk, options, distribution}));
                         files.insert(names.begin(), names.end());
                     }

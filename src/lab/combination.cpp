@@ -128,9 +128,13 @@ const char* name_of(TestKind kind) {
     return "";
 }
 
+const char* name_of_rta(const WalkOptions& options) {
+    return !options.rta ? "off" : options.rta_at_pops ? "on" : "nodes";
+}
+
 std::string name_of(const Combination& c) {
     std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.walk));
-    name += c.options.rta ? " rta" : " no-rta";
+    name += !c.options.rta ? " no-rta" : c.options.rta_at_pops ? " rta" : " rta-at-nodes";
     // A walk without an order is named without; switched off there it is refused, and that has a name of its own.
     if (has_order(c.walk) || !c.options.near_first) name += c.options.near_first ? " near" : " unordered";
     if (!c.options.is_exact()) name += fmt::format(" {}-tests", name_of(c.options.tests));
@@ -159,6 +163,9 @@ std::optional<std::string> why_not(const Combination& c, const LabMachine& machi
     if (auto reason = why_not(c.structure, c.walk)) return reason;
     if (!c.options.near_first && !has_order(c.walk)) return "there is no order of children to switch off";
     if (!c.options.rta && c.walk == WalkKind::BruteForce) return "without nodes there is no redundant traversal";
+    if (!c.options.rta_at_pops && c.walk != WalkKind::Compressed) {
+        return "RTA at nodes alone is for the compressed walk, where it is faster than at pops too";
+    }
     if (c.options.tests == TestKind::Woop && c.walk != WalkKind::WhileWhile && c.walk != WalkKind::Speculative) {
         return "Woop's triangle test is for the walks of Aila and Laine: while-while and speculative";
     }

@@ -71,6 +71,8 @@ const char* name_of(StructureKind kind);
 const char* name_of(WalkKind kind);
 const char* name_of(Distribution distribution);
 const char* name_of(TestKind kind);
+/// "on", "nodes" (at nodes alone) or "off".
+const char* name_of_rta(const WalkOptions& options);
 /// "sbvh while-while rta near persistent"
 std::string name_of(const Combination& combination);
 

@@ -65,6 +65,13 @@ std::vector<Ratio> ratios() {
     return {{"RTA on against off", "Speed with redundant traversal avoidance over speed without; above 1 it pays.",
              [](Combination c) {
                  const bool has = std::exchange(c.options.rta, false);
+                 c.options.rta_at_pops = true;
+                 return has ? std::optional(c) : std::nullopt;
+             },
+             false},
+            {"RTA at pops too against at nodes alone", "Speed with over speed without; above 1 it pays.",
+             [](Combination c) {
+                 const bool has = c.options.rta && std::exchange(c.options.rta_at_pops, false);
                  return has ? std::optional(c) : std::nullopt;
              },
              false},

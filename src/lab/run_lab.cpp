@@ -294,11 +294,15 @@ private:
     /// An any-hit search has no nearest hit, so with RTA and without it is one walk: the figures of the one measured.
     const RunFigures* same_run(const CombinationFigures& c, uint32_t set) const {
         if (!sets_[set].figures.any_hit) return nullptr;
-        Combination other = c.combination;
-        other.options.rta = !other.options.rta;
-        const std::string name = name_of(other);
-        const auto at = std::ranges::find_if(report_.combinations, [&](const auto& o) { return o.name == name; });
-        return at == report_.combinations.end() ? nullptr : find_run(*at, set);
+        for (const auto& [rta, at_pops] : {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
+            Combination other = c.combination;
+            other.options.rta = rta, other.options.rta_at_pops = at_pops;
+            const std::string name = name_of(other);
+            const auto at = std::ranges::find_if(report_.combinations, [&](const auto& o) { return o.name == name; });
+            if (at == report_.combinations.end() || &*at == &c) continue;
+            if (const RunFigures* run = find_run(*at, set)) return run;
+        }
+        return nullptr;
     }
 
     void take_limits(CombinationFigures& c, const WalkKernel& kernel) const {

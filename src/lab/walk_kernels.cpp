@@ -47,7 +47,8 @@ const WalkKernel* find_kernel(const Combination& c, bool any_hit, bool on_cuda) 
     static const std::vector<WalkKernel> rows = all_kernels();
     const auto at = std::ranges::find_if(rows, [&](const WalkKernel& row) {
         // An any-hit search has no nearest hit to skip beyond: RTA on or off, it is the same walk.
-        const bool rta = any_hit || row.options.rta == c.options.rta;
+        const bool rta =
+            any_hit || (row.options.rta == c.options.rta && row.options.rta_at_pops == c.options.rta_at_pops);
         return (on_cuda ? row.on_cuda : row.on_cpu) && row.walk == c.walk && row.distribution == c.distribution &&
                row.any_hit == any_hit && rta && row.options.near_first == c.options.near_first &&
                row.options.tests == c.options.tests;

@@ -66,7 +66,7 @@ Cells combination_cells(const CombinationFigures& c) {
     return {c.name,
             name_of(c.combination.structure),
             name_of(c.combination.walk),
-            number(o.rta),
+            name_of_rta(o),
             number(o.near_first),
             name_of(o.tests),
             name_of(c.combination.distribution),
@@ -169,9 +169,9 @@ std::string json_of(const LabReport& report, const CombinationFigures& c) {
     }
     const StructureFigures* structure = structure_of(report, c);
     return fmt::format(
-        R"({{"name":{},"structure":{},"structure_kind":"{}","walk":"{}","rta":{},"near_first":{},"tests":"{}","distribution":"{}","refused":{},"wrong":{},"registers":{},"local_bytes":{},"occupancy":{},"frame_seconds":[{}],"runs":[{}]}})",
+        R"({{"name":{},"structure":{},"structure_kind":"{}","walk":"{}","rta":"{}","near_first":{},"tests":"{}","distribution":"{}","refused":{},"wrong":{},"registers":{},"local_bytes":{},"occupancy":{},"frame_seconds":[{}],"runs":[{}]}})",
         json_string(c.name), structure != nullptr ? json_string(structure->name) : "null",
-        name_of(c.combination.structure), name_of(c.combination.walk), c.combination.options.rta,
+        name_of(c.combination.structure), name_of(c.combination.walk), name_of_rta(c.combination.options),
         c.combination.options.near_first, name_of(c.combination.options.tests), name_of(c.combination.distribution),
         c.refused.empty() ? "null" : json_string(c.refused), c.wrong, json_optional(c.registers),
         json_optional(c.local_bytes), json_optional(c.occupancy), frames, runs);

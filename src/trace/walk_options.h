@@ -20,6 +20,7 @@ struct WalkOptions {
                      // what is entered beyond the ray's own t_max
     bool near_first = true; // of several children, the one entered first; off: the builder's order
     TestKind tests = TestKind::Exact;
+    bool rta_at_pops = true; // off: RTA at nodes alone; the compressed walk has that, the others do not
 
     constexpr bool is_exact() const { return tests == TestKind::Exact; }
 };
@@ -27,6 +28,7 @@ struct WalkOptions {
 /// What an any-hit search is compiled with: it has no nearest hit to skip beyond, so its stack need hold no entries.
 constexpr WalkOptions for_any_hit(WalkOptions options) {
     options.rta = false;
+    options.rta_at_pops = true;
     return options;
 }
 

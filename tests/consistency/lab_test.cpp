@@ -35,6 +35,7 @@ std::vector<WalkOptions> exact_options() {
     for (const bool rta : {true, false}) {
         for (const bool near_first : {true, false}) options.push_back({rta, near_first});
     }
+    options.push_back({.rta_at_pops = false});
     return options;
 }
 

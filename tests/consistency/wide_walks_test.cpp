@@ -22,7 +22,7 @@ using namespace pertev::test;
 namespace {
 
 constexpr WalkOptions kBoth = {}, kNoRta = {.rta = false}, kBuildersOrder = {.near_first = false},
-                      kNeither = {.rta = false, .near_first = false};
+                      kNeither = {.rta = false, .near_first = false}, kAtNodes = {.rta_at_pops = false};
 
 /// Calls check.operator()<Walk>() for a walk with every choice that must not change hits.
 template <template <WalkOptions> class Walk>
@@ -207,6 +207,27 @@ TEST_CASE("wide and compressed trees of instances give the hits of testing every
     check_instances<Wide8Walk>(top, trees, &Trees::wide8, rays, expected);
     check_instances<Wide8SimdWalk>(top, trees, &Trees::wide8, rays, expected);
     check_instances<CompressedWalk>(top, trees, &Trees::compressed, rays, expected);
+}
+
+TEST_CASE("RTA at pops saves the compressed walk nodes, beyond what it saves at nodes, and changes no hit") {
+    const std::vector<BvhTriangle> soup = make_soup(20'000, 0);
+    const Trees trees(build_bvh(soup));
+    const std::vector<Ray> rays = nasty_rays(2000, {"soup", soup, {}, 1}, 31);
+    std::vector<Hit> expected;
+    uint64_t at_pops = 0, at_nodes = 0, without = 0, triangles = 0, triangles_at_nodes = 0, unused = 0;
+    for (const Ray& ray : rays) {
+        const SingleTree<CompressedBvhView> scene = {view_of(trees.compressed)};
+        Hit hit;
+        trace_closest<CompressedWalk<kNoRta>>(scene, ray, AcceptAll{}, hit, WalkCounter{&without, &unused});
+        expected.push_back(hit);
+        trace_closest<CompressedWalk<kBoth>>(scene, ray, AcceptAll{}, hit, WalkCounter{&at_pops, &triangles});
+        trace_closest<CompressedWalk<kAtNodes>>(scene, ray, AcceptAll{}, hit,
+                                                WalkCounter{&at_nodes, &triangles_at_nodes});
+    }
+    CHECK(at_pops < at_nodes);
+    CHECK(at_nodes < without);
+    CHECK(triangles == triangles_at_nodes);
+    check_walk<CompressedWalk<kAtNodes>>(scene_of(view_of(trees.compressed)), rays, expected, AcceptAll{});
 }
 
 namespace {

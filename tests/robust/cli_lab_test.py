@@ -69,6 +69,7 @@ class WhatIsRefused(LabTest):
                              ("--structures sbvh --walks octree", "octree"),
                              ("--rta off --order off --tests fast", "fast and woop tests"),
                              ("--structures binned --walks if-if --tests woop", "Aila and Laine"),
+                             ("--structures binned --walks if-if --rta nodes", "compressed walk"),
                              ("--structures binned --walks skip-links --order off", "no order of children")]:
             with self.subTest(line=line):
                 self.refuse_unmeasured(2, "box.obj", *INSIDE, *line.split(), "-o", "out", says=["none", reason])

@@ -162,7 +162,7 @@ using Rows = std::vector<EmulatedWalk>;
 template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, Way kWay>
 void add_way(const char* name, Rows& rows) {
     using W = Walk<kAny ? device::for_any_hit(kOptions) : kOptions>;
-    constexpr bool kPlain = kOptions.rta && kOptions.near_first && kOptions.is_exact();
+    constexpr bool kPlain = kOptions.rta && kOptions.near_first && kOptions.is_exact() && kOptions.rta_at_pops;
     EmulatedWalk row = {name,         kWays[static_cast<int>(kWay)], kTests[static_cast<int>(kOptions.tests)],
                         kOptions.rta, kOptions.near_first,           kAny};
     row.run = run_tree<W, kAny, kWay>;
@@ -215,6 +215,7 @@ std::vector<EmulatedWalk> emulated_walks() {
     add_woop<device::WhileWhileWalk>("while-while", rows);
     add_woop<device::SpeculativeWalk>("speculative", rows);
     add_all<device::CompressedWalk, true>("compressed", rows);
+    add_ways<device::CompressedWalk, WalkOptions{.rta_at_pops = false}, false, true>("compressed", rows);
     add_all<device::WarpPacketWalk, false>("warp packet", rows);
     return rows;
 }

@@ -35,6 +35,8 @@ TEST_CASE("names of combinations differ wherever their switches do, those refuse
     CHECK(name_of({StructureKind::Binned, WalkKind::SkipLinks, {.near_first = false}}) ==
           "binned skip-links rta unordered");
     names.clear();
+    CHECK(name_of({StructureKind::Binned, WalkKind::Compressed, {.rta_at_pops = false}}) ==
+          "binned compressed rta-at-nodes near");
     for (const bool rta : {true, false}) {
         for (const bool near_first : {true, false}) {
             for (const TestKind tests : all_tests()) {
@@ -76,4 +78,7 @@ TEST_CASE("a combination that makes no sense says why") {
     const WalkOptions woop = {.tests = TestKind::Woop};
     CHECK(reason({StructureKind::Binned, WalkKind::Speculative, woop, DynamicFetch}, gpu).empty());
     CHECK_FALSE(reason({StructureKind::Binned, WalkKind::IfIf, woop, OneAThread}, cpu).empty());
+    const WalkOptions at_nodes = {.rta_at_pops = false};
+    CHECK(reason({StructureKind::Binned, WalkKind::Compressed, at_nodes, Persistent}, gpu).empty());
+    CHECK_FALSE(reason({StructureKind::Binned, WalkKind::WhileWhile, at_nodes, OneAThread}, cpu).empty());
 }

@@ -5,6 +5,9 @@ namespace pertev {
 
 void add_compressed_kernels(std::vector<WalkKernel>& rows) {
     add_all_kernels<CompressedWalk, true>(WalkKind::Compressed, rows);
+    add_kernels<CompressedWalk, WalkOptions{.rta_at_pops = false}, true>(WalkKind::Compressed, rows);
+    add_kernels<CompressedWalk, WalkOptions{.tests = TestKind::Fast, .rta_at_pops = false}, true>(WalkKind::Compressed,
+                                                                                                  rows);
 }
 
 } // namespace pertev

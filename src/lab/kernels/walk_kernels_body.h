@@ -141,7 +141,9 @@ template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kDynamic
 void add_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     constexpr bool kLanes = kOptions.near_first && kOptions.is_exact();
     add_rows<Walk<kOptions>, false, kDynamic, kLanes>(kind, kOptions, rows);
-    if constexpr (kOptions.rta) add_rows<Walk<for_any_hit(kOptions)>, true, kDynamic, kLanes>(kind, kOptions, rows);
+    if constexpr (kOptions.rta && kOptions.rta_at_pops) {
+        add_rows<Walk<for_any_hit(kOptions)>, true, kDynamic, kLanes>(kind, kOptions, rows);
+    }
 }
 
 /// Every useful set of switches: tests that leak only with everything else on.
