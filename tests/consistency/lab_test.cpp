@@ -195,8 +195,10 @@ TEST_CASE("tests that leak miss a few rays, which are counted") {
         REQUIRE(c.runs.size() == 3);
         CHECK((c.runs[0].different == 0) == c.combination.options.is_exact());
         CHECK(c.runs[0].different < report.sets[0].rays / 2);
-        CHECK(c.runs[0].nodes > 1);
-        CHECK(c.runs[0].triangles > 0);
+        if (c.combination.distribution == Distribution::OneAThread) { // the others are not counted
+            CHECK(c.runs[0].nodes > 1);
+            CHECK(c.runs[0].triangles > 0);
+        }
         CHECK(c.runs[0].median_s > 0);
         bytes[c.combination.options.tests] = report.structures[c.structure.value()].bytes;
     }
