@@ -1,6 +1,8 @@
 #include "apps/cli/lab_scene.h"
 
 #include <filesystem>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,11 +21,10 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
     }
     std::error_code no_such_name; // of a name too long for a file, too
     if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
-        std::string known;
-        for (const std::string_view other : builtin_scene_names()) known += std::string(other) + ", ";
-        for (const RecordScene& record : record_scenes()) known += std::string(record.name) + ", ";
+        std::vector<std::string_view> known = builtin_scene_names();
+        for (const RecordScene& record : record_scenes()) known.emplace_back(record.name);
         throw Error(ErrorCode::BadInput, fmt::format("{}: neither a file nor a scene of this name; there are {}", name,
-                                                     known.substr(0, known.size() - 2)));
+                                                     fmt::join(known, ", ")));
     }
     return read_any_scene(name, options.allowed_paths, messages);
 }

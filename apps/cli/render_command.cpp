@@ -10,6 +10,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/render_flags.h"
 #include "apps/cli/write_result.h"
+#include "base/byte_units.h"
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
@@ -50,13 +51,12 @@ int render(const RenderFlags& flags) {
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);
     reporter.say_messages();
-    reporter.say(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-                             "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
-                             flags.scene.scene, counted(prepared.triangles, "triangle"),
-                             counted(scene.instances.size(), "instance"),
-                             counted(prepared.lights.choice.count, "light"), load_s, prepared.build_seconds,
-                             settings.width, settings.height, settings.samples, queue->device_name(),
-                             static_cast<double>(predicted_bytes(prepared, settings, queue->is_cuda())) / 1048576.0));
+    reporter.say(fmt::format(
+        "{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
+        "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
+        flags.scene.scene, counted(prepared.triangles, "triangle"), counted(scene.instances.size(), "instance"),
+        counted(prepared.lights.choice.count, "light"), load_s, prepared.build_seconds, settings.width, settings.height,
+        settings.samples, queue->device_name(), mebibytes(predicted_bytes(prepared, settings, queue->is_cuda()))));
 
     listen_for_interrupt();
     RenderResult result = render_picture(*queue, prepared, camera, settings, [&](const RenderProgress& now) {

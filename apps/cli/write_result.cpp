@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/parse_values.h"
+#include "base/byte_units.h"
 #include "base/message_text.h"
 #include "base/version.h"
 #include "image/auto_exposure.h"
@@ -17,12 +18,10 @@
 namespace pertev {
 namespace {
 
-constexpr double kMebibyte = 1048576.0;
-
-double peak_memory_bytes() {
+uint64_t peak_memory_bytes() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024.0;
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -140,16 +139,16 @@ void report_result(const RenderRecord& record, const RenderResult& result, const
     const double samples = static_cast<double>(result.picture.width) * result.picture.height * result.samples;
     const double samples_per_second = samples / result.render_seconds;
     const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
-    const double device_bytes = static_cast<double>(result.device_peak_bytes), host_bytes = peak_memory_bytes();
-    reporter.say(
-        fmt::format("{} spp in {:.2f} s ({:.2f} s in all), {:.2f} Msamples/s, {:.1f} Mrays/s, peak {:.0f} MiB{}, "
-                    "{}, picture {}",
-                    result.samples, result.render_seconds, total_seconds, samples_per_second * 1e-6,
-                    rays_per_second * 1e-6, host_bytes / kMebibyte,
-                    record.is_cuda ? fmt::format(" and {:.0f} MiB on the GPU", device_bytes / kMebibyte) : "",
-                    counted(result.invalid_samples, "invalid sample"), hash));
+    const uint64_t host_bytes = peak_memory_bytes();
+    reporter.say(fmt::format(
+        "{} spp in {:.2f} s ({:.2f} s in all), {:.2f} Msamples/s, {:.1f} Mrays/s, peak {:.0f} MiB{}, "
+        "{}, picture {}",
+        result.samples, result.render_seconds, total_seconds, samples_per_second * 1e-6, rays_per_second * 1e-6,
+        mebibytes(host_bytes),
+        record.is_cuda ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
+        counted(result.invalid_samples, "invalid sample"), hash));
     reporter.event(fmt::format(
-        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{:.0f},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{}}})",
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{}}})",
         result.samples, result.render_seconds, total_seconds, json_number(samples_per_second),
         json_number(rays_per_second), host_bytes, result.device_peak_bytes, result.invalid_samples, hash,
         json_string(record.device)));

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/byte_units.h"
 #include "lab/svg_plot.h"
 #include "lab/text_table.h"
 
@@ -225,10 +226,10 @@ std::string html_structures(const LabReport& report) {
                                 html_text(s.failed));
             continue;
         }
-        const double bytes = static_cast<double>(s.bytes);
         rows += "<tr>" + cell(s.name) + fixed_cell(s.build_s, 3) + cell(fmt::format("{}", s.nodes)) +
-                cell(fmt::format("{}", s.triangles)) + cell(bytes / 1048576.0, "{:.2f}") +
-                cell(bytes / static_cast<double>(std::max<uint64_t>(report.triangles, 1)), "{:.1f}") +
+                cell(fmt::format("{}", s.triangles)) + cell(mebibytes(s.bytes), "{:.2f}") +
+                cell(static_cast<double>(s.bytes) / static_cast<double>(std::max<uint64_t>(report.triangles, 1)),
+                     "{:.1f}") +
                 cell(s.sah_cost, "{:.2f}") + cell(s.depth ? fmt::format("{}", *s.depth) : "") + "</tr>\n";
     }
     return rows.empty() ? "" : table(head, rows);

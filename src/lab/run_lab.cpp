@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/byte_units.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
@@ -34,8 +35,6 @@ bool is_binary(StructureKind kind) { return builder_of(kind).has_value(); }
 uint64_t host_memory_bytes() {
     return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
 }
-
-double gibibytes(uint64_t bytes) { return static_cast<double>(bytes) / 0x1p30; }
 
 class Lab {
 public:

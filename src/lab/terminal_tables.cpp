@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/byte_units.h"
 #include "lab/text_table.h"
 #include "lab/write_tables.h"
 
@@ -31,8 +32,7 @@ std::string structures_of(const LabReport& report) {
             continue;
         }
         rows.push_back({s.name, fixed_text(s.build_s, 3), fmt::format("{}", s.nodes), fmt::format("{}", s.triangles),
-                        fmt::format("{:.1f}", static_cast<double>(s.bytes) / 1048576.0),
-                        s.sah_cost ? fmt::format("{:.2f}", *s.sah_cost) : "",
+                        fmt::format("{:.1f}", mebibytes(s.bytes)), s.sah_cost ? fmt::format("{:.2f}", *s.sah_cost) : "",
                         s.depth ? fmt::format("{}", *s.depth) : ""});
     }
     return (rows.size() > 1 ? align_columns(rows) : "") + failed;

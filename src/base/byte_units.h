@@ -1,0 +1,12 @@
+#pragma once
+
+// Bytes as people read them.
+
+#include <cstdint>
+
+namespace pertev {
+
+inline double mebibytes(uint64_t bytes) { return static_cast<double>(bytes) / 0x1p20; }
+inline double gibibytes(uint64_t bytes) { return static_cast<double>(bytes) / 0x1p30; }
+
+} // namespace pertev
