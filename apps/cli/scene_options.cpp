@@ -79,12 +79,13 @@ void flatten(const SceneOptions& options, const Scene& scene, Camera& camera) {
     if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
 }
 
-void warn_of_useless_flags(const SceneOptions& options, const Camera& camera, Messages& messages) {
+/// `flattened`: the camera's angle of view has become a height.
+void warn_of_useless_flags(const SceneOptions& options, const Camera& camera, bool flattened, Messages& messages) {
     const bool is_perspective = camera.projection == Projection::Perspective;
     if (options.view_height_m > 0 && is_perspective) {
         messages.warn("--view-height: the camera is a perspective one; --projection orthographic makes use of it");
     }
-    if (options.fov_deg > 0 && !is_perspective && (options.projection.empty() || options.view_height_m > 0)) {
+    if (options.fov_deg > 0 && !is_perspective && (!flattened || options.view_height_m > 0)) {
         messages.warn("--fov: the camera is an orthographic one, whose view has a height; --view-height sets that");
     }
     if (options.focus_m > 0 && camera.aperture_radius == 0) {
@@ -220,11 +221,10 @@ Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspe
     if (options.aperture_m >= 0) camera.aperture_radius = options.aperture_m;
     if (options.focus_m > 0) camera.focus_distance = options.focus_m;
     if (options.projection == "perspective") camera.projection = Projection::Perspective;
-    if (options.projection == "orthographic" && camera.projection == Projection::Perspective) {
-        flatten(options, scene, camera);
-    }
+    const bool flattened = options.projection == "orthographic" && camera.projection == Projection::Perspective;
+    if (flattened) flatten(options, scene, camera);
     if (options.view_height_m > 0) camera.ortho_height = options.view_height_m;
-    warn_of_useless_flags(options, camera, messages);
+    warn_of_useless_flags(options, camera, flattened, messages);
     return camera;
 }
 

@@ -63,6 +63,7 @@ class WhatIsRefused(CliTest):
                 ("cornell-box", ["--view-height", "1", "--projection", "orthographic"], []),
                 ("cornell-box", ["--fov", "30", "--projection", "orthographic"], []),
                 ("ortho.gltf", ["--view-height", "1"], []), ("ortho.gltf", ["--fov", "30"], ["--fov"]),
+                ("ortho.gltf", ["--fov", "30", "--projection", "orthographic"], ["--fov"]),
                 ("cornell-box", ["--focus", "1"], ["--focus"]),
                 ("cornell-box", ["--focus", "1", "--aperture", "0.01"], [])]:
             with self.subTest(scene=scene, flags=flags):
