@@ -6,8 +6,9 @@ folder of its own (with ccache it takes minutes). Each mutation replaces text th
 patch that no longer applies is found; then the tests named for it run, and each of them must fail. Without a mutation
 all of them must pass, and that is tried first.
 
-`tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all. Prints a table,
-and exits 1 when a mutation went unnoticed by a test named for it, did not apply or did not build.
+`tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all, `--check` tells in
+a moment whether all of them still apply. Prints a table, and exits 1 when a mutation went unnoticed by a test named for
+it, did not apply or did not build.
 """
 
 import argparse
@@ -64,14 +65,12 @@ MUTATIONS = [
                    "target_compile_options(pertev_integrators PRIVATE -ffp-contract=fast)")],
              ["sources/flags"]),
     Mutation("the first hit of several at one t wins",
-             [edit("src/trace/trace_closest.h", "if (hit.t > best.t) return false;",
-                   "if (hit.t >= best.t) return false;")],
+             [edit("src/trace/trace_closest.h", "((hit.t == best.t) & lower)", "(lower & false)")],
              ["consistency/walks"]),
-    Mutation("boxes are not grown", [edit("src/trace/ray_boxes.h", "const float e = 0x1p-20f * (",
-                                          "const float e = 0.0f * (")],
+    Mutation("boxes are not grown", [edit("src/trace/ray_boxes.h", "return 0x1p-20f * (", "return 0.0f * (")],
              ["consistency/walks", "robust/watertight"]),
     Mutation("a node at equal t is skipped",  # where boxes are not grown, else its entry is less than the hit's t
-             [edit("src/trace/ray_boxes.h", "const float e = 0x1p-20f * (", "const float e = 0.0f * ("),
+             [edit("src/trace/ray_boxes.h", "return 0x1p-20f * (", "return 0.0f * ("),
               edit("src/trace/ray_boxes.h", "return entry <= exit;", "return entry < exit;"),
               edit("src/trace/walk_wide.h", "_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)",
                    "_mm256_cmp_ps(entry, exit, _CMP_LT_OQ)")],
@@ -81,8 +80,15 @@ MUTATIONS = [
                                                "    walk_scene<Walk>(scene, longer, visitor, counter);")],
              ["consistency/walks"]),
     Mutation("quantised boxes are not grown",
-             [edit("src/trace/compressed_boxes.h", "fma(-(0x1p15f + 0x1p-8f), r.step, fma(node.origin[axis], inv, lo))",
-                   "fma(-(0x1p15f - 0x1p-1f), r.step, fma(node.origin[axis], inv, lo))")],
+             [edit("src/trace/compressed_boxes.h", "fma(0x1p-8f, s, grow)", "fma(-0.5f, s, grow)")],
+             ["consistency/wide_walks"]),
+    Mutation("the entry of a compressed walk's group is rounded up",
+             [edit("src/trace/compressed_boxes.h", "static_cast<uint32_t>(max(min(b, c), 0)) >> 16;",
+                   "(static_cast<uint32_t>(max(min(b, c), 0)) >> 16) + 1;")],
+             ["consistency/wide_walks"]),
+    Mutation("a group's entry leaves out a slot that waits",
+             [edit("src/trace/compressed_boxes.h", "const int c = min(min(a, at(6)), at(7));",
+                   "const int c = min(a, at(6));")],
              ["consistency/wide_walks"]),
     Mutation("the restart trail forgets which child it took",
              [edit("src/trace/restart_trail_walk.h", "second = (trail.taken & bit) != 0;", "second = enters1;")],
@@ -108,7 +114,8 @@ MUTATIONS = [
                    "if (pool_is_empty && index == kNoRay) return;")],
              ["consistency/emulated_warps"]),
     Mutation("the laboratory takes every hit for right",
-             [edit("src/lab/traced_set.cpp", "here += differs(hits[i], wanted[i], exact) ? 1 : 0;", "here += 0;")],
+             [edit("src/lab/traced_set.cpp", "here += differs(hits[i], wanted[i], exact) ? 1 : 0;",
+                   "here += differs(hits[i], wanted[i], exact) ? 0 : 0;")],
              ["consistency/lab"]),
     Mutation("an instance's ray is renormalised",
              [edit("src/trace/scene_bvh.h", "transform_vector(local_from_world, ray.direction),",
@@ -170,15 +177,35 @@ def wanted(name, tests):
     return not name.endswith("_test.cpp") or name[len("tests/"):-len("_test.cpp")] in tests
 
 
-def write_tree(edits, tests):
-    """Brings the copy to the tree's content with `edits` made; files that are right already keep their times. Returns
-    what does not apply."""
-    contents = {name: (ROOT / name).read_bytes() for name in tracked_files() if wanted(name, tests)}
+def apply(edits, contents):
+    """Makes the edits in `contents`, bytes by name. Returns what does not apply."""
     for file, old, new in edits:
         count = contents.get(file, b"").count(old.encode())
         if count != 1:
             return f"{file} has {count} times: {old}"
         contents[file] = contents[file].replace(old.encode(), new.encode())
+    return None
+
+
+def check_that_all_apply():
+    """Exits 1 when one does not."""
+    good = True
+    for mutation in MUTATIONS:
+        files = {file for file, _, _ in mutation.edits if (ROOT / file).is_file()}
+        problem = apply(mutation.edits, {file: (ROOT / file).read_bytes() for file in files})
+        if problem:
+            good = False
+            print(f"{mutation.name}: does not apply: {problem}")
+    sys.exit(0 if good else 1)
+
+
+def write_tree(edits, tests):
+    """Brings the copy to the tree's content with `edits` made; files that are right already keep their times. Returns
+    what does not apply."""
+    contents = {name: (ROOT / name).read_bytes() for name in tracked_files() if wanted(name, tests)}
+    problem = apply(edits, contents)
+    if problem:
+        return problem
     for path in list(TREE.rglob("*")):
         if path.is_file() and BUILD not in path.parents and str(path.relative_to(TREE)) not in contents:
             path.unlink()
@@ -238,8 +265,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="mutations to try; all where none is named")
     parser.add_argument("--list", action="store_true", help="name the mutations and the tests that must notice")
+    parser.add_argument("--check", action="store_true", help="only see whether all mutations still apply")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers at once")
     arguments = parser.parse_args()
+    if arguments.check:
+        check_that_all_apply()
     unknown = set(arguments.names) - {mutation.name for mutation in MUTATIONS}
     if unknown:
         sys.exit(f"no mutation is named {', '.join(map(repr, sorted(unknown)))}; --list names them")

@@ -223,7 +223,9 @@ private:
         for (CombinationFigures* c : combinations_of(structure)) of_layout[layout_of(c->combination)].push_back(c);
         if (of_layout.empty()) return;
         std::optional<BinaryTrees> binary;
-        for (const auto& [layout, combinations] : of_layout) {
+        for (const auto& entry : of_layout) {
+            const TreeLayout layout = entry.first;
+            const std::vector<CombinationFigures*>& combinations = entry.second;
             const uint32_t at = static_cast<uint32_t>(report_.structures.size());
             const std::string failed = unless_memory_lacks([&] {
                 // Builders cannot be stopped inside: an interrupt is heard after the tree and after its conversion.

@@ -198,7 +198,7 @@ void limit_depth(BinaryTree& tree, int max_depth) {
         const BinaryNode& node = tree.nodes[at];
         leaves[at] = 1;
         if (node.is_leaf()) continue;
-        const auto [left, right] = node.child;
+        const uint32_t left = node.child[0], right = node.child[1];
         height[at] = 1 + std::max(height[left], height[right]);
         leaves[at] = leaves[left] + leaves[right];
     }
