@@ -31,10 +31,10 @@ record=(--rays record --count "$count" --no-heat-maps)
 for part in "${parts[@]}"; do
     case $part in
     thesis) lab thesis --thesis --depths 1-8 --size 1024x768 ;;
-    sponza) lab sponza sponza "${record[@]}" --rta on ;;
-    sibenik) lab sibenik "$scenes/sibenik/sibenik.obj" "${record[@]}" --rta on ;;
-    dragon) lab dragon "$scenes/stanford/dragon_res2.ply" "${record[@]}" --rta on ;;
-    forest) lab forest forest "${record[@]}" --rta on ;;
+    sponza) lab sponza sponza "${record[@]}" --rta on,nodes ;;
+    sibenik) lab sibenik "$scenes/sibenik/sibenik.obj" "${record[@]}" --rta on,nodes ;;
+    dragon) lab dragon "$scenes/stanford/dragon_res2.ply" "${record[@]}" --rta on,nodes ;;
+    forest) lab forest forest "${record[@]}" --rta on,nodes ;;
     switches) lab switches sponza "${record[@]}" --structures sbvh,kd-sah,octree --rta both,nodes --order both --tests exact,fast ;;
     peers)
         for scene in sponza bunny forest; do
@@ -55,12 +55,14 @@ for part in "${parts[@]}"; do
         for stall in "${stalls[@]}"; do
             metrics+=,smsp__average_warps_issue_stalled_${stall}_per_issue_active.ratio
         done
-        for pair in compressed:CompressedWalk speculative:SpeculativeWalk while-while:WhileWhileWalk packet:WarpPacketWalk; do
+        for job in compressed:CompressedWalk:on compressed:CompressedWalk:nodes speculative:SpeculativeWalk:on \
+            while-while:WhileWhileWalk:on packet:WarpPacketWalk:on; do
+            IFS=: read -r walk kernel rta <<<"$job"
             # Five launches a set (one checked, three to warm up, one timed): the last one of each is looked at.
             ncu --csv --page raw --clock-control none --kernel-name-base demangled --metrics "$metrics" \
-                --kernel-id "::regex:(TraceRays<|run_dynamic_fetch<).*${pair#*:}:5|10|15|20" \
-                "$bin/pertev" lab sponza "${record[@]}" --structures sbvh --walks "${pair%:*}" --rta on --runs 1 \
-                --device cuda -q >"$out/profile-${pair%:*}.csv" || status=1
+                --kernel-id "::regex:(TraceRays<|run_dynamic_fetch<).*$kernel:5|10|15|20" \
+                "$bin/pertev" lab sponza "${record[@]}" --structures sbvh --walks "$walk" --rta "$rta" --runs 1 \
+                --device cuda -q >"$out/profile-$walk-rta-$rta.csv" || status=1
         done
         ;;
     *) echo "no such part: $part" && status=1 ;;

@@ -43,17 +43,22 @@ std::vector<bool> on_off(const std::string& value) {
     return {value == "on"};
 }
 
-/// Of on, off and nodes, each once.
-std::vector<std::string> rta_values(const std::vector<std::string>& flags) {
-    std::vector<std::string> values;
-    const auto add = [&](const std::string& value) {
-        if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+/// The switches asked for, those with the most on first: heat maps are of a walk's first.
+std::vector<WalkOptions> walk_options(const LabFlags& flags) {
+    const auto named = [](const std::vector<std::string>& list, const std::string& name) {
+        return std::ranges::find(list, name) != list.end();
     };
-    for (const std::string& flag : flags) {
-        if (flag != "both") add(flag);
-        if (flag == "both") add("on"), add("off");
+    std::vector<WalkOptions> options;
+    for (const TestKind tests : all_tests()) {
+        if (!named(flags.tests, name_of(tests))) continue;
+        for (const std::string rta : {"on", "nodes", "off"}) {
+            if (!named(flags.rta, rta) && !(named(flags.rta, "both") && rta != "nodes")) continue;
+            for (const bool near_first : on_off(flags.order)) {
+                options.push_back({rta != "off", near_first, tests, rta != "nodes"});
+            }
+        }
     }
-    return values;
+    return options;
 }
 
 /// "1-8" or "8": first and last.
@@ -86,13 +91,7 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     settings.walks = chosen(flags.walks, all_walks(), walk_named);
     // A brute-force walk over all of a frame's rays takes hours: only when asked for.
     if (flags.walks.empty()) std::erase(settings.walks, WalkKind::BruteForce);
-    for (const TestKind tests : chosen(flags.tests, all_tests(), tests_named)) {
-        for (const std::string& rta : rta_values(flags.rta)) {
-            for (const bool near_first : on_off(flags.order)) {
-                settings.options.push_back({rta != "off", near_first, tests, rta != "nodes"});
-            }
-        }
-    }
+    settings.options = walk_options(flags);
     settings.distributions.clear();
     if (!is_cuda && flags.persistent == "on") {
         throw Error(ErrorCode::BadInput,
@@ -195,19 +194,20 @@ void add_lab_command(CLI::App& app, int& status) {
         ->check(one_of(names_of(all_walks())));
     verb.add_option(
             "--rta", flags->rta,
-            "redundant traversal avoidance: skip what lies beyond the\nnearest hit: on, off, both, or nodes (at "
-            "pops not, compressed\nalone)")
+            "redundant traversal avoidance: skip what lies beyond the\nnearest hit; nodes: at nodes and not at pops "
+            "(compressed only)")
         ->type_name("WHICH,...")
         ->delimiter(',')
         ->check(one_of({"on", "off", "both", "nodes"}))
         ->capture_default_str();
     add_switch(verb, "--order", flags->order, "nearer children first");
     verb.add_option("--tests", flags->tests,
-                    "exact, fast (leaks at edges, as most tracers do), woop\n(Woop's unit triangles, as Aila and Laine "
-                    "do) (exact)")
+                    "exact; fast: leaks at edges, as most tracers do; woop: so\ndoes this, by unit triangles, as Aila "
+                    "and Laine have it")
         ->type_name("WHICH,...")
         ->delimiter(',')
-        ->check(one_of(names_of(all_tests())));
+        ->check(one_of(names_of(all_tests())))
+        ->capture_default_str();
     add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
     verb.add_option("--size", flags->size, "camera rays (1024x768)")->type_name("WIDTHxHEIGHT");
     verb.add_option("--depths", flags->depths,

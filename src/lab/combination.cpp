@@ -144,7 +144,6 @@ std::string name_of(const Combination& c) {
 
 std::optional<StructureKind> structure_named(const std::string& name) { return kind_named(kStructures, name); }
 std::optional<WalkKind> walk_named(const std::string& name) { return kind_named(kWalks, name); }
-std::optional<TestKind> tests_named(const std::string& name) { return kind_named(kTests, name); }
 
 std::optional<std::string> why_not(StructureKind structure, WalkKind walk) {
     if ((walk == WalkKind::Kd) != is_kd(structure)) {
@@ -164,7 +163,7 @@ std::optional<std::string> why_not(const Combination& c, const LabMachine& machi
     if (!c.options.near_first && !has_order(c.walk)) return "there is no order of children to switch off";
     if (!c.options.rta && c.walk == WalkKind::BruteForce) return "without nodes there is no redundant traversal";
     if (!c.options.rta_at_pops && c.walk != WalkKind::Compressed) {
-        return "RTA at nodes alone is for the compressed walk, where it is faster than at pops too";
+        return "RTA at nodes alone is for the compressed walk; the stacks of the others hold distances anyway";
     }
     if (c.options.tests == TestKind::Woop && c.walk != WalkKind::WhileWhile && c.walk != WalkKind::Speculative) {
         return "Woop's triangle test is for the walks of Aila and Laine: while-while and speculative";

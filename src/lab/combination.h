@@ -79,7 +79,6 @@ std::string name_of(const Combination& combination);
 /// Nothing when no kind is named so.
 std::optional<StructureKind> structure_named(const std::string& name);
 std::optional<WalkKind> walk_named(const std::string& name);
-std::optional<TestKind> tests_named(const std::string& name);
 
 struct LabMachine {
     bool is_cuda = false;

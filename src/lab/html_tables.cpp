@@ -130,7 +130,8 @@ std::string html_of(const LabReport& report, const Ratio& ratio) {
 }
 
 bool is_plain(const Combination& c) {
-    return c.options.rta && c.options.near_first && c.options.is_exact() && c.distribution == Distribution::OneAThread;
+    return c.options.rta && c.options.rta_at_pops && c.options.near_first && c.options.is_exact() &&
+           c.distribution == Distribution::OneAThread;
 }
 
 std::string matrix_of(const LabReport& report, uint32_t set) {
@@ -272,7 +273,7 @@ std::string html_figures(const LabReport& report) {
            "Mrays/s are of the median run, with those of the slowest and the fastest run beside. \"Same walk\": an "
            "equal walk was measured for "
            "another combination, and its figures stand here too. Price of exactness: time over that of the same "
-           "combination with fast or Woop's tests. An empty cell was not measured.</p>\n" +
+           "combination with fast tests. An empty cell was not measured.</p>\n" +
            table(head, rows) + kNodeNote + (has_warps ? kWarpNote : "");
 }
 

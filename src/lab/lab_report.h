@@ -28,7 +28,7 @@ struct StructureFigures {
     std::string failed;                // why it is not there; empty: it is
     double build_s = 0;                // from triangles to what the walk reads, conversion included
     uint64_t nodes = 0, triangles = 0; // triangles: in leaves, so duplicates count
-    std::size_t bytes = 0;             // nodes and triangles
+    std::size_t bytes = 0;             // nodes, triangles, and what the layout has beside them
     std::optional<double> sah_cost;    // in its builder's own unit: binary trees compare with binary trees alone
     std::optional<int> depth;          // inner nodes on the longest way down; neither of a bare array of triangles
 };
@@ -121,7 +121,7 @@ uint64_t frame_rays(const LabReport& report, int depth);
 int largest_depth(const LabReport& report);
 
 /// What exactness costs: time of this combination over that of the same one with fast tests, on the same set. None
-/// where either was not measured, or this one has fast tests itself.
+/// where either was not measured, or this one has not the exact tests itself.
 std::optional<double> price_of_exactness(const LabReport& report, const CombinationFigures& combination, uint32_t set);
 
 } // namespace pertev

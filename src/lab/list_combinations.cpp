@@ -16,8 +16,9 @@ CombinationFigures figures_of(const Combination& c, const LabMachine& machine) {
     if (const auto reason = why_not(c, machine)) {
         figures.refused = *reason;
     } else if (find_kernel(c, false, machine.is_cuda) == nullptr) {
-        figures.refused =
-            c.options.is_exact() ? "not compiled" : "fast and woop tests are compiled with rta and near alone";
+        figures.refused = !c.options.is_exact()    ? "fast and woop tests are compiled with rta and near alone"
+                          : !c.options.rta_at_pops ? "RTA at nodes alone is compiled with near alone"
+                                                   : "not compiled";
     }
     return figures;
 }

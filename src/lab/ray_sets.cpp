@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "math/double_vec3.h"
 #include "math/frame.h"
 #include "math/portable_math.h"
 #include "render/camera_view.h"
@@ -36,28 +37,17 @@ struct StartPoints {
     std::size_t first_group = 0; // how many are the hits of the first parents; what follows is of the second
 };
 
-struct DoubleVec3 {
-    double x, y, z;
-};
-
-DoubleVec3 edge(Vec3 from, Vec3 to) {
-    const auto difference = [](float a, float b) { return static_cast<double>(b) - static_cast<double>(a); };
-    return {difference(from.x, to.x), difference(from.y, to.y), difference(from.z, to.z)};
-}
-
 /// Unit normal of a triangle, turned against `direction`. In doubles, so that no sliver's cross product is lost.
 Vec3 normal_against(const Scene& scene, const RayHit& hit, Vec3 direction) {
     const Instance& instance = scene.instances[hit.instance];
     const Mesh& mesh = scene.meshes[instance.mesh];
     const uint32_t* v = &mesh.indices[3 * static_cast<std::size_t>(hit.primitive)];
     const auto corner = [&](int k) { return transform_point(instance.world_from_local, mesh.positions[v[k]]); };
-    const Vec3 a = corner(0);
-    const DoubleVec3 b = edge(a, corner(1)), c = edge(a, corner(2));
-    const DoubleVec3 n = {b.y * c.z - b.z * c.y, b.z * c.x - b.x * c.z, b.x * c.y - b.y * c.x};
-    const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    const DoubleVec3 a = to_double(corner(0));
+    const DoubleVec3 n = cross(to_double(corner(1)) - a, to_double(corner(2)) - a);
+    const double length = std::sqrt(dot(n, n));
     if (!(length > 0)) return -normalize(direction);
-    const Vec3 normal = {static_cast<float>(n.x / length), static_cast<float>(n.y / length),
-                         static_cast<float>(n.z / length)};
+    const Vec3 normal = to_float(n / length);
     return dot(normal, direction) > 0 ? -normal : normal;
 }
 

@@ -2,40 +2,30 @@
 
 #include <array>
 
+#include "math/double_vec3.h"
+
 namespace pertev {
-namespace {
-
-struct Row {
-    double x, y, z;
-};
-
-Row to_double(Vec3 v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
-double dot(Row a, Row b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Row cross(Row a, Row b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-Vec3 to_float(Row a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
-
-} // namespace
-
 Transform compose(const Transform& a, const Transform& b) {
-    const std::array<Row, 3> columns = {to_double(column(b, 0)), to_double(column(b, 1)), to_double(column(b, 2))};
-    const Row moved = to_double(b.translation);
+    const std::array<DoubleVec3, 3> columns = {to_double(column(b, 0)), to_double(column(b, 1)),
+                                               to_double(column(b, 2))};
+    const DoubleVec3 moved = to_double(b.translation);
     const auto row = [&](Vec3 r) {
-        const Row ar = to_double(r);
+        const DoubleVec3 ar = to_double(r);
         return to_float({dot(ar, columns[0]), dot(ar, columns[1]), dot(ar, columns[2])});
     };
-    const Row t = to_double(a.translation);
+    const DoubleVec3 t = to_double(a.translation);
     return {row(a.row0), row(a.row1), row(a.row2),
             to_float({dot(to_double(a.row0), moved) + t.x, dot(to_double(a.row1), moved) + t.y,
                       dot(to_double(a.row2), moved) + t.z})};
 }
 
 Transform inverse(const Transform& m) {
-    const Row a = to_double(m.row0), b = to_double(m.row1), c = to_double(m.row2), t = to_double(m.translation);
-    const Row bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+    const DoubleVec3 a = to_double(m.row0), b = to_double(m.row1), c = to_double(m.row2), t = to_double(m.translation);
+    const DoubleVec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
     const double inv = 1.0 / dot(a, bc);
-    const Row r0 = {bc.x * inv, ca.x * inv, ab.x * inv};
-    const Row r1 = {bc.y * inv, ca.y * inv, ab.y * inv};
-    const Row r2 = {bc.z * inv, ca.z * inv, ab.z * inv};
+    const DoubleVec3 r0 = {bc.x * inv, ca.x * inv, ab.x * inv};
+    const DoubleVec3 r1 = {bc.y * inv, ca.y * inv, ab.y * inv};
+    const DoubleVec3 r2 = {bc.z * inv, ca.z * inv, ab.z * inv};
     return {to_float(r0), to_float(r1), to_float(r2), to_float({-dot(r0, t), -dot(r1, t), -dot(r2, t)})};
 }
 

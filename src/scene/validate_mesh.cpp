@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
+#include "math/double_vec3.h"
 #include "math/frame.h"
 
 namespace pertev {
@@ -16,25 +17,12 @@ namespace {
 
 constexpr uint64_t kGrain = 1 << 14;
 
-struct Double3 {
-    double x, y, z;
-};
-
-Double3 difference(Vec3 a, Vec3 b) {
-    return {static_cast<double>(a.x) - static_cast<double>(b.x), static_cast<double>(a.y) - static_cast<double>(b.y),
-            static_cast<double>(a.z) - static_cast<double>(b.z)};
+/// Twice the area times the normal.
+DoubleVec3 area_vector(Vec3 a, Vec3 b, Vec3 c) {
+    return cross(to_double(b) - to_double(a), to_double(c) - to_double(a));
 }
 
-/// Twice the area times the normal; in double, where neither tiny nor huge triangles leave the range.
-Double3 area_vector(Vec3 a, Vec3 b, Vec3 c) {
-    const Double3 u = difference(b, a), v = difference(c, a);
-    return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-}
-
-Vec3 unit(Double3 v) {
-    const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return {static_cast<float>(v.x / length), static_cast<float>(v.y / length), static_cast<float>(v.z / length)};
-}
+Vec3 unit(DoubleVec3 v) { return to_float(v / std::sqrt(dot(v, v))); }
 
 /// Counts body(i) == true over [0, count).
 template <class Body>
@@ -83,7 +71,7 @@ Fault fault_of(const Mesh& mesh, uint64_t triangle) {
     const Vec3 a = mesh.positions[i[0]], b = mesh.positions[i[1]], c = mesh.positions[i[2]];
     if (!(is_finite(a) && is_finite(b) && is_finite(c))) return Fault::NotFinite;
     if (max_component(max(abs(a), max(abs(b), abs(c)))) > kMaxCoordinate) return Fault::TooFar;
-    const Double3 area = area_vector(a, b, c);
+    const DoubleVec3 area = area_vector(a, b, c);
     return area.x == 0 && area.y == 0 && area.z == 0 ? Fault::WithoutArea : Fault::None;
 }
 
@@ -112,14 +100,14 @@ void drop_triangles(Mesh& mesh, const std::string& of, MeshRepairs& repairs) {
 
 /// Area-weighted mean of the triangles at each vertex of `wanted`; +z where there is none.
 void put_geometric_normals(Mesh& mesh, const std::vector<bool>& wanted) {
-    std::vector<Double3> sums(mesh.positions.size());
+    std::vector<DoubleVec3> sums(mesh.positions.size());
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const uint32_t* corner = mesh.indices.data() + i;
         if (!wanted[corner[0]] && !wanted[corner[1]] && !wanted[corner[2]]) continue;
-        const Double3 area =
+        const DoubleVec3 area =
             area_vector(mesh.positions[corner[0]], mesh.positions[corner[1]], mesh.positions[corner[2]]);
         for (int k = 0; k < 3; ++k) {
-            Double3& sum = sums[corner[k]];
+            DoubleVec3& sum = sums[corner[k]];
             sum = {sum.x + area.x, sum.y + area.y, sum.z + area.z};
         }
     }
@@ -170,7 +158,7 @@ Vec3 normalize_safely(Vec3 v) {
     const float square = length_squared(v);
     // Already unit as near as floats can tell: left alone, so that validating twice changes nothing.
     if (abs(square - 1) <= 0x1p-22f) return v;
-    return unit({static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)});
+    return unit(to_double(v));
 }
 
 MeshRepairs repair_mesh(Mesh& mesh, const std::string& of) {

@@ -115,15 +115,15 @@ HD inline uint32_t enters_slots(const Ray& ray, const RayCompressedBoxes& r, con
 
 /// The least of the entries of `slots`, as the upper half of a float's bits, rounded down; of none, infinity.
 HD inline uint32_t least_entry(const float (&entries)[8], uint32_t slots) {
-    // Floats from 0 on are in the order of their bits as integers; lesser ones count as 0.
+    // Floats from 0 on are in the order of their bits as integers; lesser ones count as 0, since t_min >= 0.
     const auto at = [&](int s) { return (slots & 1u << s) != 0 ? static_cast<int>(bits_of(entries[s])) : 0x7f800000; };
     const int a = min(min(at(0), at(1)), at(2)), b = min(min(at(3), at(4)), at(5));
     const int c = min(min(a, at(6)), at(7));
     return static_cast<uint32_t>(max(min(b, c), 0)) >> 16;
 }
 
-/// The bit of the slot that comes first for a ray with 1 / direction `inv`: least s ^ the ray's octant. `slots` is not
-/// 0. At each axis the half that lies nearer is kept, unless it is empty.
+/// The bit of the slot that comes first for a ray with 1 / direction `inv`: least s ^ the ray's octant; 0 of no
+/// slots. At each axis the half that lies nearer is kept, unless it is empty.
 HD inline uint32_t nearest_slot(uint32_t slots, Vec3 inv) {
     const auto keep_nearer = [&slots](float along, uint32_t lower_half) {
         const uint32_t backwards = 0u - (bits_of(along) >> 31);

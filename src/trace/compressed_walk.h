@@ -144,7 +144,7 @@ struct CompressedWalk {
     }
 
 private:
-    /// Of slots, not none, the one to enter first.
+    /// Of slots the one to enter first; 0 of none.
     HD static uint32_t first_slot(uint32_t slots, const RayCompressedBoxes& boxes) {
         return kOptions.near_first ? nearest_slot(slots, boxes.inv) : slots & (0u - slots);
     }

@@ -11,7 +11,7 @@ namespace pertev {
 
 struct Ray {
     Vec3 origin;             // metres
-    float t_min = 0;         // exclusive; t is in multiples of the direction's length
+    float t_min = 0;         // exclusive, at least 0; t is in multiples of the direction's length
     Vec3 direction;          // any length; its largest component within [2^-40, 2^40]
     float t_max = kInfinity; // exclusive
 };

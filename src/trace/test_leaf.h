@@ -37,7 +37,7 @@ HD inline bool test_leaf(const BvhTriangle* triangles, uint32_t leaf, const Ray&
     }
 }
 
-/// The same for walks that other trees have other triangles for (trace/woop_tests.h).
+/// The same, of a tree; trace/woop_tests.h has that of a tree with Woop's triangles.
 template <class Tests, class Visitor, class Counter>
 HD inline bool test_leaf(const BvhView& bvh, uint32_t leaf, const Ray& ray, const typename Tests::Triangles& prepared,
                          uint32_t instance, Visitor& visitor, const Counter& counter) {

@@ -133,7 +133,8 @@ TEST_CASE("hits have the same bits on both devices: instances, and a mesh of une
     check_same_hits(scene, static_cast<uint32_t>(effort_of_two(100'000, 10'000'000)));
 }
 
-TEST_CASE("elementary functions have the same bits on both devices, over all 2^32 inputs in the long setting") {
+TEST_CASE(
+    "elementary functions have the same bits on both devices, with --device cuda and --long over all 2^32 inputs") {
     constexpr uint32_t per_index = 256;
     const uint64_t inputs = effort_of_two(uint64_t(1) << 20, uint64_t(1) << 32);
     const uint32_t stride = static_cast<uint32_t>((uint64_t(1) << 32) / inputs); // CI: blocks spread over all exponents

@@ -206,6 +206,24 @@ TEST_CASE("tests that leak miss a few rays, which are counted") {
     CHECK(bytes[TestKind::Woop] == bytes[TestKind::Exact] + 1500 * sizeof(WoopTriangle));
 }
 
+TEST_CASE("Woop's tests go through instances: but for few rays the hits are those of pictures") {
+    Queue queue = cuda_requested() ? make_cuda_queue() : Queue::make_cpu();
+    LabSettings settings;
+    for (const WalkKind walk : {WalkKind::WhileWhile, WalkKind::Speculative}) {
+        settings.only.push_back({StructureKind::SpatialSplits, walk, {.tests = TestKind::Woop}});
+    }
+    settings.width = 256, settings.height = 192;
+    settings.runs = settings.warm_ups = 0;
+    const LabReport report = run_lab(queue, make_mixed_scene(), mixed_scene_camera(), settings, {});
+    CHECK(report.instances > 1);
+    for (const CombinationFigures& c : report.combinations) {
+        CAPTURE(c.name);
+        CAPTURE(c.refused);
+        REQUIRE(c.runs.size() == report.sets.size());
+        for (const RunFigures& run : c.runs) CHECK(run.different <= report.sets[run.set].rays / 500);
+    }
+}
+
 TEST_CASE("an interrupted laboratory keeps what it has measured") {
     Queue queue = Queue::make_cpu();
     const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});

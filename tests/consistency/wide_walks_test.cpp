@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <type_traits>
 #include <vector>
 
 #include "accel/bvh/build_bvh.h"
@@ -51,10 +52,12 @@ struct Expected {
 
 template <template <WalkOptions> class Walk, class Tree>
 void check_tree(const Tree& tree, const Expected& expected) {
-    with_all_options<Walk>([&]<class OneWalk>() {
+    const auto check = [&]<class OneWalk>() {
         check_walk<OneWalk>(scene_of(tree), expected.rays, expected.all, AcceptAll{});
         check_walk<OneWalk>(scene_of(tree), expected.rays, expected.some, AcceptSome{});
-    });
+    };
+    with_all_options<Walk>(check);
+    if constexpr (std::is_same_v<Tree, CompressedBvhView>) check.template operator()<Walk<kAtNodes>>();
 }
 
 } // namespace

@@ -84,6 +84,7 @@ class WhatIsWritten(LabTest):
     def test_heat_maps_are_of_the_first_combination_of_each_structure_and_walk(self):
         for flags, switches in [("--rta off", "no-rta-near"), ("--order off", "rta-unordered"),
                                 ("--tests fast --rta on", "rta-near-fast-tests"), ("--order both", "rta-near"),
+                                ("--tests fast,exact --rta off,nodes,on", "rta-near"),
                                 ("--rays record --count 3000", "rta-near")]:
             with self.subTest(flags=flags):
                 report = self.report("cornell-box", "--structures", "binned", "--walks", "if-if", *flags.split(), "-o",

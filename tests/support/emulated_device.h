@@ -62,8 +62,6 @@ inline int __popc(uint32_t x) { return __builtin_popcount(x); }
 inline int __ffs(int x) { return __builtin_ffs(x); }
 inline int __clz(int x) { return x == 0 ? 32 : __builtin_clz(static_cast<uint32_t>(x)); }
 inline int __clzll(long long x) { return x == 0 ? 64 : __builtin_clzll(static_cast<unsigned long long>(x)); }
-inline int __vimax3_s32(int a, int b, int c) { return a < b ? (b < c ? c : b) : (a < c ? c : a); }
-inline int __vimin3_s32(int a, int b, int c) { return b < a ? (c < b ? c : b) : (c < a ? c : a); }
 inline uint32_t __funnelshift_l(uint32_t low, uint32_t high, uint32_t shift) {
     return static_cast<uint32_t>((uint64_t(high) << 32 | low) << (shift & 31) >> 32);
 }

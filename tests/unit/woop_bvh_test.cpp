@@ -88,8 +88,10 @@ TEST_CASE("triangles without area, too small and too large are never hit") {
             CHECK((bits_of(w.normal.x) & kLastInLeaf) == (last ? kLastInLeaf : 0));
             for (const Vec3 from : {Vec3{0, 0, 5}, Vec3{0.3f, 0.3f, 1}, Vec3{-3, 0, 0}}) {
                 for (const Vec3 to : {Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{0.1f, -0.2f, -0.9f}}) {
-                    TriangleHit hit;
-                    CHECK_FALSE(WoopTests::intersect({from, 0, to, kInfinity}, w, hit));
+                    for (const float length : {0x1p-40f, 1.0f, 0x1p25f, 0x1p40f}) {
+                        TriangleHit hit;
+                        CHECK_FALSE(WoopTests::intersect({from, 0, length * to, kInfinity}, w, hit));
+                    }
                 }
             }
         }

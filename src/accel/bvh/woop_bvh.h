@@ -17,8 +17,8 @@
 namespace pertev {
 
 /// Three rows of the transform: at point p the height over the plane, u and v are `row . p + shift`. 48 bytes, three
-/// loads of 16. The height's row has the length 1. Triangles without area, or too small or large for it: all 0, which
-/// is never hit.
+/// loads of 16. The height's row has the length 1. Triangles without area, or too small or large for it, have u = -1
+/// everywhere: they are never hit.
 struct alignas(16) WoopTriangle {
     Vec3 normal; // the lowest bit of its x is kLastInLeaf
     float height = 0;
