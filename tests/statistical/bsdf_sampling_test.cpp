@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel_for.h"
 #include "tests/statistical/bsdf_cases.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/direction_chart.h"
@@ -123,19 +124,24 @@ TEST_CASE("every bsdf draws directions as its pdf says, with weight eval over pd
                                           : std::vector<float>{0.85f, -0.25f};
     const std::vector<BsdfCase> cases = rough_bsdf_cases();
     const int tests = static_cast<int>(2 * cases.size() * angles.size());
-    uint32_t seed = 1;
-    for (const BsdfCase& c : cases)
-        for (const float z : angles) {
-            const Vec3 wo = direction_at(z);
-            const bool through = c.bsdf.kind == BsdfKind::Dielectric && c.bsdf.alpha < 0.3f;
-            const DirectionChart chart = through ? chart_through(wo, c.bsdf) : chart_for(wo, c.bsdf.alpha);
-            const SamplingReport report = test_sampling(c.bsdf, wo, chart, jumps_of(c.bsdf, wo), samples, seed++);
-            INFO(c.name << " from cos(wo) = " << z << ": " << report.chi_square.describe());
-            CHECK(report.chi_square.passes(tests));
-            CHECK(report.mean_deviations < 5);
-            CHECK(report.weight_error < 1e-4);
-            CHECK(report.pdf_error < 1e-4);
-        }
+    std::vector<SamplingReport> reports(cases.size() * angles.size());
+    parallel_for(reports.size(), 1, [&](uint64_t i) {
+        const Bsdf& bsdf = cases[i / angles.size()].bsdf;
+        const Vec3 wo = direction_at(angles[i % angles.size()]);
+        const bool through = bsdf.kind == BsdfKind::Dielectric && bsdf.alpha < 0.3f;
+        const DirectionChart chart = through ? chart_through(wo, bsdf) : chart_for(wo, bsdf.alpha);
+        const auto seed = static_cast<uint32_t>(i + 1);
+        reports[i] = test_sampling(bsdf, wo, chart, jumps_of(bsdf, wo), samples, seed);
+    });
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        const SamplingReport& report = reports[i];
+        INFO(cases[i / angles.size()].name << " from cos(wo) = " << angles[i % angles.size()] << ": "
+                                           << report.chi_square.describe());
+        CHECK(report.chi_square.passes(tests));
+        CHECK(report.mean_deviations < 5);
+        CHECK(report.weight_error < 1e-4);
+        CHECK(report.pdf_error < 1e-4);
+    }
 }
 
 namespace {
