@@ -93,7 +93,8 @@ ChiSquareResult test_grid(const Grid& grid, const std::function<int(uint32_t)>& 
 
 double upper_gamma(double a, double x) {
     if (x <= 0) return 1;
-    const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
+    int sign; // std::lgamma() keeps it in a global, which threads would race for
+    const double scale = std::exp(a * std::log(x) - x - ::lgamma_r(a, &sign));
     if (x < a + 1) { // series of the lower function
         double term = 1 / a, sum = term;
         for (double n = a + 1; term > 1e-16 * sum; n += 1) sum += term *= x / n;
