@@ -65,19 +65,24 @@ HD inline uint32_t pascal_transform(uint32_t x) {
     return x;
 }
 
-/// One number in (0, 1).
-HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t dimension) {
+/// 32 bits, the first digits of a number in [0, 1).
+HD inline uint32_t sample_bits(SamplerKind kind, SampleKey key, uint32_t dimension) {
     switch (kind) {
     case SamplerKind::Sobol: {
         const Hash3 keys = hash_words(key.pixel, dimension, key.seed);
         // The order of the points is shuffled by scrambling the index; the first component is the index reversed.
         const uint32_t index = reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x));
-        return unit_interval(reverse_bits(owen_scramble_reversed(index, keys.y)));
+        return reverse_bits(owen_scramble_reversed(index, keys.y));
     }
     case SamplerKind::Independent:
         break;
     }
-    return unit_interval(hash_words(key.pixel, key.sample, dimension, key.seed).x);
+    return hash_words(key.pixel, key.sample, dimension, key.seed).x;
+}
+
+/// One number in (0, 1).
+HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t dimension) {
+    return unit_interval(sample_bits(kind, key, dimension));
 }
 
 /// A point of (0, 1)^2.

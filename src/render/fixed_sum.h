@@ -17,6 +17,7 @@ struct FixedSum {
     uint64_t low = 0, high = 0;
     bool operator==(const FixedSum&) const = default;
 };
+static_assert(static_cast<double>(kMaxSamplesPerPixel) * static_cast<double>(kMaxSampleValue) < 0x1p63);
 
 /// x in fixed point. |x| <= kMaxSampleValue (2^40), finite.
 HD inline FixedSum to_fixed(float x) {

@@ -90,25 +90,19 @@ void SceneOnDevice::upload_images(Queue& queue, const Scene& scene) {
     view_.linear_from_srgb = keep(queue, std::span<const float>(srgb_decode_table()), "sRGB table");
 }
 
-AliasTableView SceneOnDevice::upload(Queue& queue, const AliasTable& table) {
-    AliasTableView view = view_of(table);
-    view.blocks = keep(queue, std::span(table.blocks), "light table");
-    view.entries = keep(queue, std::span(table.entries), "light table");
-    return view;
-}
-
 void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
     LightSetView& view = view_.lights;
     view = view_of(lights, view_.images, view_.linear_from_srgb);
-    view.choice = upload(queue, lights.choice);
+    view.choice.entries = keep(queue, std::span(lights.choice), "light table");
     view.triangles = keep(queue, std::span(lights.triangles), "emissive triangles");
     view.punctual = keep(queue, std::span(lights.punctual), "punctual lights");
     view.first_light = keep(queue, std::span(lights.first_light), "lights of instances");
     view.emissions = keep(queue, std::span(lights.emissions), "emissions");
     if (!lights.has_environment) return;
     view.environment.pixels = keep(queue, std::span(lights.environment.pixels), "environment");
-    view.environment.row_bounds = keep(queue, std::span(lights.environment.row_bounds), "environment rows");
-    view.environment.table = upload(queue, lights.environment.table);
+    view.environment.row_bounds = keep(queue, std::span(lights.environment.row_bounds), "bounds of environment rows");
+    view.environment.rows.entries = keep(queue, std::span(lights.environment.rows), "environment rows");
+    view.environment.columns.entries = keep(queue, std::span(lights.environment.columns), "environment columns");
 }
 
 std::size_t predicted_bytes(const PreparedScene& prepared) {
@@ -126,9 +120,9 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
         bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
     bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
     const LightSetData& lights = prepared.lights;
-    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.choice.blocks) +
-             bytes_of(lights.choice.entries) + bytes_of(lights.environment.pixels) +
-             bytes_of(lights.environment.table.blocks) + bytes_of(lights.environment.table.entries);
+    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.choice) +
+             bytes_of(lights.environment.pixels) + bytes_of(lights.environment.rows) +
+             bytes_of(lights.environment.columns);
     return bytes;
 }
 

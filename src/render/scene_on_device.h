@@ -19,7 +19,6 @@ public:
 
 private:
     BvhView upload(Queue& queue, const Bvh& bvh, const std::string& name);
-    AliasTableView upload(Queue& queue, const AliasTable& table);
     void upload_trees(Queue& queue, const PreparedScene& prepared);
     void upload_meshes(Queue& queue, const Scene& scene);
     void upload_instances(Queue& queue, const Scene& scene);

@@ -1,9 +1,9 @@
 #include "shading/alias_table.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/error.h"
-#include "base/parallel_for.h"
 
 namespace pertev {
 namespace {
@@ -15,93 +15,94 @@ double usable(Weight weight) {
     return w > 0 && w <= largest ? w : 0.0;
 }
 
+/// How many of 2^bits numbers draw each index: one for every weight above 0, the others by weight, all in all 2^bits.
 template <class Weight>
-double build(std::span<const Weight> weights, std::span<AliasEntry> entries) {
-    PERTEV_CHECK(weights.size() == entries.size() && weights.size() <= 1u << 24);
-    const auto count = static_cast<uint32_t>(weights.size());
+std::vector<uint64_t> share_numbers(std::span<const Weight> weights, double total, uint32_t bits) {
+    const auto positive = static_cast<uint64_t>(
+        std::count_if(weights.begin(), weights.end(), [](Weight weight) { return usable(weight) > 0; }));
+    const double by_weight = static_cast<double>((uint64_t(1) << bits) - positive);
+    std::vector<uint64_t> shares(weights.size());
+    double sum = 0;
+    uint64_t given = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const double weight = usable(weights[i]);
+        if (!(weight > 0)) continue;
+        sum += weight;
+        const auto until_here = static_cast<uint64_t>(sum / total * by_weight); // all at the end: sum is total there
+        shares[i] = 1 + until_here - given;
+        given = until_here;
+    }
+    return shares;
+}
+
+template <class Weight>
+double build(std::span<const Weight> weights, AliasNumbers numbers, std::span<AliasEntry> entries) {
+    const auto bits = static_cast<uint32_t>(numbers);
+    const uint32_t slot_bits = alias_slot_bits(weights.size());
+    PERTEV_CHECK(entries.size() == std::size_t(1) << slot_bits && slot_bits + 2 <= bits);
     double total = 0;
     for (const Weight weight : weights) total += usable(weight);
-
-    // Probability of an index in slots: 1 fills one slot. 0 where the pmf that a caller sees is 0.
-    const double slots_per_weight = total > 0 ? count / total : 0.0;
-    uint32_t heaviest = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        const float pmf = total > 0 ? static_cast<float>(usable(weights[i]) / total) : 0.0f;
-        entries[i] = {1.0f, i, pmf};
-        if (entries[heaviest].pmf < pmf) heaviest = i;
-    }
     if (!(total > 0)) return 0;
-    const auto share = [&](uint32_t i) { return entries[i].pmf > 0 ? usable(weights[i]) * slots_per_weight : 0.0; };
-    const auto next = [&](uint32_t from, bool heavy) {
-        while (from < count && (share(from) > 1.0) != heavy) ++from;
+
+    std::vector<uint64_t> shares = share_numbers(weights, total, bits);
+    shares.resize(entries.size());
+    const uint64_t slot = uint64_t(1) << (bits - slot_bits); // numbers of one slot
+    const uint32_t unit = 1u << (32 - bits);                 // of thresholds, which are those of 32 bits
+    const auto next = [&](std::size_t from, bool heavy) {
+        while (from < shares.size() && (shares[from] > slot) != heavy) ++from;
         return from;
     };
+    const auto fill = [&](std::size_t i, uint64_t own, std::size_t alias) {
+        entries[i].threshold = static_cast<uint32_t>(own) * unit;
+        entries[i].alias = static_cast<uint32_t>(alias);
+    };
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        entries[i] = {static_cast<uint32_t>(slot) * unit, static_cast<uint32_t>(i),
+                      static_cast<float>(std::ldexp(static_cast<double>(shares[i]), -static_cast<int>(bits)))};
+    }
 
-    // Heavy index j gives what it has over one slot to light indices i, in order, and turns light itself then.
-    uint32_t i = next(0, false), j = next(0, true);
-    double left = j < count ? share(j) : 0.0; // what j still has to give
-    while (j < count) {
-        if (left > 1.0) {
-            if (i == count) break; // rounding left a trace too much
-            const double own = share(i);
-            entries[i].threshold = static_cast<float>(own);
-            entries[i].alias = j;
-            left = (left + own) - 1.0;
+    // Heavy index j gives what it has over one slot to light indices i, in order, and turns light itself then. Whole
+    // numbers: at the end the last one's slot is just full.
+    std::size_t i = next(0, false), j = next(0, true);
+    uint64_t left = j < shares.size() ? shares[j] : 0; // what j still has to give
+    while (j < shares.size()) {
+        if (left > slot) {
+            fill(i, shares[i], j);
+            left -= slot - shares[i];
             i = next(i + 1, false);
         } else {
-            const uint32_t heir = next(j + 1, true);
-            if (heir == count) break; // j keeps its whole slot: `left` is 1 but for rounding
-            entries[j].threshold = static_cast<float>(left);
-            entries[j].alias = heir;
-            left = (left + share(heir)) - 1.0;
+            const std::size_t heir = next(j + 1, true);
+            if (heir == shares.size()) break;
+            fill(j, left, heir);
+            left += shares[heir] - slot;
             j = heir;
         }
-    }
-    for (; i < count; i = next(i + 1, false)) { // rounding left a trace too little
-        if (entries[i].pmf == 0) entries[i] = {0.0f, heaviest, 0.0f};
     }
     return total;
 }
 
-uint32_t default_block_size(std::size_t count) {
-    uint32_t size = 1;
-    if (count > 4096) {
-        while (std::size_t(size) * size < count) size *= 2;
-    }
-    return size;
-}
-
 } // namespace
 
-double build_alias_entries(std::span<const double> weights, std::span<AliasEntry> entries) {
-    return build(weights, entries);
+uint32_t alias_slot_bits(std::size_t count) {
+    return std::max(1u, static_cast<uint32_t>(std::bit_width(std::max<std::size_t>(count, 1) - 1)));
 }
 
-double build_alias_entries(std::span<const float> weights, std::span<AliasEntry> entries) {
-    return build(weights, entries);
+double build_alias_entries(std::span<const double> weights, AliasNumbers numbers, std::span<AliasEntry> entries) {
+    return build(weights, numbers, entries);
 }
 
-AliasTable build_alias_table(std::span<const float> weights, uint32_t block_size) {
-    PERTEV_CHECK(weights.size() < std::size_t(1) << 32);
-    AliasTable table;
-    if (weights.empty()) return table;
-    const std::size_t size = block_size == 0 ? default_block_size(weights.size()) : block_size;
-    table.block_size = static_cast<uint32_t>(size);
-    table.blocks.resize((weights.size() - 1) / size + 1);
-    if (size == 1) {
-        table.total = build_alias_entries(weights, table.blocks);
-    } else {
-        table.entries.resize(weights.size());
-        std::vector<double> block_weights(table.blocks.size());
-        parallel_for(table.blocks.size(), std::max<std::size_t>(1, 65536 / size), [&](uint64_t block) {
-            const std::size_t first = block * size, n = std::min(size, weights.size() - first);
-            block_weights[block] =
-                build_alias_entries(weights.subspan(first, n), std::span(table.entries).subspan(first, n));
-        });
-        table.total = build_alias_entries(block_weights, table.blocks);
-    }
-    if (table.total > 0) table.count = static_cast<uint32_t>(weights.size());
+double build_alias_entries(std::span<const float> weights, AliasNumbers numbers, std::span<AliasEntry> entries) {
+    return build(weights, numbers, entries);
+}
+
+std::vector<AliasEntry> build_alias_table(std::span<const float> weights) {
+    std::vector<AliasEntry> table(std::size_t(1) << alias_slot_bits(weights.size()));
+    if (!(build_alias_entries(weights, AliasNumbers::Bits32, table) > 0)) table.clear();
     return table;
+}
+
+AliasTableView view_of(const std::vector<AliasEntry>& table) {
+    return table.empty() ? AliasTableView{} : AliasTableView{table.data(), alias_slot_bits(table.size())};
 }
 
 } // namespace pertev

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/parallel_for.h"
 #include "shading/brightness_pyramid.h"
 
@@ -70,8 +71,8 @@ void add_triangles(const Scene& scene, LightSetData& data) {
         if (!is_light(scene.materials[instance.material])) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
         count += scene.meshes[instance.mesh].triangle_count();
-        if (count + scene.lights.size() + 1 >= kNoLight) {
-            throw Error(ErrorCode::OverLimit, "scene: more than 2^32 - 2 lights; an emissive triangle counts as one");
+        if (count + scene.lights.size() + 1 > kMaxLights) {
+            throw Error(ErrorCode::OverLimit, "scene: more than 2^30 lights; an emissive triangle counts as one");
         }
     }
     data.triangles.resize(count);

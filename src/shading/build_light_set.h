@@ -15,16 +15,20 @@
 namespace pertev {
 
 struct LightSetData {
-    AliasTable choice;
+    std::vector<AliasEntry> choice; // none: nothing gives light
     std::vector<EmissiveTriangle> triangles;
     std::vector<PunctualLight> punctual;
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
     EnvironmentData environment; // meaningful where has_environment
     bool has_environment = false;
+
+    std::size_t count() const {
+        return choice.empty() ? 0 : triangles.size() + punctual.size() + (has_environment ? 1 : 0);
+    }
 };
 
-/// `scene` has passed validate(). `linear_from_srgb` [256]. Throws Error(OverLimit) for 2^32 lights and more.
+/// `scene` has passed validate(). `linear_from_srgb` [256]. Throws Error(OverLimit) for more than kMaxLights.
 LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages);
 
 /// Triangles that give light, each placed one a light of its own.

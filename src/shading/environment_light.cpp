@@ -96,7 +96,7 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
     if (data.is_constant) {
         data.pixels = {data.constant};
         data.mean_radiance = data.constant;
-        data.table = build_alias_table(std::array{max_component(data.constant)});
+        data.rows = build_alias_table(std::array{max_component(data.constant)});
         return data;
     }
 
@@ -114,31 +114,40 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
         double r = 0, g = 0, b = 0;
     };
     std::vector<Sums> row_sums(data.height); // of pixel times the row's share of the sphere
-    std::vector<float> weights(data.pixels.size());
+    std::vector<double> row_weights(data.height);
+    data.columns.resize(std::size_t(data.height) << alias_slot_bits(data.width));
     const auto row = [&](uint64_t y) { return data.pixels.data() + y * data.width; };
     parallel_for(data.height, 16, [&](uint64_t y) {
         const uint64_t from_pole = std::min<uint64_t>(y, data.height - 1 - y);
         const double share = static_cast<double>(data.row_bounds[from_pole + 1] - data.row_bounds[from_pole]);
         const std::array<const Rgb*, 3> rows = {row(y == 0 ? 0 : y - 1), row(y),
                                                 row(std::min<uint64_t>(y + 1, data.height - 1))};
+        std::vector<double> weights(data.width);
         for (uint32_t x = 0; x < data.width; ++x) {
-            weights[y * data.width + x] = static_cast<float>(std::min(share * filtered_rms(rows, x, data.width), 3e38));
+            weights[x] = share * filtered_rms(rows, x, data.width);
             row_sums[y].r += share * static_cast<double>(rows[1][x].r);
             row_sums[y].g += share * static_cast<double>(rows[1][x].g);
             row_sums[y].b += share * static_cast<double>(rows[1][x].b);
         }
+        const std::size_t slots = std::size_t(1) << alias_slot_bits(data.width);
+        row_weights[y] =
+            build_alias_entries(weights, AliasNumbers::Floats, std::span(data.columns).subspan(y * slots, slots));
     });
     Sums sum;
     for (const Sums& s : row_sums) sum = {sum.r + s.r, sum.g + s.g, sum.b + s.b};
     const auto mean = [&](double s) { return static_cast<float>(s / data.width); };
     data.mean_radiance = {mean(sum.r), mean(sum.g), mean(sum.b)};
-    data.table = build_alias_table(weights, data.width);
+    data.rows.resize(std::size_t(1) << alias_slot_bits(data.height));
+    build_alias_entries(row_weights, AliasNumbers::Floats, data.rows);
     return data;
 }
 
 EnvironmentView view_of(const EnvironmentData& data) {
-    return {data.width,          data.height,         data.pixels.data(), data.row_bounds.data(),
-            view_of(data.table), data.rotation_turns, data.is_constant,   data.constant};
+    return {data.width,          data.height,
+            data.pixels.data(),  data.row_bounds.data(),
+            view_of(data.rows),  {data.columns.data(), alias_slot_bits(data.width)},
+            data.rotation_turns, data.is_constant,
+            data.constant};
 }
 
 } // namespace pertev

@@ -27,7 +27,8 @@ struct EnvironmentView {
     uint32_t width = 1, height = 1;
     const Rgb* pixels = nullptr;       // [height * width], W/(sr m2), scale applied, finite, >= 0
     const float* row_bounds = nullptr; // [height + 1], sin^2(theta / 2) at the upper edge of each row
-    AliasTableView table;              // [height] blocks of [width]; count 0: black
+    AliasTableView rows;               // [height]; no entries: black
+    AliasTableView columns;            // [width] of row 0; those of row y are 2^slot_bits entries on, y times
     float rotation_turns = 0;          // [0, 1): rotation about +y, 1 is a full turn
     bool is_constant = true;           // radiance is `constant` from everywhere; pixels and row_bounds are not read
     Rgb constant;
@@ -63,6 +64,11 @@ HD inline Vec2 environment_row_bounds(const EnvironmentView& view, uint32_t y) {
     return {view.row_bounds[from_pole], view.row_bounds[from_pole + 1]};
 }
 
+/// Table of the texels of row `y`.
+HD inline AliasTableView environment_columns(const EnvironmentView& view, uint32_t y) {
+    return {view.columns.entries + (uint64_t(y) << view.columns.slot_bits), view.columns.slot_bits};
+}
+
 /// Density of the directions in texel (x, y) with the given row bounds, 1/sr.
 HD inline float environment_texel_pdf(const EnvironmentView& view, float pmf, Vec2 row_bounds) {
     return pmf * static_cast<float>(view.width) * (0.25f * kInvPi) / (row_bounds.y - row_bounds.x);
@@ -75,12 +81,13 @@ HD inline Rgb environment_radiance(const EnvironmentView& view, Vec3 direction) 
 
 /// Density of sample_environment at `direction`, 1/sr; 0 where black and everywhere for a black environment.
 HD inline float environment_pdf(const EnvironmentView& view, Vec3 direction) {
-    if (view.table.count == 0) return 0;
+    if (view.rows.entries == nullptr) return 0;
     if (view.is_constant) return environment_texel_pdf(view, 1.0f, {0, 1});
     const Vec2 place = environment_place(view, direction);
     const auto x = static_cast<uint32_t>(to_int(place.x, 0, static_cast<int>(view.width) - 1));
     const auto y = static_cast<uint32_t>(to_int(place.y, 0, static_cast<int>(view.height) - 1));
-    return environment_texel_pdf(view, alias_pmf(view.table, y * view.width + x), environment_row_bounds(view, y));
+    return environment_texel_pdf(view, alias_pmf(view.rows, y) * alias_pmf(environment_columns(view, y), x),
+                                 environment_row_bounds(view, y));
 }
 
 struct EnvironmentSample {
@@ -91,18 +98,19 @@ struct EnvironmentSample {
 
 /// A direction drawn by `u` in [0, 1)^2. False, with nothing written, for a black environment.
 HD inline bool sample_environment(const EnvironmentView& view, Vec2 u, EnvironmentSample& sample) {
-    BlockAliasSample texel{0, 1.0f, u};
-    if (view.table.count == 0) return false;
-    if (!view.is_constant) texel = sample_alias(view.table, u);
-    const uint32_t x = texel.index % view.width, y = texel.index / view.width;
-    const Vec2 bounds = environment_row_bounds(view, y);
-    const float pdf = environment_texel_pdf(view, texel.pmf, bounds);
-    if (!(pdf > 0)) return false; // a probability so small that it was lost
+    if (view.rows.entries == nullptr) return false;
+    AliasSample row{0, 1, u.x}, texel{0, 1, u.y};
+    if (!view.is_constant) {
+        row = sample_alias(view.rows, alias_number(u.x));
+        texel = sample_alias(environment_columns(view, row.index), alias_number(u.y));
+    }
+    const Vec2 bounds = environment_row_bounds(view, row.index);
+    const float pdf = environment_texel_pdf(view, row.pmf * texel.pmf, bounds);
 
-    const float s = lerp(bounds.x, bounds.y, texel.u.x), c = 1.0f - s; // squares of sin, cos of theta / 2
-    const bool is_south = y > view.height - 1 - y;
+    const float s = lerp(bounds.x, bounds.y, row.u), c = 1.0f - s; // squares of sin, cos of theta / 2
+    const bool is_south = row.index > view.height - 1 - row.index;
     const float sin_theta = 2.0f * safe_sqrt(s * c), cos_theta = is_south ? s - c : c - s;
-    const float column = static_cast<float>(x) + texel.u.y;
+    const float column = static_cast<float>(texel.index) + texel.u;
     const float turns = column / static_cast<float>(view.width) - 0.5f - view.rotation_turns;
     float sin_longitude, cos_longitude;
     sin_cos_2pi(turns, sin_longitude, cos_longitude);
@@ -122,7 +130,7 @@ struct EnvironmentData {
     uint32_t width = 1, height = 1;
     std::vector<Rgb> pixels;
     std::vector<float> row_bounds;
-    AliasTable table;
+    std::vector<AliasEntry> rows, columns; // of EnvironmentView; no rows: black
     float rotation_turns = 0;
     bool is_constant = true;
     Rgb constant;

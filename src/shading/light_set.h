@@ -47,7 +47,7 @@ struct SurfaceEmission {
 };
 
 struct LightSetView {
-    AliasTableView choice; // over all lights; count 0: there are none
+    AliasTableView choice; // over all lights; no entries: there are none
     const EmissiveTriangle* triangles = nullptr;
     const PunctualLight* punctual = nullptr;
     uint32_t triangle_count = 0, punctual_count = 0;
@@ -143,21 +143,20 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
-/// Draws a light by `u_choice` and a direction to it by `u`, all in [0, 1). False where nothing arrives: no lights, a
+/// Draws a light by 32 random bits and a direction to it by `u` in [0, 1)^2. False where nothing arrives: no lights, a
 /// dark spot of a texture, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha:
 /// where the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
-HD inline bool sample_light(const LightSetView& view, Vec3 from_point, float u_choice, Vec2 u, LightSample& sample) {
-    if (view.choice.count == 0) return false;
-    const BlockAliasSample light = sample_alias(view.choice, {u_choice, u.x});
-    const Vec2 rest = {light.u.y, u.y};
+HD inline bool sample_light(const LightSetView& view, Vec3 from_point, uint32_t choice, Vec2 u, LightSample& sample) {
+    if (view.choice.entries == nullptr) return false;
+    const AliasSample light = sample_alias(view.choice, choice);
     if (light.index < view.triangle_count) {
-        return sample_triangle_light(view, light.index, light.pmf, from_point, rest, sample);
+        return sample_triangle_light(view, light.index, light.pmf, from_point, u, sample);
     }
     if (light.index != view.environment_light) {
         return sample_punctual_light(view.punctual[light.index - view.triangle_count], light.pmf, from_point, sample);
     }
     EnvironmentSample from_environment;
-    if (!sample_environment(view.environment, rest, from_environment)) return false;
+    if (!sample_environment(view.environment, u, from_environment)) return false;
     sample = {};
     sample.wi = from_environment.wi;
     sample.distance = kInfinity;
@@ -180,7 +179,7 @@ HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, Vec3 fro
 
 /// Density with which sample_light draws direction `wi` for the environment, 1/sr; 0 without one.
 HD inline float pdf_environment(const LightSetView& view, Vec3 wi) {
-    if (view.environment_light == kNoLight || view.choice.count == 0) return 0;
+    if (view.environment_light == kNoLight || view.choice.entries == nullptr) return 0;
     return alias_pmf(view.choice, view.environment_light) * environment_pdf(view.environment, wi);
 }
 

@@ -63,7 +63,7 @@ struct DrawLights {
         const Hash4 h = hash_words(i, 11, 13, 17);
         const Vec3 from = extent * random_direction(i, 4);
         LightSample sample;
-        if (!sample_light(lights, from, unit_interval(h.x), {unit_interval(h.y), unit_interval(h.z)}, sample)) {
+        if (!sample_light(lights, from, h.x, {unit_interval(h.y), unit_interval(h.z)}, sample)) {
             out[i] = 0;
             return;
         }

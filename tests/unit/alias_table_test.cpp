@@ -7,22 +7,24 @@
 #include <random>
 #include <vector>
 
-#include "base/parallel_for.h"
+#include "math/sampler.h"
 #include "shading/alias_table.h"
 
 using namespace pertev;
 
 namespace {
 
-/// Probability of each index as the thresholds give it, which is what sample_alias does.
-std::vector<double> drawn_probabilities(std::span<const AliasEntry> entries) {
-    std::vector<double> probability(entries.size());
+/// How many of all numbers draw each index, by the thresholds.
+std::vector<uint64_t> drawn_numbers(std::span<const AliasEntry> entries) {
+    const uint64_t slot = (uint64_t(1) << 32) / entries.size();
+    std::vector<uint64_t> drawn(entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {
-        const double own = static_cast<double>(entries[i].threshold);
-        probability[i] += own / static_cast<double>(entries.size());
-        probability[entries[i].alias] += (1 - own) / static_cast<double>(entries.size());
+        REQUIRE(entries[i].threshold <= slot);
+        REQUIRE(entries[i].alias < entries.size());
+        drawn[i] += entries[i].threshold;
+        drawn[entries[i].alias] += slot - entries[i].threshold;
     }
-    return probability;
+    return drawn;
 }
 
 /// Weights over many orders of magnitude, every third one zero.
@@ -40,54 +42,84 @@ double sum_of(std::span<const float> weights) {
     return sum;
 }
 
+std::vector<AliasEntry> build(std::span<const float> weights, AliasNumbers numbers) {
+    std::vector<AliasEntry> entries(std::size_t(1) << alias_slot_bits(weights.size()));
+    build_alias_entries(weights, numbers, entries);
+    return entries;
+}
+
+constexpr AliasNumbers kBothNumbers[] = {AliasNumbers::Bits32, AliasNumbers::Floats};
+
 } // namespace
 
-TEST_CASE("alias table: what is drawn, what is stored and the weights are one distribution") {
-    for (const std::size_t count : {1u, 2u, 3u, 7u, 64u, 1000u, 4096u, 100000u}) {
-        const std::vector<float> weights = random_weights(count, static_cast<uint32_t>(count));
-        std::vector<AliasEntry> entries(count);
-        const double total = build_alias_entries(weights, entries);
-        CHECK(total == doctest::Approx(sum_of(weights)).epsilon(1e-12));
-        const std::vector<double> drawn = drawn_probabilities(entries);
-        double worst = 0, worst_pmf = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const double want = static_cast<double>(weights[i]) / total;
-            worst = std::max(worst, std::abs(drawn[i] - want) / (want + 1e-4 / static_cast<double>(count)));
-            worst_pmf = std::max(worst_pmf, std::abs(static_cast<double>(entries[i].pmf) - want) / (want + 1e-30));
-            if (weights[i] == 0) CHECK(drawn[i] == 0);
+TEST_CASE("alias table: what is drawn has just the probability that is stored, which is the weight's") {
+    for (const AliasNumbers numbers : kBothNumbers) {
+        for (const std::size_t count : {1u, 2u, 3u, 7u, 64u, 1000u, 4096u, 100'000u}) {
+            const std::vector<float> weights = random_weights(count, static_cast<uint32_t>(count));
+            const std::vector<AliasEntry> entries = build(weights, numbers);
+            const std::vector<uint64_t> drawn = drawn_numbers(entries);
+            const double total = sum_of(weights), least = std::ldexp(1.0, -static_cast<int>(numbers));
+            double worst = 0;
+            uint64_t wrong = 0, not_floats = 0;
+            for (std::size_t i = 0; i < entries.size(); ++i) {
+                const double weight = i < count ? static_cast<double>(weights[i]) : 0.0;
+                if (entries[i].pmf != static_cast<float>(std::ldexp(static_cast<double>(drawn[i]), -32))) ++wrong;
+                if ((weight > 0) != (drawn[i] > 0)) ++wrong;
+                if (numbers == AliasNumbers::Floats && entries[i].threshold % 512 != 0) ++not_floats;
+                // One number each, the others by weight.
+                const double by_weight = weight / total * (1 - least * static_cast<double>(count));
+                worst = std::max(worst, std::abs(static_cast<double>(entries[i].pmf) - by_weight) - 1e-7 * by_weight);
+            }
+            CAPTURE(count);
+            CAPTURE(static_cast<int>(numbers));
+            CHECK(wrong == 0);
+            CHECK(not_floats == 0);
+            CHECK(worst <= (count > 1 ? 2 * least + least * static_cast<double>(count) : least));
+        }
+    }
+}
+
+TEST_CASE("alias table: all 2^23 floats of the sampler draw each index as often as its probability says") {
+    // Lights of four decades of power: with 4096 slots, 11 bits of a float are left for the threshold.
+    for (const std::size_t count : {5u, 700u, 4096u}) {
+        std::vector<float> weights(count);
+        for (std::size_t i = 0; i < count; ++i) weights[i] = i % 2 == 0 ? 1.0f : 1e-4f;
+        const std::vector<AliasEntry> entries = build(weights, AliasNumbers::Floats);
+        const AliasTableView table = view_of(entries);
+        std::vector<uint32_t> drawn(count);
+        for (uint32_t k = 0; k < 1u << 23; ++k) ++drawn[sample_alias(table, alias_number(unit_interval(k << 9))).index];
+        uint64_t wrong = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            if (alias_pmf(table, i) * 0x1p23f != static_cast<float>(drawn[i]) || drawn[i] == 0) ++wrong;
         }
         CAPTURE(count);
-        CHECK(worst < 1e-3);
-        CHECK(worst_pmf < 1e-7);
+        CHECK(wrong == 0);
     }
 }
 
 TEST_CASE("alias table: equal weights give equal probabilities without a detour") {
-    std::vector<AliasEntry> entries(1000);
-    build_alias_entries(std::vector<float>(1000, 0.1f), entries);
+    const std::vector<AliasEntry> entries = build_alias_table(std::vector<float>(1024, 0.1f));
     for (const AliasEntry& entry : entries) {
-        CHECK(entry.threshold == 1);
-        CHECK(entry.pmf == 1e-3f);
+        CHECK(entry.threshold == 1u << 22);
+        CHECK(entry.pmf == 0x1p-10f);
     }
 }
 
 TEST_CASE("alias table: an even grid of numbers draws each index by its weight and leaves even numbers behind") {
     const std::vector<float> weights = {1, 0, 5, 2, 0.5f, 1.5f};
-    const AliasTable table = build_alias_table(weights);
-    const AliasTableView view = view_of(table);
+    const std::vector<AliasEntry> entries = build_alias_table(weights);
+    const AliasTableView table = view_of(entries);
     constexpr uint32_t draws = 1 << 20;
     std::vector<double> count(weights.size()), moment(weights.size()), square_moment(weights.size());
     for (uint32_t k = 0; k < draws; ++k) {
-        const float u = (static_cast<float>(k) + 0.5f) / static_cast<float>(draws);
-        const BlockAliasSample sample = sample_alias(view, {u, 0.625f});
+        const AliasSample sample = sample_alias(table, (k << 12) + (1 << 11));
         REQUIRE(sample.index < weights.size());
-        CHECK(sample.pmf == alias_pmf(view, sample.index));
-        CHECK(sample.u.y == 0.625f); // few weights: the second number is not touched
-        REQUIRE(sample.u.x >= 0);
-        REQUIRE(sample.u.x < 1);
+        CHECK(sample.pmf == alias_pmf(table, sample.index));
+        REQUIRE(sample.u >= 0);
+        REQUIRE(sample.u < 1);
         count[sample.index] += 1;
-        moment[sample.index] += static_cast<double>(sample.u.x);
-        square_moment[sample.index] += static_cast<double>(sample.u.x) * static_cast<double>(sample.u.x);
+        moment[sample.index] += static_cast<double>(sample.u);
+        square_moment[sample.index] += static_cast<double>(sample.u) * static_cast<double>(sample.u);
     }
     for (std::size_t i = 0; i < weights.size(); ++i) {
         CHECK(count[i] / draws == doctest::Approx(static_cast<double>(weights[i]) / 10.0).epsilon(1e-4));
@@ -97,92 +129,34 @@ TEST_CASE("alias table: an even grid of numbers draws each index by its weight a
     }
 }
 
-TEST_CASE("alias table: two levels draw what one level would, and the pmf sums to 1") {
-    const std::vector<float> weights = random_weights(50'000, 11);
-    const double total = sum_of(weights);
-    for (const uint32_t block_size : {0u, 1u, 7u, 256u, 50'000u}) {
-        const AliasTable table = build_alias_table(weights, block_size);
-        const AliasTableView view = view_of(table);
-        const std::vector<double> blocks = drawn_probabilities(table.blocks);
-        double sum = 0, worst = 0;
-        for (uint32_t i = 0; i < view.count; ++i) {
-            const double want = static_cast<double>(weights[i]) / total, pmf = static_cast<double>(alias_pmf(view, i));
-            sum += pmf;
-            worst = std::max(worst, std::abs(pmf - want) / (want + 1e-30));
-        }
-        double worst_block = 0;
-        for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const double want = static_cast<double>(table.blocks[b].pmf);
-            worst_block = std::max(worst_block, std::abs(blocks[b] - want) / (want + 1e-8));
-        }
-        CAPTURE(block_size);
-        CHECK(sum == doctest::Approx(1).epsilon(1e-6));
-        CHECK(worst < 3e-7);
-        CHECK(worst_block < 1e-3);
-    }
-}
-
-TEST_CASE("alias table: a last block that is shorter is drawn from within its bounds") {
-    std::vector<float> weights(10'001, 1.0f);
-    const AliasTable table = build_alias_table(weights);
-    REQUIRE(table.block_size > 1);
-    REQUIRE(table.count % table.block_size != 0);
-    const AliasTableView view = view_of(table);
-    std::vector<bool> seen(weights.size());
-    for (int i = 0; i < 1024; ++i) {
-        for (int j = 0; j < 1024; ++j) {
-            const Vec2 u = {(static_cast<float>(i) + 0.5f) / 1024, (static_cast<float>(j) + 0.5f) / 1024};
-            const BlockAliasSample sample = sample_alias(view, u);
-            REQUIRE(sample.index < weights.size());
-            seen[sample.index] = true;
-        }
-    }
-    CHECK(std::count(seen.begin(), seen.end(), false) == 0);
-}
-
-TEST_CASE("alias table: the largest random number below 1, and 1 itself, stay in range") {
-    for (const std::size_t count : {1u, 3u, 1000u, 4095u, 1u << 20}) {
-        const AliasTable table = build_alias_table(std::vector<float>(count, 1.0f));
-        for (const float u : {0.0f, 0x1.fffffep-1f, 1.0f}) {
-            const BlockAliasSample sample = sample_alias(view_of(table), {u, u});
-            CHECK(sample.index == (u == 0 ? 0 : count - 1));
-            CHECK(sample.u.x < 1);
-            CHECK(sample.u.y <= 1);
+TEST_CASE("alias table: the least and the largest random number, and 1 itself, stay in range") {
+    for (const AliasNumbers numbers : kBothNumbers) {
+        for (const std::size_t count : {1u, 3u, 1000u, 4095u, 1u << 20}) {
+            const std::vector<AliasEntry> entries = build(std::vector<float>(count, 1.0f), numbers);
+            for (const uint32_t number :
+                 {0u, 0xffffffffu, alias_number(0), alias_number(0x1.fffffep-1f), alias_number(1)}) {
+                const AliasSample sample = sample_alias(view_of(entries), number);
+                CHECK(sample.index < count);
+                CHECK(sample.pmf > 0);
+                CHECK(sample.u >= 0);
+                CHECK(sample.u < 1);
+            }
         }
     }
 }
 
-TEST_CASE("alias table: weights that are no weights are never drawn") {
+TEST_CASE("alias table: weights that are no weights are never drawn, the least one is") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<float> weights = {nan, 1, -3, 1e-45f, kInfinity, 3};
-    std::vector<AliasEntry> entries(weights.size());
-    CHECK(build_alias_entries(weights, entries) == doctest::Approx(4));
-    const std::vector<double> drawn = drawn_probabilities(entries);
-    CHECK(drawn[1] == doctest::Approx(0.25));
-    CHECK(drawn[5] == doctest::Approx(0.75));
-    for (const std::size_t i : {0u, 2u, 4u}) CHECK(drawn[i] == 0);
-    CHECK(drawn[3] < 1e-30);
+    const std::vector<AliasEntry> entries = build_alias_table(weights);
+    const std::vector<uint64_t> drawn = drawn_numbers(entries);
+    CHECK(static_cast<double>(entries[1].pmf) == doctest::Approx(0.25));
+    CHECK(static_cast<double>(entries[5].pmf) == doctest::Approx(0.75));
+    for (const std::size_t i : {0u, 2u, 4u, 6u, 7u}) CHECK(drawn[i] == 0);
+    CHECK(drawn[3] == 1);
 
     for (const std::vector<float>& none : {std::vector<float>{}, {0, 0, 0}, std::vector<float>(9000), {nan, -1}}) {
-        const AliasTable table = build_alias_table(none);
-        CHECK(table.count == 0);
-        CHECK(sample_alias(view_of(table), {0.5f, 0.5f}).pmf == 0);
+        CHECK(build_alias_table(none).empty());
+        CHECK(view_of(build_alias_table(none)).entries == nullptr);
     }
-}
-
-TEST_CASE("alias table: the build gives the same bits on any number of threads") {
-    const std::vector<float> weights = random_weights(300'000, 12);
-    set_thread_count(1);
-    const AliasTable one = build_alias_table(weights);
-    set_thread_count(7);
-    const AliasTable seven = build_alias_table(weights);
-    set_thread_count(0);
-    const auto same = [](const std::vector<AliasEntry>& a, const std::vector<AliasEntry>& b) {
-        return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](AliasEntry x, AliasEntry y) {
-                   return x.threshold == y.threshold && x.alias == y.alias && x.pmf == y.pmf;
-               });
-    };
-    CHECK(same(one.blocks, seven.blocks));
-    CHECK(same(one.entries, seven.entries));
-    CHECK(one.total == seven.total);
 }

@@ -57,7 +57,7 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = {path.pixel, path.sample, settings.seed};
-    const float choice = sample_1d(settings.sampler, key, vertex_slot(path, kSlotLight));
+    const uint32_t choice = sample_bits(settings.sampler, key, vertex_slot(path, kSlotLight));
     const Vec2 place = sample_2d(settings.sampler, key, vertex_slot(path, kSlotOnLight));
     LightSample light;
     if (!sample_light(scene.lights, surface.position, choice, place, light)) return false;
