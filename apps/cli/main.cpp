@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -29,6 +30,12 @@ void open_standard_files() {
     for (int fd = 0; fd <= STDERR_FILENO; ++fd) {
         if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) < 0) std::_Exit(exit_status(ErrorCode::FileWrite));
     }
+}
+
+/// A reader that goes away or a file that grows over its limit is a write that fails, never the end of a render.
+void turn_signals_into_errors() {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 /// One line to stderr, or nothing where that is full or gone.
@@ -113,6 +120,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     open_standard_files();
+    turn_signals_into_errors();
     const int status = run(argc, argv);
     std::cout.flush(); // CLI11 writes help and version there
     if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

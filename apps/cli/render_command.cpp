@@ -36,9 +36,9 @@ bool report_progress(const RenderProgress& now, double time_limit_s, Reporter& r
 }
 
 int render(const RenderFlags& flags) {
-    check_render_flags(flags);
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
+    check_render_flags(flags, messages);
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     const Stopwatch watch;
     const LoadedScene loaded = load_scene(flags.scene, messages);
@@ -51,12 +51,12 @@ int render(const RenderFlags& flags) {
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);
     reporter.say_messages();
-    reporter.say(fmt::format(
-        "{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-        "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
-        flags.scene.scene, counted(prepared.triangles, "triangle"), counted(scene.instances.size(), "instance"),
-        counted(prepared.lights.choice.count, "light"), load_s, prepared.build_seconds, settings.width, settings.height,
-        settings.samples, queue->device_name(), mebibytes(predicted_bytes(prepared, settings, queue->is_cuda()))));
+    reporter.say(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
+                             "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
+                             flags.scene.scene, counted(prepared.triangles, "triangle"),
+                             counted(scene.instances.size(), "instance"), counted(prepared.lights.count(), "light"),
+                             load_s, prepared.build_seconds, settings.width, settings.height, settings.samples,
+                             queue->device_name(), mebibytes(predicted_bytes(prepared, settings, queue->is_cuda()))));
 
     listen_for_interrupt();
     RenderResult result = render_picture(*queue, prepared, camera, settings, [&](const RenderProgress& now) {
@@ -71,8 +71,11 @@ int render(const RenderFlags& flags) {
                                  .camera = camera,
                                  .load_seconds = load_s,
                                  .build_seconds = prepared.build_seconds};
-    const std::string hash = write_result(flags, record, result, reporter);
-    report_result(record, result, hash, watch.seconds(), reporter);
+    const WrittenResult written = write_result(flags, record, result, reporter);
+    report_result(record, result, written.hash, watch.seconds(), reporter);
+    if (!written.failures.empty()) {
+        throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(written.failures, "\npertev: ")));
+    }
     if (flags.strict && result.invalid_samples > 0) {
         throw Error(ErrorCode::BadInput, fmt::format("--strict: {} not finite; the picture is written",
                                                      counted(result.invalid_samples, "sample")));

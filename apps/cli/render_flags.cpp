@@ -38,6 +38,11 @@ std::vector<std::string> names_of(const std::vector<std::pair<std::string, T>>& 
     return names;
 }
 
+bool keeps_alpha(const std::string& output) {
+    const ImageFormat format = image_format_for(output);
+    return format == ImageFormat::Exr || format == ImageFormat::Png;
+}
+
 bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> formats) {
     return std::ranges::any_of(flags.outputs, [&](const std::string& output) {
         return std::ranges::find(formats, image_format_for(output)) != formats.end();
@@ -122,7 +127,7 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     add_report_flags(verb, flags.report);
 }
 
-void check_render_flags(const RenderFlags& flags) {
+void check_render_flags(const RenderFlags& flags, Messages& messages) {
     if (!flags.exposure.empty() && flags.exposure != "auto") parse_number("--exposure", flags.exposure);
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
@@ -130,8 +135,13 @@ void check_render_flags(const RenderFlags& flags) {
     if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }
-    if (flags.transparent && !writes_any(flags, {ImageFormat::Exr, ImageFormat::Png})) {
+    if (flags.transparent && std::ranges::none_of(flags.outputs, keeps_alpha)) {
         throw Error(ErrorCode::BadInput, "--transparent: alpha is kept in EXR and PNG alone; add -o NAME.exr or .png");
+    }
+    for (const std::string& output : flags.outputs) {
+        if (flags.transparent && !keeps_alpha(output)) {
+            messages.warn(output + ": --transparent: this format has no alpha; the background becomes black");
+        }
     }
     if ((!flags.exposure.empty() || flags.tone_map != "srgb") &&
         !writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg})) {

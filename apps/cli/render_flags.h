@@ -32,7 +32,7 @@ struct RenderFlags {
 void add_render_flags(CLI::App& verb, RenderFlags& flags);
 
 /// What can be told before the scene is read. Throws Error, above all for an output that could not be written.
-void check_render_flags(const RenderFlags& flags);
+void check_render_flags(const RenderFlags& flags, Messages& messages);
 
 /// The settings for a scene. Throws Error.
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene);

@@ -8,6 +8,7 @@
 
 #include "apps/cli/parse_values.h"
 #include "base/byte_units.h"
+#include "base/error.h"
 #include "base/message_text.h"
 #include "base/version.h"
 #include "image/auto_exposure.h"
@@ -26,7 +27,8 @@ uint64_t peak_memory_bytes() {
 
 std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-/// The flags that place this camera again: to the bit where flags have placed it, else as near as their numbers go.
+/// The flags that place this camera again: to the bit where flags have placed it or none are given, else as near as
+/// their numbers go. And its matrix, column by column.
 void add_camera(const SceneOptions& options, const Camera& camera, ExrMetadata& metadata) {
     const Transform& from = camera.world_from_camera;
     const Vec3 eye = from.translation;
@@ -36,7 +38,12 @@ void add_camera(const SceneOptions& options, const Camera& camera, ExrMetadata& 
     for (const Vec3 unsaid : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
         if (options.up.empty() && look_at(eye, target, unsaid) == from) up = unsaid;
     }
-    metadata.insert(metadata.end(), {{"pertev.eye", comma_separated(eye)},
+    const std::string matrix =
+        fmt::format("{} {} {} {}", comma_separated(column(from, 0)), comma_separated(column(from, 1)),
+                    comma_separated(column(from, 2)), comma_separated(eye));
+    metadata.insert(metadata.end(), {{"pertev.camera", options.camera},
+                                     {"pertev.world_from_camera", matrix},
+                                     {"pertev.eye", comma_separated(eye)},
                                      {"pertev.target", comma_separated(target)},
                                      {"pertev.up", comma_separated(up)},
                                      {"pertev.aperture", camera.aperture_radius}});
@@ -120,18 +127,24 @@ float exposure_of(const RenderFlags& flags, bool default_light, const Image& pic
 
 } // namespace
 
-std::string write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
-                         Reporter& reporter) {
-    std::string hash = picture_hash(result.picture).hex();
+WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
+                           Reporter& reporter) {
+    WrittenResult written = {picture_hash(result.picture).hex(), {}};
     WriteImageOptions write;
     write.tone_map = *tone_map_named(flags.tone_map);
     write.exposure_stops = exposure_of(flags, record.default_light, result.picture, reporter);
     write.transparent = flags.transparent;
     const std::vector<ExrLayer> layers = layers_of(result);
     write.layers = layers;
-    write.metadata = metadata_of(flags, result, record, hash);
-    for (const std::string& output : flags.outputs) write_image(output, result.picture, write);
-    return hash;
+    write.metadata = metadata_of(flags, result, record, written.hash);
+    for (const std::string& output : flags.outputs) {
+        try {
+            write_image(output, result.picture, write);
+        } catch (const Error& error) {
+            written.failures.emplace_back(error.what());
+        }
+    }
+    return written;
 }
 
 void report_result(const RenderRecord& record, const RenderResult& result, const std::string& hash,

@@ -3,6 +3,7 @@
 // The end of a render: its files, with layers and metadata, and its last line.
 
 #include <string>
+#include <vector>
 
 #include "apps/cli/render_flags.h"
 #include "apps/cli/reporter.h"
@@ -20,10 +21,15 @@ struct RenderRecord {
     double load_seconds = 0, build_seconds = 0;
 };
 
-/// Writes the files that the flags name, each all or nothing, and gives the picture's hash. Takes the layers out of
-/// `result`. Throws Error(FileWrite).
-std::string write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
-                         Reporter& reporter);
+struct WrittenResult {
+    std::string hash;                  // of the picture
+    std::vector<std::string> failures; // why a file could not be written, for each such
+};
+
+/// Writes the files that the flags name, each all or nothing; one that fails does not keep the others from being
+/// written. Takes the layers out of `result`.
+WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
+                           Reporter& reporter);
 
 /// Says time, rates, memory, invalid samples and hash. `total_seconds` since the scene began to load.
 void report_result(const RenderRecord& record, const RenderResult& result, const std::string& hash,

@@ -43,6 +43,19 @@ void write_all(int fd, std::span<const std::byte> bytes) {
     }
 }
 
+/// umask() tells the mask by changing it, so it is asked for once, before there are threads.
+const mode_t kUmask = [] {
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    return mask;
+}();
+
+/// Permissions of the file that is replaced, or those that the user wants of new files.
+mode_t mode_for(const fs::path& target) {
+    struct stat there {};
+    return ::stat(target.c_str(), &there) == 0 ? there.st_mode & 0777 : 0666 & ~kUmask;
+}
+
 /// The end of a chain of symbolic links, whether it exists or not (std::filesystem::weakly_canonical gives the link
 /// itself where it does not).
 fs::path follow_links(fs::path path) {
@@ -79,7 +92,7 @@ void replace(const fs::path& target, std::span<const std::byte> bytes) {
     check(file.fd() >= 0);
     try {
         write_all(file.fd(), bytes);
-        check(::fchmod(file.fd(), 0644) == 0 && ::fsync(file.fd()) == 0);
+        check(::fchmod(file.fd(), mode_for(target)) == 0 && ::fsync(file.fd()) == 0);
         check(::rename(temporary.c_str(), target.c_str()) == 0);
     } catch (...) {
         ::unlink(temporary.c_str());

@@ -1,16 +1,36 @@
 #include "render/prepare_scene.h"
 
+#include <fmt/format.h>
+
 #include "accel/bvh/bvh_cache.h"
 #include "base/stopwatch.h"
 #include "image/srgb_table.h"
 #include "render/place_meshes.h"
+#include "shading/bsdf.h"
 
 namespace pertev {
+namespace {
+
+/// Says where a material's index is not the one that is rendered.
+void warn_of_indices(const Scene& scene, Messages& messages) {
+    for (const Material& material : scene.materials) {
+        if (material.kind != MaterialKind::Dielectric) continue;
+        const float used = DielectricBsdf::usable_ior(material.ior, alpha_from_roughness(material.roughness));
+        if (used == material.ior) continue;
+        messages.warn(
+            fmt::format("material {}: rough glass of index {} is rendered with {}; its energy is tabulated for "
+                        "1.1 to 3",
+                        material.name, material.ior, used));
+    }
+}
+
+} // namespace
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages) {
     const Stopwatch watch;
     PreparedScene prepared;
     prepared.scene = &scene;
+    warn_of_indices(scene, messages);
     const MeshPlacement placement = place_meshes(scene);
 
     prepared.baked = load_or_build_bvh(baked_triangles(scene, placement), options.bvh, options.bvh_cache, messages);

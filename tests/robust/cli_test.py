@@ -27,6 +27,11 @@ FLAGS = {
 }
 
 
+def limit_files():
+    """For preexec_fn: no file grows past 4 KiB, as on a disk that is full."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+
 class WhatIsWritten(CliTest):
     def test_an_output_that_cannot_be_written_ends_with_6_before_the_scene_is_read(self):
         os.mkdir(self.path("folder.png"))
@@ -54,14 +59,33 @@ class WhatIsWritten(CliTest):
         with open(self.path("x.hdr"), "rb") as file:
             old = file.read()
 
-        def fill():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-
         self.refuse(6, "render", "cornell-box", "-o", "x.hdr", "--size", "128x128", "--spp", "1", says=["x.hdr"],
-                    preexec_fn=fill)
+                    preexec_fn=limit_files)
         with open(self.path("x.hdr"), "rb") as file:
             self.assertEqual(file.read(), old)
+
+    def test_an_output_that_fails_late_does_not_cost_the_others(self):
+        outcome = self.run_pertev("render", "cornell-box", "-o", "large.hdr", "-o", "small.jpg", "-o", "large.exr",
+                                  "--size", "128x128", "--spp", "1", "--device", "cpu", "--json", preexec_fn=limit_files)
+        self.assertEqual(outcome.status, 6, outcome)
+        self.assertEqual(self.files(), ["small.jpg"])
+        self.assertEqual(self.info("small.jpg")["width"], 128)
+        self.assertEqual(len(outcome.events("done")), 1)
+        for name in ["large.hdr", "large.exr"]:
+            self.assertIn(name, outcome.stderr)
+
+    def test_new_files_follow_the_users_mask_and_old_ones_keep_their_permissions(self):
+        def mode(name):
+            return os.stat(self.path(name)).st_mode & 0o777
+
+        arguments = ["render", "cornell-box", "-o", "x.png", "--size", "8x8", "--spp", "1"]
+        self.succeed(*arguments, umask=0o077)
+        self.assertEqual(mode("x.png"), 0o600)
+        os.chmod(self.path("x.png"), 0o664)
+        self.succeed(*arguments, umask=0o022)
+        self.assertEqual(mode("x.png"), 0o664)
+        self.succeed(*arguments[:3], "y.png", *arguments[4:], umask=0o002)
+        self.assertEqual(mode("y.png"), 0o664)
 
     def test_one_render_writes_every_output_that_is_named_wherever_it_stands(self):
         self.succeed("render", "-o", "a.png", "cornell-box", "-o", "b.EXR", "--size", "16x8", "--spp", "1", "-o",
@@ -86,6 +110,16 @@ class WhatIsWritten(CliTest):
                 self.assertEqual(outcome.status, 6, outcome)
                 self.assertIn("standard output", outcome.stderr)
 
+    def test_a_reader_of_the_standard_output_that_goes_away_does_not_cost_the_picture(self):
+        whole = self.render(output="whole.png")["hash"]
+        reading, writing = os.pipe()
+        os.close(reading)
+        outcome = self.run_pertev("render", "cornell-box", "-o", "x.exr", "--size", "16x16", "--spp", "1", "--device",
+                                  "cpu", "--json", stdout=writing)
+        os.close(writing)
+        self.assertEqual(outcome.status, 6, outcome)
+        self.assertEqual(self.info("x.exr")["hash"], whole)
+
     def test_closed_or_full_standard_error_does_not_end_up_in_a_picture(self):
         whole = self.render(output="whole.png")["hash"]
         arguments = ["render", "cornell-box", "-o", "x.exr", "--size", "16x16", "--spp", "1", "--device", "cpu"]
@@ -99,6 +133,9 @@ class WhatIsWritten(CliTest):
         mesh = "".join(f"v {x} {math.sin(x * y)} {y}\n" for y in range(40) for x in range(40))
         mesh += "".join(f"f {1 + x + 40 * y} {2 + x + 40 * y} {41 + x + 40 * y}\n" for y in range(39) for x in range(39))
         write(self.path("hills.obj"), mesh)
+        limited = self.succeed("render", "hills.obj", "-o", "limited.png", "--size", "16x16", "--spp", "1",
+                               preexec_fn=limit_files)
+        self.assertIn("cache cannot be written", limited.stderr)
         self.environment["XDG_CACHE_HOME"] = "/proc"
         done = self.render(scene="hills.obj")
         self.environment.pop("XDG_CACHE_HOME")
@@ -330,7 +367,10 @@ class WhatIsRendered(CliTest):
         for x in range(16):
             if layers["A"][9][x] == 1:
                 self.assertEqual(layers["R"][9][x], opaque["R"][9][x])
-        self.render(*view, "--transparent", scene="floor.obj", output="x.png")
+        both = self.succeed("render", "floor.obj", *view, "--transparent", "-o", "x.png", "-o", "x.jpg", "--size",
+                            "16x16", "--spp", "1")
+        self.assertIn("x.jpg: --transparent", both.stderr)
+        self.assertNotIn("x.png: --transparent", both.stderr)
         with open(self.path("x.png"), "rb") as file:
             self.assertEqual(file.read()[25], 6)  # PNG's colour type with alpha
 

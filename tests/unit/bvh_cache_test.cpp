@@ -198,7 +198,13 @@ TEST_CASE("the cache forgets what was used longest ago when it grows too large")
         const BuiltTree tree = build_triangle_tree(triangles, {});
         store_cached_bvh(key, folder, tree, messages, k < 3 ? 1 << 30 : fs::file_size(files[0]) * 5 / 2);
         fs::last_write_time(files.back(), fs::file_time_type::clock::now() - std::chrono::hours(k == 1 ? 1 : 9 - k));
+        if (k == 2) { // what processes that were killed an hour and a moment ago have left
+            for (const char* name : {".00.bvh.aB3dE6", ".00.bvh.xYz123"}) std::ofstream(folder / name) << "half a tree";
+            fs::last_write_time(folder / ".00.bvh.aB3dE6", fs::file_time_type::clock::now() - std::chrono::hours(2));
+        }
         if (k < 3) continue;
+        CHECK_FALSE(fs::exists(folder / ".00.bvh.aB3dE6"));
+        CHECK(fs::exists(folder / ".00.bvh.xYz123"));
         CHECK_FALSE(fs::exists(files[0])); // oldest
         CHECK(fs::exists(files[1]));       // used an hour ago
         CHECK_FALSE(fs::exists(files[2]));

@@ -1,6 +1,7 @@
 #include "accel/bvh/bvh_cache.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -93,7 +94,17 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
     return tree;
 }
 
-/// Removes the files used longest ago. Another process may do the same at the same time: what is gone is gone.
+/// What write_file_atomically leaves behind when its process is killed: ".NAME.bvh.XXXXXX", old enough that nobody
+/// writes it any more.
+bool is_abandoned(const fs::directory_entry& entry) {
+    std::error_code error;
+    const bool is_temporary = entry.path().stem().extension() == ".bvh" && entry.path().filename().string()[0] == '.';
+    const auto written = entry.last_write_time(error);
+    return is_temporary && !error && written < fs::file_time_type::clock::now() - std::chrono::hours(1);
+}
+
+/// Removes the files used longest ago, and those of processes that were killed. Another process may do the same at the
+/// same time: what is gone is gone.
 void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
     struct Entry {
         fs::path path;
@@ -104,6 +115,7 @@ void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
     uint64_t total = 0;
     std::error_code error;
     for (const fs::directory_entry& found : fs::directory_iterator(folder, error)) {
+        if (is_abandoned(found)) fs::remove(found.path(), error);
         if (found.path().extension() != ".bvh" || !found.is_regular_file(error)) continue;
         const uint64_t size = found.file_size(error);
         if (error) continue;
