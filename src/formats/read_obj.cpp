@@ -88,11 +88,11 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
 /// Names on a mtllib line: one that may hold spaces, or several apart by spaces.
 std::vector<fs::path> material_files(const std::string& line, const fs::path& obj, const FileAccess& access,
                                      Messages& messages) {
-    if (const std::optional<fs::path> whole = access.find(obj, line)) return {*whole};
+    if (const std::optional<fs::path> whole = access.find(obj, line, messages)) return {*whole};
     std::vector<fs::path> found;
     std::istringstream names(line);
     for (std::string name; names >> name;) {
-        if (const std::optional<fs::path> path = access.find(obj, name)) {
+        if (const std::optional<fs::path> path = access.find(obj, name, messages)) {
             found.push_back(*path);
         } else {
             messages.warn(
