@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,12 @@ inline std::string counted(uint64_t count, const char* thing) {
 /// Place `i` of a list of the scene.
 inline std::string numbered(const char* kind, std::size_t i, const std::string& name) {
     return fmt::format("{} {}{}{}", kind, i, name.empty() ? "" : " ", name);
+}
+
+/// Text of a file as a message repeats it: as much as a line has room for.
+inline std::string shortened(std::string_view text) {
+    constexpr std::size_t kMost = 200;
+    return text.size() <= kMost ? std::string(text) : fmt::format("{}...", text.substr(0, kMost));
 }
 
 } // namespace pertev

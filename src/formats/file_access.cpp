@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/message_text.h"
 
 namespace fs = std::filesystem;
 
@@ -24,6 +25,29 @@ bool is_within(const fs::path& path, const fs::path& root) {
     return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
+Error refusal(const fs::path& from, const std::string& reference, const std::string& why) {
+    return Error(ErrorCode::BadInput,
+                 fmt::format("{}: refers to \"{}\", {}", from.string(), shortened(reference), why));
+}
+
+void check_is_name(const fs::path& from, const std::string& reference) {
+    if (reference.empty()) throw refusal(from, reference, "which is no file name");
+    // The system would cut the name there, after the checks have seen all of it.
+    if (reference.find('\0') != std::string::npos) throw refusal(from, reference, "a name that holds a zero byte");
+}
+
+fs::path portable(std::string reference) {
+    std::replace(reference.begin(), reference.end(), '\\', '/');
+    return reference;
+}
+
+struct Located {
+    bool is_there, is_allowed;
+    fs::path path;
+};
+
+fs::path folder_of(const fs::path& from) { return from.has_parent_path() ? from.parent_path() : fs::path("."); }
+
 } // namespace
 
 FileAccess::FileAccess(const fs::path& scene_file, const std::vector<fs::path>& allowed) {
@@ -33,36 +57,50 @@ FileAccess::FileAccess(const fs::path& scene_file, const std::vector<fs::path>& 
     }
 }
 
-fs::path FileAccess::resolve(const fs::path& from, const std::string& reference) const {
-    const auto refuse = [&](const std::string& why) {
-        return Error(ErrorCode::BadInput, fmt::format("{}: refers to \"{}\", {}", from.string(), reference, why));
-    };
-    if (reference.empty()) throw refuse("which is no file name");
-    // The system would cut the name there, after the check below has seen all of it.
-    if (reference.find('\0') != std::string::npos) throw refuse("a name that holds a zero byte");
-    std::string portable = reference;
-    std::replace(portable.begin(), portable.end(), '\\', '/');
+bool FileAccess::is_allowed(const fs::path& canonical) const {
+    return std::any_of(roots_.begin(), roots_.end(), [&](const fs::path& root) { return is_within(canonical, root); });
+}
 
+fs::path FileAccess::resolve(const fs::path& from, const std::string& reference) const {
+    check_is_name(from, reference);
     std::error_code ec;
-    const fs::path base = from.has_parent_path() ? from.parent_path() : fs::path(".");
-    const fs::path path = fs::weakly_canonical(base / portable, ec);
-    if (ec) throw refuse(fmt::format("which cannot be opened: {}", ec.message()));
+    const fs::path path = fs::weakly_canonical(folder_of(from) / portable(reference), ec);
+    if (ec) throw refusal(from, reference, fmt::format("which cannot be opened: {}", ec.message()));
     // What is left of a symbolic link after resolving leads nowhere yet; where it will lead is not known.
-    if (fs::is_symlink(fs::symlink_status(path, ec))) throw refuse("a symbolic link that leads nowhere");
-    if (std::none_of(roots_.begin(), roots_.end(), [&](const fs::path& root) { return is_within(path, root); })) {
-        throw refuse(fmt::format("which is outside the scene's folder; if it is meant, allow it with --allow-path {}",
-                                 path.parent_path().string()));
+    if (fs::is_symlink(fs::symlink_status(path, ec))) {
+        throw refusal(from, reference, "a symbolic link that leads nowhere");
+    }
+    if (!is_allowed(path)) {
+        throw refusal(from, reference,
+                      fmt::format("which is outside the scene's folder; if it is meant, allow it with --allow-path {}",
+                                  path.parent_path().string()));
     }
     return path;
 }
 
-std::optional<fs::path> FileAccess::find(const fs::path& from, const std::string& reference) const {
-    std::error_code ec;
-    const fs::path path = resolve(from, reference);
-    if (fs::exists(path, ec)) return path;
-    if (path.filename().empty()) return std::nullopt;
-    const fs::path beside = resolve(from, path.filename().string());
-    if (fs::exists(beside, ec)) return beside;
+std::optional<fs::path> FileAccess::find(const fs::path& from, const std::string& reference, Messages& messages) const {
+    check_is_name(from, reference);
+    // A name longer than the system takes, for one, has no path: there is no such file.
+    const auto located = [&](const fs::path& name) {
+        std::error_code ec;
+        const fs::path path = fs::weakly_canonical(folder_of(from) / name, ec);
+        return Located{.is_there = !ec && fs::exists(path, ec), .is_allowed = is_allowed(path), .path = path};
+    };
+    const fs::path name = portable(reference);
+    const Located wanted = located(name);
+    if (wanted.is_there && wanted.is_allowed) return wanted.path;
+    if (name.has_filename() && name.has_parent_path()) {
+        const Located beside = located(name.filename());
+        if (beside.is_there && beside.is_allowed) {
+            if (!wanted.is_allowed) {
+                messages.warn(fmt::format("{}: files named as in \"{}\", outside the scene's folder: those of the same "
+                                          "name here are read",
+                                          folder_of(from).string(), shortened(name.parent_path().string())));
+            }
+            return beside.path;
+        }
+    }
+    if (wanted.is_there) (void)resolve(from, reference); // throws
     return std::nullopt;
 }
 

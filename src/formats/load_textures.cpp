@@ -88,11 +88,11 @@ void decode(std::span<const std::byte> bytes, const std::string& name, Uses use,
 } // namespace
 
 int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference) {
-    const std::optional<fs::path> path = access_.find(from, reference);
+    const std::optional<fs::path> path = access_.find(from, reference, messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_.warn(
-                fmt::format("{}: there is no texture {}; its factor alone is used", from.string(), reference));
+            messages_.warn(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(),
+                                       shortened(reference)));
         }
         return kNoImage;
     }

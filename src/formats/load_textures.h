@@ -22,8 +22,9 @@ class TextureLoader {
 public:
     TextureLoader(const FileAccess& access, Messages& messages) : access_(access), messages_(messages) {}
 
-    /// Image index of the file `reference`, as written in `from`; the same file, however spelled, is one image.
-    /// kNoImage after a warning where there is no such file. Throws Error(BadInput) when access is refused.
+    /// Image index of the file `reference`, as written in `from` (see FileAccess::resolve); the same file, however
+    /// spelled, is one image. kNoImage after a warning where there is no such file. Throws Error(BadInput) when access
+    /// is refused.
     int32_t add_file(const std::filesystem::path& from, const std::string& reference);
 
     /// Image index of an encoded image in memory, which stays alive until load_into returns. `name` is for messages.

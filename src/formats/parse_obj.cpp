@@ -1,7 +1,6 @@
 #include "formats/parse_obj.h"
 
 #include <charconv>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
+#include "formats/obj_text.h"
 #include "formats/parse_number.h"
 #include "formats/triangulate_polygon.h"
 #include "image/srgb.h"
@@ -20,77 +20,6 @@ namespace pertev {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-// A backslash joins a line with the next, so line ends inside a statement are space.
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\\' || c == '\0'; }
-
-void skip_space(std::string_view& text) {
-    std::size_t n = 0;
-    while (n < text.size() && is_space(text[n])) ++n;
-    text.remove_prefix(n);
-}
-
-std::string_view take_word(std::string_view& text) {
-    skip_space(text);
-    std::size_t n = 0;
-    while (n < text.size() && !is_space(text[n])) ++n;
-    const std::string_view word = text.substr(0, n);
-    text.remove_prefix(n);
-    return word;
-}
-
-/// The rest of a line without the space around it: names may hold spaces.
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-    return text;
-}
-
-/// Statements with their line numbers.
-class Lines {
-public:
-    explicit Lines(std::string_view text)
-        : text_(text), end_of_line_(text.find('\n') == text.npos ? '\r' : '\n') {} // lone CR: old Macintosh files
-
-    bool next(std::string_view& line) {
-        if (at_ >= text_.size()) return false;
-        number_ += joined_;
-        joined_ = 0;
-        const std::size_t begin = at_;
-        std::size_t end;
-        do {
-            const void* found = std::memchr(text_.data() + at_, end_of_line_, text_.size() - at_);
-            end = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : text_.size();
-            at_ = end + 1;
-            ++joined_;
-        } while (at_ < text_.size() && is_joined(begin, end));
-        line = text_.substr(begin, end - begin);
-        return true;
-    }
-    /// Of the statement's first line; 1 is the file's first.
-    uint32_t number() const { return number_; }
-
-private:
-    bool is_joined(std::size_t begin, std::size_t end) const {
-        if (end > begin && text_[end - 1] == '\r') --end;
-        return end > begin && text_[end - 1] == '\\';
-    }
-
-    std::string_view text_;
-    char end_of_line_;
-    std::size_t at_ = 0;
-    uint32_t number_ = 1, joined_ = 0;
-};
-
-/// Something that happens on many lines: said once, with the first line.
-struct Counted {
-    std::size_t times = 0;
-    uint32_t first_line = 0;
-
-    void add(uint32_t line) {
-        if (times++ == 0) first_line = line;
-    }
-};
 
 struct Face {
     uint32_t corner_count, line;
@@ -112,11 +41,11 @@ public:
         while (lines_.next(line)) statement(line);
         check_counts();
         data_.groups.resize(groups_.size());
-        std::vector<Counted> without_uv(groups_.size());
+        std::vector<CountedLines> without_uv(groups_.size());
         parallel_for(groups_.size(), 1, [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i]); });
         std::erase_if(data_.groups, [](const ObjGroup& group) { return group.corners.empty(); });
-        Counted missing;
-        for (const Counted& of_group : without_uv) {
+        CountedLines missing;
+        for (const CountedLines& of_group : without_uv) {
             if (of_group.times == 0) continue;
             missing = {missing.times + of_group.times,
                        missing.times == 0 ? of_group.first_line : std::min(missing.first_line, of_group.first_line)};
@@ -135,7 +64,7 @@ private:
         return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file_, line, what));
     }
 
-    void say(const Counted& what, const char* thing, const char* text) const {
+    void say(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
         messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text));
     }
@@ -157,11 +86,11 @@ private:
         }
         if (key == "usemtl") {
             current_ = nullptr;
-            material_ = trimmed(line);
+            material_ = rest_as_name(line);
             return;
         }
         if (key == "mtllib") {
-            data_.material_files.emplace_back(trimmed(line));
+            data_.material_files.push_back({std::string(rest_as_name(line)), lines_.number()});
             return;
         }
         if (key == "p" || key == "l") return points_and_lines_.add(lines_.number());
@@ -186,7 +115,7 @@ private:
         skip_space(line);
         if (line.empty() || line[0] == '#') return std::nullopt;
         const std::optional<float> value = parse_float(line);
-        if (value && (line.empty() || is_space(line[0]))) return value;
+        if (value && (line.empty() || is_obj_space(line[0]))) return value;
         bad_numbers_.add(lines_.number());
         take_word(line);
         return kNan;
@@ -285,7 +214,7 @@ private:
     }
 
     /// Checks a group's indices and cuts its faces into triangles.
-    void finish(RawGroup& raw, ObjGroup& group, Counted& without) const {
+    void finish(RawGroup& raw, ObjGroup& group, CountedLines& without) const {
         group.material = raw.material;
         std::size_t triangles = 0;
         for (const Face& face : raw.faces) triangles += face.corner_count - 2;
@@ -310,7 +239,7 @@ private:
         raw = {};
     }
 
-    void check(ObjCorner& corner, uint32_t line, Counted& without) const {
+    void check(ObjCorner& corner, uint32_t line, CountedLines& without) const {
         if (corner.position >= data_.positions.size()) {
             throw fault(line, fmt::format("vertex index {} is out of range; the file has {} vertices",
                                           uint64_t(corner.position) + 1, data_.positions.size()));
@@ -325,7 +254,7 @@ private:
         }
     }
 
-    Lines lines_;
+    ObjLines lines_;
     const std::string& file_;
     Messages& messages_;
     ObjData data_;
@@ -333,15 +262,13 @@ private:
     std::unordered_map<std::string, std::size_t> by_material_;
     std::string material_;
     RawGroup* current_ = nullptr; // of material_; null until a face needs it
-    Counted bad_numbers_, short_faces_, points_and_lines_, free_form_, unknown_;
+    CountedLines bad_numbers_, short_faces_, points_and_lines_, free_form_, unknown_;
 };
 
 } // namespace
 
 ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages) {
-    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3); // byte order mark
-    return Parser(text, file, messages).run();
+    return Parser(text_of(bytes), file, messages).run();
 }
 
 } // namespace pertev

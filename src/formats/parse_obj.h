@@ -3,9 +3,8 @@
 // The text of a Wavefront OBJ file as arrays: vertices, and triangles by material. Wavefront's "Object Files (.obj)",
 // appendix B1 of the Advanced Visualizer manual; vertex colours as MeshLab and Blender write them.
 //
-// Why not tinyobjloader here (read_mtl uses it for .mtl): its 2.0rc10 reads a number that it cannot parse, `nan` too,
-// as 0 without a word; takes a minute for one polygon of 200 000 corners; rounds numbers through libm's pow; and knows
-// no line for an index out of range.
+// Why not tinyobjloader: its 2.0rc10 reads a number that it cannot parse, `nan` too, as 0 without a word; takes a
+// minute for one polygon of 200 000 corners; rounds numbers through libm's pow; and knows no line for what is wrong.
 
 #include <array>
 #include <cstddef>
@@ -33,13 +32,19 @@ struct ObjGroup {
     std::vector<ObjCorner> corners; // [3 * triangles], in file order, every index in range
 };
 
+/// One mtllib statement: a name that may hold spaces, or several apart by spaces.
+struct ObjMaterialFiles {
+    std::string names;
+    uint32_t line;
+};
+
 struct ObjData {
     std::vector<Vec3> positions;
     std::vector<Vec4> colors; // [positions], linear; or empty
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;        // v as in the file: upwards
     std::vector<ObjGroup> groups; // by material, in the order of first use; none is empty
-    std::vector<std::string> material_files;
+    std::vector<ObjMaterialFiles> material_files;
 };
 
 /// Throws Error(BadInput) that names `file` and the line for a face that cannot be understood or whose vertex does not

@@ -39,15 +39,17 @@ public:
     HeaderParser(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
     PlyHeader run() {
-        if (next_line() != "ply") throw fault("a PLY file starts with the line `ply`");
-        const auto format = words_of(next_line());
+        if (text_.starts_with("\xef\xbb\xbf")) at_ = 3; // byte order mark
+        if (words_of(next_line()) != std::vector<std::string_view>{"ply"}) {
+            throw fault("a PLY file starts with the line `ply`");
+        }
+        const auto format = next_words();
         if (format.size() != 3 || format[0] != "format" || format[2] != "1.0") {
-            throw fault("the second line is `format ascii|binary_little_endian|binary_big_endian 1.0`");
+            throw fault("after `ply` comes the line `format ascii|binary_little_endian|binary_big_endian 1.0`");
         }
         header_.format = format_of(format[1]);
         for (;;) {
-            const auto words = words_of(next_line());
-            if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+            const auto words = next_words();
             if (words[0] == "end_header") break;
             if (words[0] == "element") {
                 element(words);
@@ -74,6 +76,14 @@ private:
         const bool is_pair = text_[end] == '\r' && end + 1 < text_.size() && text_[end + 1] == '\n';
         at_ = end + (is_pair ? 2 : 1);
         return line;
+    }
+
+    /// Of the next line that is no comment.
+    std::vector<std::string_view> next_words() {
+        for (;;) {
+            const auto words = words_of(next_line());
+            if (!words.empty() && words[0] != "comment" && words[0] != "obj_info") return words;
+        }
     }
 
     PlyFormat format_of(std::string_view name) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Wavefront .mtl files (tinyobjloader) to our materials. MTL says how a Phong shader of 1990 blends colours; the
+// Wavefront .mtl files (parse_mtl.h) to our materials. MTL says how a Phong shader of 1990 blends colours; the
 // conversion, in this order:
 //   PBR keys (Pr, Pm, map_Pr, map_Pm)           MetallicRoughness with them
 //   illum 6 or 7; illum 4 or 9 with d < 1 or Kd near black; d < 1 with Ni > 1 and Tf
@@ -9,7 +9,7 @@
 //                                               metal of colour Ks; a mirror for illum 3, 5, 8, else rough by Ns
 //   Ks above 0.02 and not (0.5, 0.5, 0.5), which exporters write unasked, Ns above 1 and illum not 1
 //                                               MetallicRoughness, metallic 0, Ni such that F0 = Ks / max(1, Kd + Ks)
-//   else                                        Diffuse of Kd
+//   else                                        Diffuse of Kd; without Kd, grey as where there is no material
 // Ns to GGX: alpha = sqrt(2 / (Ns + 2)) (Walter et al., EGSR 2007, section 5.2). d < 1 alone, and map_d, are alpha.
 
 #include <filesystem>
@@ -32,7 +32,7 @@ struct MtlMaterial {
 };
 
 /// Materials of the file at `path` by name, the first of a name first; `loader` is told of their textures. Throws
-/// Error(BadInput) when the file cannot be read.
+/// Error(BadInput) when the file cannot be read or, with the line, when a number of it cannot.
 std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, TextureLoader& loader,
                                             Messages& messages);
 

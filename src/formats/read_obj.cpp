@@ -1,5 +1,6 @@
 #include "formats/read_obj.h"
 
+#include <algorithm>
 #include <bit>
 #include <map>
 #include <optional>
@@ -51,6 +52,29 @@ private:
     std::vector<ObjCorner> vertices_;
 };
 
+bool has_texture(const Material& m) {
+    return m.base_color_texture.has_image() || m.alpha_texture.has_image() || m.metallic_texture.has_image() ||
+           m.roughness_texture.has_image() || m.emission_texture.has_image() || m.normal_texture.has_image();
+}
+
+void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& data, const std::string& file,
+                                          Messages& messages) {
+    std::size_t materials = 0;
+    std::string first;
+    for (std::size_t i = 0; i < data.groups.size(); ++i) {
+        const std::vector<ObjCorner>& corners = data.groups[i].corners;
+        if (!has_texture(scene.materials[i]) ||
+            std::none_of(corners.begin(), corners.end(), [](const ObjCorner& c) { return c.uv == kNoIndex; })) {
+            continue;
+        }
+        if (materials++ == 0) first = data.groups[i].material;
+    }
+    if (materials == 0) return;
+    messages.warn(fmt::format("{}: {} with a texture, but on faces without texture coordinates ({} is the first): "
+                              "its corner is seen there",
+                              file, counted(materials, "material"), shortened(first)));
+}
+
 Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     Mesh mesh;
     mesh.name = group.material;
@@ -85,18 +109,18 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     return mesh;
 }
 
-/// Names on a mtllib line: one that may hold spaces, or several apart by spaces.
-std::vector<fs::path> material_files(const std::string& line, const fs::path& obj, const FileAccess& access,
-                                     Messages& messages) {
-    if (const std::optional<fs::path> whole = access.find(obj, line)) return {*whole};
+std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
+                                          Messages& messages) {
+    const std::string place = fmt::format("{}:{}", obj.string(), line.line);
+    if (const std::optional<fs::path> whole = access.find(place, line.names, messages)) return {*whole};
     std::vector<fs::path> found;
-    std::istringstream names(line);
+    std::istringstream names(line.names);
     for (std::string name; names >> name;) {
-        if (const std::optional<fs::path> path = access.find(obj, name)) {
+        if (const std::optional<fs::path> path = access.find(place, name, messages)) {
             found.push_back(*path);
         } else {
             messages.warn(
-                fmt::format("{}: there is no material file {}; what it describes is grey", obj.string(), name));
+                fmt::format("{}: there is no material file {}; what it describes is grey", place, shortened(name)));
         }
     }
     return found;
@@ -106,9 +130,9 @@ std::map<std::string, MtlMaterial> read_materials(const ObjData& data, const fs:
                                                   TextureLoader& loader, Messages& messages) {
     std::map<std::string, MtlMaterial> materials;
     std::set<fs::path> seen;
-    for (const std::string& line : data.material_files) {
-        if (line.empty()) continue;
-        for (const fs::path& path : material_files(line, obj, access, messages)) {
+    for (const ObjMaterialFiles& line : data.material_files) {
+        if (line.names.empty()) continue;
+        for (const fs::path& path : find_material_files(line, obj, access, messages)) {
             if (seen.insert(path).second) materials.merge(read_mtl(path, loader, messages));
         }
     }
@@ -149,7 +173,7 @@ Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions
 
     if (unknown > 0 && !options.geometry_only) {
         messages.warn(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
-                                  counted(unknown, "material"), first_unknown));
+                                  counted(unknown, "material"), shortened(first_unknown)));
     }
 
     parallel_invoke([&] { loader.load_into(scene); },
@@ -166,6 +190,7 @@ Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions
         finish_mtl_material(finished, scene.images, file, messages);
         material = finished.material;
     }
+    warn_of_textures_without_coordinates(scene, data, file, messages);
     return scene;
 }
 

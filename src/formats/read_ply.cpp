@@ -33,8 +33,7 @@ public:
           format_(header.format), file_(file) {}
 
     Error fault(const std::string& what) const {
-        return Error(ErrorCode::BadInput,
-                     fmt::format("{}: byte {}: {} {}: {}", file_, at_ - begin_, element_, number_, what));
+        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {} {}: {}", file_, place(), element_, number_, what));
     }
     void set_place(const std::string& element, uint64_t number) {
         element_ = element;
@@ -86,6 +85,16 @@ public:
     }
 
 private:
+    /// The line in a text, the byte in a binary file.
+    std::string place() const {
+        if (format_ != PlyFormat::Ascii) return fmt::format(" byte {}", at_ - begin_);
+        std::size_t lines = 1;
+        for (const char* c = begin_; c != at_; ++c) {
+            lines += *c == '\n' || (*c == '\r' && c + 1 != end_ && c[1] != '\n');
+        }
+        return std::to_string(lines);
+    }
+
     std::string_view word() {
         const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
         while (at_ != end_ && is_space(*at_)) ++at_;
@@ -233,6 +242,7 @@ public:
             }
         }
         triangulate();
+        warn_of_face_properties(messages);
         if (strays_ > 0) {
             messages.warn(fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
         }
@@ -246,6 +256,21 @@ private:
     static bool is_surface(const PlyElement& element) {
         return (element.name == "face" || element.name == "tristrips") && element.count > 0 &&
                std::any_of(element.properties.begin(), element.properties.end(), is_indices);
+    }
+
+    void warn_of_face_properties(Messages& messages) const {
+        for (const PlyElement& element : header_.elements) {
+            if (element.name != "face" || element.count == 0) continue;
+            bool has_colour = false, has_uv = false;
+            for (const PlyProperty& p : element.properties) {
+                const std::size_t slot = p.is_list ? kSlots : slot_of(p.name);
+                has_colour |= slot == kRed || slot == kGreen || slot == kBlue;
+                has_uv |= p.is_list && (p.name == "texcoord" || p.name == "texture_uv" || p.name == "texcoords");
+            }
+            if (has_colour) messages.warn(file_ + ": colours of faces are left out; those of vertices are read");
+            if (has_uv)
+                messages.warn(file_ + ": texture coordinates of faces are left out; those of vertices are read");
+        }
     }
 
     void vertices(const PlyElement& element) {

@@ -15,7 +15,7 @@ namespace pertev {
 
 /// One mesh, one grey material (white where there are vertex colours). Integer colours are taken as sRGB, float ones as
 /// linear; v of texture coordinates points up. Not yet validated. Throws Error(BadInput) that names the file and the
-/// header line, or the element, its number and the byte offset.
+/// header line, or the element, its number and the line (binary: the byte).
 Scene read_ply(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                Messages& messages);
 

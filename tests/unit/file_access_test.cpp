@@ -72,8 +72,31 @@ TEST_CASE("an allowed folder may be read, one beside it that begins alike may no
 TEST_CASE("a file named with a path of another machine is found beside the file that names it") {
     const Folders f;
     const FileAccess access(f.file, {});
-    CHECK(access.find(f.file, "C:\\models\\a.obj") == f.file);
-    CHECK(access.find(f.file, "maps/elsewhere/a.obj") == f.file);
-    CHECK(access.find(f.file, "textures/t.png") == f.scene / "textures/t.png");
-    CHECK(!access.find(f.file, "nothing.png"));
+    Messages messages;
+    CHECK(access.find(f.file, "C:\\models\\a.obj", messages) == f.file);
+    CHECK(access.find(f.file, "maps/elsewhere/a.obj", messages) == f.file);
+    CHECK(access.find(f.file, "textures/t.png", messages) == f.scene / "textures/t.png");
+    CHECK(!access.find(f.file, "nothing.png", messages));
+    CHECK(!access.find(f.file, std::string(5000, 'x') + ".png", messages)); // longer than a name may be
+    CHECK(messages.all().empty());
+}
+
+TEST_CASE("a file outside is replaced by one of that name beside, with a warning, and refused where there is none") {
+    const Folders f;
+    const FileAccess access(f.file, {});
+    Messages messages;
+    CHECK(access.find(f.file, "/no such home/artist/a.obj", messages) == f.file);
+    CHECK(!access.find(f.file, "/no such home/artist/t.png", messages)); // nothing that could be allowed
+    CHECK(access.find(f.scene / "textures" / "b.mtl", (f.other / "t.png").string(), messages) ==
+          f.scene / "textures/t.png");
+    REQUIRE(messages.all().size() == 2);
+    CHECK(messages.all()[0].text.find("\"/no such home/artist\", outside") != std::string::npos);
+    const auto error =
+        test::thrown_error([&] { (void)access.find(f.file.string() + ":7", "../scene2/t.png", messages); });
+    CHECK(test::says(error, "a.obj:7: refers to"));
+    CHECK(test::says(error, "--allow-path " + f.other.string()));
+
+    fs::create_symlink(f.other / "t.png", f.scene / "t.png"); // what lies beside may lead outside, too
+    CHECK_THROWS_AS((void)access.find(f.file, "../scene2/t.png", messages), Error);
+    CHECK(!access.find(f.file, "/no such home/artist/t.png", messages));
 }

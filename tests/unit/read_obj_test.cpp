@@ -221,6 +221,91 @@ TEST_CASE("mtl: what a Phong material is converted to") {
     CHECK(material_of("Kd 0 0 0\nKe 17 12 4").emission == Rgb{17, 12, 4});
 }
 
+TEST_CASE("mtl: a number that is missing, is none or is not finite is an error with file and line") {
+    for (const std::string line : {"Kd oops 1 1", "Kd nan 0 0", "Kd 1e999 0 0", "Kd", "Kd 1 1", "Kd 1 1 # 1",
+                                   "Ks 1,1,1", "illum xx", "d foo", "Tr", "Ns zzz", "Ni inf", "Pr -nan", "aniso x",
+                                   "map_Kd -bm x t.png", "map_Kd -clamp maybe t.png", "map_Kd -s 1e99 1 t.png"}) {
+        CAPTURE(line);
+        const auto error = test::thrown_error([&] { (void)material_of("# a comment\n" + line); });
+        REQUIRE(error);
+        CHECK(error->code() == ErrorCode::BadInput);
+        CHECK(test::says(error, "a.mtl:3: "));
+    }
+}
+
+TEST_CASE("mtl: what is not read is a warning with the first line") {
+    const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
+                               "Kd 1 0 0\nnewmtl m\nfoo 3\nmap_Normal x.png\nKd spectral x.rfl\nmap_Ks t.png\n"
+                               "map_Ks u.png\nNs 10 11\nPc 0.5\nPs 0\nKa 1 1 1\nsharpness 60\nmap_Ka t.png\n");
+    CHECK(l.said("a.mtl:1: 3 lines not understood (Kd is the first)"));
+    CHECK(l.said("a.mtl:5: 1 line of Kd spectral: left out"));
+    CHECK(l.said("a.mtl:6: 2 lines of map_Ks: left out"));
+    CHECK(l.said("a.mtl:8: 1 line with more than the key takes"));
+    CHECK(l.said("a.mtl:9: 1 line of Pc: left out"));
+    CHECK(l.messages.all().size() == 5);
+    CHECK(l.material("m").base_color == grey(0.5f));
+}
+
+TEST_CASE("mtl: one number is a grey, keys count in any case, and without Kd a material is grey") {
+    CHECK(material_of("Kd 0.25").base_color == grey(0.25f));
+    CHECK(material_of("kd 1 0 0 # red").base_color == Rgb{1, 0, 0});
+    CHECK(material_of("KE 3").emission == grey(3));
+    CHECK(material_of("d -halo 0.5").alpha == 0.5f);
+    CHECK(material_of("Tr 0.25").alpha == 0.75f);
+    CHECK(material_of("d 0.5\nTr 0.25").alpha == 0.5f);
+    CHECK(material_of("Ns 10").base_color == grey(0.5f));
+    CHECK(material_of("Ks 0.04\nNs 30").base_color == grey(0.5f));
+    CHECK(material_of("Ks 0.9 0.8 0.7\nNs 30").base_color == Rgb{0.9f, 0.8f, 0.7f}); // metal, not a coat on grey
+    CHECK(material_of("Kd 0 0 0").base_color == grey(0));
+}
+
+TEST_CASE("mtl: byte order marks, comments and blanks behind or before a name do not count as part of it") {
+    for (const std::string start : {"newmtl a b", "newmtl  a b", "newmtl a b ", "newmtl\ta b\r", "newmtl a b # x",
+                                    "\xef\xbb\xbfnewmtl a b", "# C:\\scenes\\\nnewmtl a b #", "  newmtl a b"}) {
+        CAPTURE(start);
+        const Loaded l = load_text("mtllib a.mtl # the materials\n" + kTriangle + "usemtl a b # c\nf 1 2 3\n",
+                                   start + "\nKd 1 0 0\n");
+        CHECK(l.material("a b").base_color == Rgb{1, 0, 0});
+        CHECK(l.messages.all().empty());
+    }
+    const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl Material #25\nf 1 2 3\n",
+                               "newmtl Material #25\nKd 1 0 0\nnewmtl Material #26\n");
+    CHECK(l.material("Material #25").base_color == Rgb{1, 0, 0});
+}
+
+TEST_CASE("mtl: many files on one line, longer together than a name may be") {
+    const fs::path folder = test::scratch_folder();
+    std::string line = "mtllib";
+    for (int i = 0; i < 9; ++i) {
+        const std::string name = "materials_of_the_building_number_" + std::to_string(i);
+        test::write_text(folder / (name + ".mtl"), "newmtl " + std::to_string(i) + "\nKd 1 0 0\n");
+        line += " " + name + ".mtl";
+    }
+    const Loaded l = load(test::write_text(folder / "a.obj", line + "\n" + kTriangle + "usemtl 8\nf 1 2 3\n"));
+    CHECK(l.material("8").base_color == Rgb{1, 0, 0});
+    CHECK(l.messages.all().empty());
+
+    const std::string endless(100'000, 'x');
+    const Loaded none = load_text("mtllib " + endless + "\n" + kTriangle + "usemtl " + endless + "\nf 1 2 3\n");
+    REQUIRE(none.messages.all().size() == 2);
+    for (const Message& message : none.messages.all()) CHECK(message.text.size() < 1000);
+}
+
+TEST_CASE("mtl: a texture on faces without texture coordinates is a warning") {
+    const fs::path folder = test::scratch_folder();
+    write_picture(folder / "my t.png", 4, [](uint32_t, uint32_t) -> uint8_t { return 200; });
+    test::write_text(folder / "a.mtl",
+                     "newmtl m\nmap_Kd -t 0.1 0.1 0.1 -cc on my t.png # colours\nnewmtl plain\nKd 1\n");
+    const std::string start = "mtllib a.mtl\nvt 0 0\n" + kTriangle;
+    const std::string textured = "usemtl m\nf 1/1 2/1 3/1\n", bare = "f 1 2 3\n", plain = "usemtl plain\nf 1 2 3\n";
+    const Loaded good = load(test::write_text(folder / "a.obj", start + textured + plain));
+    CHECK(good.messages.all().empty());
+    CHECK(good.material("m").base_color_texture.has_image());
+    CHECK(good.material("m").base_color == grey(1)); // no Kd: the map alone
+    const Loaded bad = load(test::write_text(folder / "b.obj", start + textured + bare + plain));
+    CHECK(bad.said("b.obj: 1 material with a texture, but on faces without texture coordinates (m is the first)"));
+}
+
 TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
     const fs::path folder = test::scratch_folder();
     fs::create_directories(folder / "my maps");
@@ -295,11 +380,13 @@ TEST_CASE("mtl: a texture or material file outside the scene's folder is refused
     const fs::path path =
         test::write_text(folder / "in" / "a.obj", "mtllib ../out.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     CHECK(test::says(test::thrown_error([&] { load(path); }), "--allow-path"));
+    CHECK(test::says(test::thrown_error([&] { load(path); }), "a.obj:1: refers to \"../out.mtl\""));
     CHECK(load(path, {.allowed_paths = {folder}}).scene.materials[0].base_color == Rgb{1, 0, 0});
 
     test::write_text(folder / "in" / "b.mtl", "newmtl x\nmap_Kd /etc/passwd\n");
     const fs::path b = test::write_text(folder / "in" / "b.obj", "mtllib b.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     CHECK(test::says(test::thrown_error([&] { load(b); }), "--allow-path"));
+    CHECK(test::says(test::thrown_error([&] { load(b); }), "b.mtl:2: refers to"));
 }
 
 TEST_CASE("Sponza comes in by material, its leaves and chains cut out") {

@@ -14,10 +14,14 @@ using namespace pertev;
 
 namespace {
 
-Scene load(const std::string& bytes) {
+Scene load(const std::string& bytes, Messages& messages) {
     const fs::path path = test::write_text(test::scratch_folder() / "a.ply", bytes);
-    Messages messages;
     return read_ply(path, FileAccess(path, {}), {}, messages);
+}
+
+Scene load(const std::string& bytes) {
+    Messages messages;
+    return load(bytes, messages);
 }
 
 /// Body of a binary file, in one of the two byte orders.
@@ -135,7 +139,30 @@ TEST_CASE("ply: what is wrong is said with the place") {
     CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "3 0 1 -1\n")), "index -1"));
     CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "-3 0 1 2\n")), "count"));
     CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, "0 0 zero\n" + kSquare)), "\"zero\""));
+    CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, "0 0 0\n\n1 x 0\n" + kSquare)),
+                     "a.ply:12: vertex 1:"));
     CHECK(test::says(error_of(ascii("element vertex 9\nelement face 1\n" + kFaces, "3 0 1 2\n")), "x, y and z"));
+}
+
+TEST_CASE("ply: what of a header is harmless is taken") {
+    const std::string rest = kVertices + "element face 1\n" + kFaces + "end_header\n" + kSquare + "3 0 1 2\n";
+    for (const std::string start : {"\xef\xbb\xbfply\nformat ascii 1.0\n", "ply \nformat ascii 1.0 \n",
+                                    "ply\ncomment by hand\n\nobj_info x\nformat ascii 1.0\n"}) {
+        CAPTURE(start);
+        CHECK(load(start + rest).meshes[0].triangle_count() == 1);
+    }
+    CHECK_THROWS_AS(load("ply\nelement vertex 3\nformat ascii 1.0\n" + rest), Error);
+}
+
+TEST_CASE("ply: colours and texture coordinates of faces, which are left out, are warnings") {
+    const std::string colours = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    Messages messages;
+    load(ascii(kVertices + "element face 1\n" + kFaces + colours + "property list uchar float texcoord\n",
+               kSquare + "3 0 1 2 255 0 0 6 0 0 1 0 1 1\n"),
+         messages);
+    REQUIRE(messages.all().size() == 2);
+    CHECK(messages.all()[0].text.find("colours of faces are left out") != std::string::npos);
+    CHECK(messages.all()[1].text.find("texture coordinates of faces are left out") != std::string::npos);
 }
 
 TEST_CASE("ply: counts are believed only as far as the file has bytes for them") {

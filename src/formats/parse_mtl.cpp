@@ -1,0 +1,257 @@
+#include "formats/parse_mtl.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/message_text.h"
+#include "formats/obj_text.h"
+#include "formats/parse_number.h"
+
+namespace pertev {
+namespace {
+
+struct ColourKey {
+    std::string_view key;
+    Rgb MtlStatements::*to;
+};
+constexpr ColourKey kColours[] = {
+    {"ks", &MtlStatements::ks}, {"ke", &MtlStatements::ke}, {"tf", &MtlStatements::tf}, {"kt", &MtlStatements::tf}};
+
+struct NumberKey {
+    std::string_view key;
+    float MtlStatements::*to;
+};
+constexpr NumberKey kNumbers[] = {{"illum", &MtlStatements::illum},
+                                  {"ns", &MtlStatements::ns},
+                                  {"ni", &MtlStatements::ni},
+                                  {"pr", &MtlStatements::pr},
+                                  {"pm", &MtlStatements::pm}};
+
+struct MapKey {
+    std::string_view key;
+    MtlTexture MtlStatements::*to;
+};
+constexpr MapKey kMaps[] = {{"map_kd", &MtlStatements::map_kd}, {"map_ke", &MtlStatements::map_ke},
+                            {"map_d", &MtlStatements::map_d},   {"map_pr", &MtlStatements::map_pr},
+                            {"map_pm", &MtlStatements::map_pm}, {"norm", &MtlStatements::norm},
+                            {"bump", &MtlStatements::bump},     {"map_bump", &MtlStatements::bump}};
+
+/// Ambient light, and what says nothing about the surface.
+constexpr std::string_view kHarmless[] = {"ka", "map_ka", "map_aat", "sharpness", "pcr", "anisor"};
+/// Zero is how exporters write "none" for these.
+constexpr std::string_view kLeftOutUnlessZero[] = {"ps", "pc", "aniso"};
+constexpr std::string_view kLeftOut[] = {"map_ks", "map_ns", "map_ps",   "map_pc", "map_pcr",
+                                         "disp",   "decal",  "map_disp", "refl",   "map_refl"};
+
+template <class Range>
+bool holds(const Range& keys, std::string_view key) {
+    return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
+}
+
+template <class Keys>
+auto find_key(const Keys& keys, std::string_view key) {
+    const auto found =
+        std::find_if(std::begin(keys), std::end(keys), [&](const auto& known) { return known.key == key; });
+    return found == std::end(keys) ? nullptr : &*found;
+}
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return lower;
+}
+
+class Parser {
+public:
+    Parser(std::string_view text, const std::string& file, Messages& messages)
+        : lines_(text), file_(file), messages_(messages) {}
+
+    std::vector<MtlStatements> run() {
+        std::string_view line;
+        while (lines_.next(line)) {
+            key_ = take_word(line);
+            if (!key_.empty() && key_[0] != '#') statement(line);
+        }
+        for (const auto& [key, lines] : left_out_) {
+            messages_.warn(
+                fmt::format("{}:{}: {} of {}: left out", file_, lines.first_line, counted(lines.times, "line"), key));
+        }
+        if (too_long_.times > 0) {
+            messages_.warn(fmt::format("{}:{}: {} with more than the key takes: the rest left out", file_,
+                                       too_long_.first_line, counted(too_long_.times, "line")));
+        }
+        if (unknown_.times > 0) {
+            messages_.warn(fmt::format("{}:{}: {} not understood ({} is the first): left out", file_,
+                                       unknown_.first_line, counted(unknown_.times, "line"), first_unknown_));
+        }
+        return std::move(materials_);
+    }
+
+private:
+    Error fault(const std::string& what) const {
+        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file_, lines_.number(), what));
+    }
+
+    void statement(std::string_view line) {
+        const std::string key = lower_case(key_);
+        if (key == "newmtl") {
+            materials_.emplace_back().name = rest_as_name(line);
+            if (materials_.back().name.empty()) unknown();
+            return;
+        }
+        if (materials_.empty()) return unknown();
+        MtlStatements& to = materials_.back();
+        if (key == "kd") {
+            if (const std::optional<Rgb> read = colour(line)) to.kd = read;
+        } else if (const ColourKey* as_colour = find_key(kColours, key)) {
+            if (const std::optional<Rgb> read = colour(line)) to.*as_colour->to = *read;
+        } else if (const NumberKey* as_number = find_key(kNumbers, key)) {
+            to.*as_number->to = only_number(line);
+        } else if (const MapKey* as_map = find_key(kMaps, key)) {
+            to.*as_map->to = texture(line);
+        } else if (key == "d") {
+            std::string_view ahead = line;
+            if (take_word(ahead) == "-halo") line = ahead; // denser at the rim: taken as dense everywhere
+            to.d = only_number(line);
+            to.has_d = true;
+        } else if (key == "tr") {
+            const float tr = only_number(line);
+            if (!to.has_d) to.d = 1 - tr;
+        } else if (holds(kLeftOutUnlessZero, key)) {
+            if (only_number(line) != 0) left_out_[std::string(key_)].add(lines_.number());
+        } else if (holds(kLeftOut, key)) {
+            if (!rest_as_name(line).empty()) left_out_[std::string(key_)].add(lines_.number());
+        } else if (!holds(kHarmless, key)) {
+            unknown();
+        }
+    }
+
+    void unknown() {
+        if (unknown_.times == 0) first_unknown_ = shortened(key_);
+        unknown_.add(lines_.number());
+    }
+
+    bool is_at_end(std::string_view line) const {
+        skip_space(line);
+        return line.empty() || line[0] == '#';
+    }
+
+    float number(std::string_view& line, std::string_view of) const {
+        if (is_at_end(line)) throw fault(fmt::format("{} lacks a number", of));
+        const std::string_view word = take_word(line);
+        std::string_view rest = word;
+        const std::optional<float> value = parse_float(rest);
+        if (!value || !rest.empty()) throw fault(fmt::format("{}: \"{}\" is not a number", of, shortened(word)));
+        if (!is_finite(*value)) throw fault(fmt::format("{}: {} is not a finite number", of, shortened(word)));
+        return *value;
+    }
+
+    void check_end(std::string_view line) {
+        if (!is_at_end(line)) too_long_.add(lines_.number());
+    }
+
+    float only_number(std::string_view line) {
+        const float value = number(line, key_);
+        check_end(line);
+        return value;
+    }
+
+    /// One number is a grey. Nothing, after a warning, for a spectral curve and for CIE XYZ.
+    std::optional<Rgb> colour(std::string_view line) {
+        std::string_view ahead = line;
+        const std::string_view word = take_word(ahead);
+        if (word == "spectral" || word == "xyz") {
+            left_out_[fmt::format("{} {}", key_, word)].add(lines_.number());
+            return std::nullopt;
+        }
+        const float r = number(line, key_);
+        if (is_at_end(line)) return grey(r);
+        const float g = number(line, key_), b = number(line, key_);
+        check_end(line);
+        return Rgb{r, g, b};
+    }
+
+    bool is_on(std::string_view& line, std::string_view of) const {
+        const std::string_view word = take_word(line);
+        if (word != "on" && word != "off") {
+            throw fault(fmt::format("{} {}: \"{}\" is neither on nor off", key_, of, shortened(word)));
+        }
+        return word == "on";
+    }
+
+    /// The one to three numbers of -o, -s and -t. A number that ends the line is the file's name.
+    void up_to_three(std::string_view& line, float (&to)[3]) const {
+        for (float& value : to) {
+            std::string_view ahead = line, word = take_word(ahead);
+            const std::optional<float> read = parse_float(word);
+            if (!read || !word.empty() || is_at_end(ahead)) return;
+            if (!is_finite(*read)) throw fault(fmt::format("{}: {} is not a finite number", key_, *read));
+            value = *read;
+            line = ahead;
+        }
+    }
+
+    MtlTexture texture(std::string_view line) const {
+        MtlTexture to;
+        for (;;) {
+            std::string_view ahead = line;
+            const std::string_view option = take_word(ahead);
+            if (option == "-o" || option == "-s" || option == "-t") {
+                Vec2& pair = option == "-s" ? to.scale : to.offset;
+                float numbers[3] = {pair.x, pair.y, 0};
+                up_to_three(ahead, numbers);
+                if (option != "-t") pair = {numbers[0], numbers[1]}; // -t is turbulence
+            } else if (option == "-clamp") {
+                to.clamp = is_on(ahead, option);
+            } else if (option == "-blendu" || option == "-blendv" || option == "-cc") {
+                is_on(ahead, option);
+            } else if (option == "-bm") {
+                to.bump_multiplier = number(ahead, key_);
+            } else if (option == "-mm") {
+                number(ahead, key_);
+                number(ahead, key_);
+            } else if (option == "-boost" || option == "-texres") {
+                number(ahead, key_);
+            } else if (option == "-imfchan") {
+                const std::string_view channel = take_word(ahead);
+                if (!channel.empty()) to.channel = channel[0];
+            } else if (option == "-colorspace") {
+                to.is_linear = take_word(ahead) == "linear";
+            } else if (option == "-type") {
+                take_word(ahead);
+            } else {
+                break; // a name may begin with a minus
+            }
+            line = ahead;
+        }
+        to.name = rest_as_name(line);
+        if (to.name.size() > 1 && to.name.front() == '"' && to.name.back() == '"') {
+            to.name = to.name.substr(1, to.name.size() - 2);
+        }
+        to.line = lines_.number();
+        return to;
+    }
+
+    ObjLines lines_;
+    const std::string& file_;
+    Messages& messages_;
+    std::vector<MtlStatements> materials_;
+    std::string_view key_; // of the statement, as written
+    std::map<std::string, CountedLines> left_out_;
+    CountedLines unknown_, too_long_;
+    std::string first_unknown_;
+};
+
+} // namespace
+
+std::vector<MtlStatements> parse_mtl(std::span<const std::byte> bytes, const std::string& file, Messages& messages) {
+    return Parser(text_of(bytes), file, messages).run();
+}
+
+} // namespace pertev
