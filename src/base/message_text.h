@@ -1,6 +1,7 @@
 #pragma once
 
-// Counts and names as messages say them: "1 triangle", "2 triangles"; "mesh 0 floor", or "mesh 0" without a name.
+// Counts and names as messages say them: "1 triangle", "2 triangles"; "/meshes/0 floor", or, where the file gives no
+// place, "mesh 0 floor", or "mesh 0" without a name.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,9 +17,10 @@ inline std::string counted(uint64_t count, const char* thing) {
     return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-/// Place `i` of a list of the scene.
-inline std::string numbered(const char* kind, std::size_t i, const std::string& name) {
-    return fmt::format("{} {}{}{}", kind, i, name.empty() ? "" : " ", name);
+/// Place `i` of a list of the scene; `origin` says where the file describes it.
+inline std::string numbered(const char* kind, std::size_t i, const std::string& name, const std::string& origin = "") {
+    const std::string place = origin.empty() ? fmt::format("{} {}", kind, i) : origin;
+    return fmt::format("{}{}{}", place, name.empty() ? "" : " ", name);
 }
 
 /// Text of a file as a message repeats it: as much as a line has room for.

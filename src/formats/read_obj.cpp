@@ -171,6 +171,11 @@ Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions
         scene.instances.push_back({.name = name, .mesh = i, .material = i, .world_from_local = {}});
     }
 
+    if (data.groups.empty()) {
+        scene.no_instances =
+            fmt::format("{} and no face; expected a line such as f 1 2 3", counted(data.positions.size(), "position"));
+    }
+
     if (unknown > 0 && !options.geometry_only) {
         messages.warn(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
                                   counted(unknown, "material"), shortened(first_unknown)));

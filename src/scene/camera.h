@@ -12,7 +12,7 @@ namespace pertev {
 enum class Projection : uint8_t { Perspective, Orthographic };
 
 struct Camera {
-    std::string name;
+    std::string name, origin;
     Projection projection = Projection::Perspective;
     Transform world_from_camera; // rigid; readers take scale out
     float fov_y = 0.785398163f;  // Perspective: full vertical angle, radians, (0, pi)

@@ -15,14 +15,23 @@ namespace {
 constexpr uint32_t kSkyWidth = 256, kSkyHeight = 128;
 constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 degrees, of the smaller side
 
-bool has_light(const Scene& scene) {
-    return !scene.lights.empty() || scene.environment ||
-           std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
-               const Material& material = scene.materials[instance.material];
-               // What glows by a texture is a display or a badge, not what the rest is to be seen by.
-               return (material.is_emissive() && !material.emission_texture.has_image()) ||
-                      material.kind == MaterialKind::Unlit;
-           });
+bool is_lamp(const Material& material) {
+    // What glows by a texture is a display or a badge, not what the rest is to be seen by.
+    return material.is_emissive() && material.kind != MaterialKind::Unlit && !material.emission_texture.has_image();
+}
+
+bool needs_light(const Scene& scene) {
+    if (scene.environment) return false;
+    const bool is_lit = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                    [](const Light& light) { return max_component(light.intensity) > 0; });
+    if (is_lit) return false;
+    bool is_all_unlit = true; // what is unlit is seen without light, and gives none to the rest
+    for (const Instance& instance : scene.instances) {
+        const Material& material = scene.materials[instance.material];
+        if (is_lamp(material)) return false;
+        is_all_unlit = is_all_unlit && material.kind == MaterialKind::Unlit;
+    }
+    return !is_all_unlit;
 }
 
 /// Radiance from the unit direction d, W/(sr m2).
@@ -152,7 +161,7 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
 } // namespace
 
 void add_default_environment(Scene& scene, Messages& messages) {
-    if (has_light(scene)) return;
+    if (!needs_light(scene)) return;
     const Surroundings around = look_around(scene);
     if (around.is_dark) {
         add_lamps(scene, around);

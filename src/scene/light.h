@@ -14,7 +14,7 @@ namespace pertev {
 enum class LightKind : uint8_t { Point, Spot, Directional };
 
 struct Light {
-    std::string name;
+    std::string name, origin;
     LightKind kind = LightKind::Point;
     Vec3 position;               // Point, Spot: metres, world space
     Vec3 direction = {0, -1, 0}; // Spot, Directional: unit, the way the light travels, world space

@@ -2,6 +2,7 @@
 
 // What a surface is made of: plain numbers and texture references; shading/ turns them into BSDFs.
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -21,7 +22,7 @@ enum class MaterialKind : uint8_t {
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
 struct Material {
-    std::string name;
+    std::string name, origin;
     MaterialKind kind = MaterialKind::Diffuse;
 
     Rgb base_color = {0.5f, 0.5f, 0.5f}; // [0, 1], linear; times the texture (alpha in .w of the texture)
@@ -45,6 +46,10 @@ struct Material {
     TextureRef normal_texture; // tangent space, x right, y up in texture space (OpenGL convention), linear
     float normal_scale = 1;
 
+    std::array<const TextureRef*, 6> textures() const {
+        return {&base_color_texture, &alpha_texture,    &metallic_texture,
+                &roughness_texture,  &emission_texture, &normal_texture};
+    }
     bool is_emissive() const { return max_component(emission) > 0; }
 };
 

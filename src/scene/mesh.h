@@ -15,7 +15,7 @@
 namespace pertev {
 
 struct Mesh {
-    std::string name;
+    std::string name, origin;
     std::vector<Vec3> positions;         // [vertices], metres
     std::vector<Vec3> normals;           // [vertices] unit, or empty: the geometric normal is used
     std::vector<Vec4> tangents;          // [vertices] unit xyz, w = +-1 handedness of the bitangent; or empty

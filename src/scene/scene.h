@@ -1,7 +1,8 @@
 #pragma once
 
 // A scene as a reader leaves it: plain data, nothing derived. Ids are positions in these vectors; the order of
-// `instances` is the scene order of the one-picture law (docs/conventions.md).
+// `instances` is the scene order of the one-picture law (docs/conventions.md). What has an `origin` says with it where
+// the file describes it, for messages: a JSON pointer; empty where the format has none.
 
 #include <cstdint>
 #include <optional>
@@ -17,11 +18,14 @@
 
 namespace pertev {
 
+inline constexpr uint32_t kNoNode = 0xffffffffu;
+
 struct Instance {
     std::string name;
     uint32_t mesh = 0;     // index into Scene::meshes
     uint32_t material = 0; // index into Scene::materials
     Transform world_from_local;
+    uint32_t node = kNoNode; // of a glTF file: its origin is /nodes/N. A number, for scenes of millions.
 };
 
 struct Scene {
@@ -32,6 +36,7 @@ struct Scene {
     std::vector<Light> lights;
     std::optional<Environment> environment;
     std::vector<Camera> cameras;
+    std::string no_instances; // where there are none: what the file has instead, and what would be right
 };
 
 /// World-space box of all instances.

@@ -1,8 +1,10 @@
 #include "scene/validate.h"
 
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/limits.h"
@@ -13,6 +15,12 @@
 namespace pertev {
 namespace {
 
+bool all_finite(const Transform& m) {
+    return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
+}
+
+bool is_singular(const Transform& m) { return !all_finite(inverse(m)); }
+
 class Validator {
 public:
     Validator(Scene& scene, const std::string& file, Messages& messages)
@@ -22,13 +30,15 @@ public:
         references();
         validate_materials(scene_, file_, messages_);
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
-            repairs_ +=
-                repair_mesh(scene_.meshes[i], fmt::format("{}: {}", file_, numbered("mesh", i, scene_.meshes[i].name)));
+            Mesh& mesh = scene_.meshes[i];
+            repairs_ += repair_mesh(mesh, fmt::format("{}: {}", file_, place_of(i, mesh)));
         }
         report();
+        const std::size_t all = scene_.instances.size();
         drop_empty_meshes();
-        if (scene_.instances.empty()) throw bad("no geometry: not one triangle to see");
-        for (std::size_t i = 0; i < scene_.instances.size(); ++i) instance(i);
+        const std::size_t with_triangles = scene_.instances.size();
+        drop_singular_instances();
+        if (scene_.instances.empty()) throw no_geometry(all - with_triangles, with_triangles);
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i) camera(i);
         for (std::size_t i = 0; i < scene_.lights.size(); ++i) light(i);
     }
@@ -40,6 +50,29 @@ private:
                      fmt::format("{}: {} lies further out than 2^40 metres; scale the scene down", file_, what));
     }
 
+    Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
+        std::vector<std::string> reasons;
+        if (without_triangles > 0) {
+            reasons.push_back(fmt::format("{} of meshes that lost all their triangles, the first of them {}; expected "
+                                          "triangles with an area and finite vertices",
+                                          counted(without_triangles, "instance"), first_empty_mesh_));
+        }
+        if (singular > 0) {
+            reasons.push_back(fmt::format("{} with a singular transform, the first of them {}; expected scales other "
+                                          "than 0",
+                                          counted(singular, "instance"), first_singular_));
+        }
+        if (reasons.empty()) reasons.push_back(scene_.no_instances.empty() ? "no mesh is placed" : scene_.no_instances);
+        return bad(fmt::format("no geometry, not one triangle to see: {}", fmt::join(reasons, "; ")));
+    }
+
+    static std::string place_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
+
+    static std::string place_of(std::size_t i, const Instance& instance) {
+        const std::string origin = instance.node == kNoNode ? "" : fmt::format("/nodes/{}", instance.node);
+        return numbered("instance", i, instance.name, origin);
+    }
+
     void references() const {
         if (scene_.instances.size() > kMaxInstances) {
             throw Error(ErrorCode::OverLimit, fmt::format("{}: {} instances; the limit is {}", file_,
@@ -48,13 +81,12 @@ private:
         for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
             if (instance.mesh >= scene_.meshes.size()) {
-                throw bad(fmt::format("{}: mesh {} is out of range; there are {}",
-                                      numbered("instance", i, instance.name), instance.mesh, scene_.meshes.size()));
+                throw bad(fmt::format("{}: mesh {} is out of range; there are {}", place_of(i, instance), instance.mesh,
+                                      scene_.meshes.size()));
             }
             if (instance.material >= scene_.materials.size()) {
-                throw bad(fmt::format("{}: material {} is out of range; there are {}",
-                                      numbered("instance", i, instance.name), instance.material,
-                                      scene_.materials.size()));
+                throw bad(fmt::format("{}: material {} is out of range; there are {}", place_of(i, instance),
+                                      instance.material, scene_.materials.size()));
             }
         }
     }
@@ -76,7 +108,10 @@ private:
         std::vector<uint32_t> renumbered(scene_.meshes.size(), dropped);
         uint32_t kept = 0;
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
-            if (scene_.meshes[i].indices.empty()) continue;
+            if (scene_.meshes[i].indices.empty()) {
+                if (first_empty_mesh_.empty()) first_empty_mesh_ = place_of(i, scene_.meshes[i]);
+                continue;
+            }
             if (kept != i) scene_.meshes[kept] = std::move(scene_.meshes[i]);
             renumbered[i] = kept++;
         }
@@ -85,26 +120,30 @@ private:
         for (Instance& instance : scene_.instances) instance.mesh = renumbered[instance.mesh];
     }
 
-    void transform(const Transform& m, const std::string& of) const {
-        const auto finite = [](const Transform& t) {
-            return is_finite(t.row0) && is_finite(t.row1) && is_finite(t.row2) && is_finite(t.translation);
-        };
-        if (!finite(m)) throw bad(of + ": its transform is not finite");
-        if (!finite(inverse(m))) throw bad(of + ": its transform is singular; no scale may be 0");
+    /// A scale of 0 is how glTF hides a node.
+    void drop_singular_instances() {
+        std::vector<Bounds3> bounds;
+        for (const Mesh& mesh : scene_.meshes) bounds.push_back(bounds_of(mesh));
+        std::size_t i = 0, dropped = 0;
+        std::erase_if(scene_.instances, [&](const Instance& instance) {
+            check_place(i, instance, bounds[instance.mesh]);
+            const bool drops = is_singular(instance.world_from_local);
+            if (drops && dropped++ == 0) first_singular_ = place_of(i, instance);
+            ++i;
+            return drops;
+        });
+        if (dropped == 0) return;
+        messages_.warn(fmt::format("{}: {} with a singular transform, such as a scale of 0: left out; the first is {}",
+                                   file_, counted(dropped, "instance"), first_singular_));
     }
 
-    void instance(std::size_t i) {
-        const Instance& instance = scene_.instances[i];
-        const std::string of = numbered("instance", i, instance.name);
-        transform(instance.world_from_local, of);
-        if (bounds_.empty()) {
-            for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
-        }
-        const Bounds3& local = bounds_[instance.mesh];
+    void check_place(std::size_t i, const Instance& instance, const Bounds3& local) const {
+        const Transform& m = instance.world_from_local;
+        if (!all_finite(m)) throw bad(place_of(i, instance) + ": its transform is not finite");
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3 p = {corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
                             corner & 4 ? local.hi.z : local.lo.z};
-            if (!is_near(transform_point(instance.world_from_local, p))) throw too_far(of);
+            if (!is_near(transform_point(m, p))) throw too_far(place_of(i, instance));
         }
     }
 
@@ -112,8 +151,9 @@ private:
 
     void camera(std::size_t i) const {
         const Camera& camera = scene_.cameras[i];
-        const std::string of = numbered("camera", i, camera.name);
-        transform(camera.world_from_camera, of);
+        const std::string of = numbered("camera", i, camera.name, camera.origin);
+        if (!all_finite(camera.world_from_camera)) throw bad(of + ": its transform is not finite");
+        if (is_singular(camera.world_from_camera)) throw bad(of + ": its transform is singular; no scale may be 0");
         if (!is_near(camera.world_from_camera.translation)) throw too_far(of);
         if (camera.projection == Projection::Perspective && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
             throw bad(fmt::format("{}: its angle of view is {} radians; it lies between 0 and pi", of, camera.fov_y));
@@ -135,7 +175,7 @@ private:
 
     void light(std::size_t i) {
         Light& light = scene_.lights[i];
-        const std::string of = numbered("light", i, light.name);
+        const std::string of = numbered("light", i, light.name, light.origin);
         const Rgb e = light.intensity;
         if (!(is_finite(e) && e.r >= 0 && e.g >= 0 && e.b >= 0)) {
             throw bad(
@@ -161,7 +201,7 @@ private:
     const std::string& file_;
     Messages& messages_;
     MeshRepairs repairs_;
-    std::vector<Bounds3> bounds_; // of the meshes
+    std::string first_empty_mesh_, first_singular_; // where they are described
 };
 
 } // namespace

@@ -83,7 +83,7 @@ private:
 
     void material(std::size_t i) {
         Material& m = scene_.materials[i];
-        of_ = numbered("material", i, m.name);
+        of_ = numbered("material", i, m.name, m.origin);
         colour(m.base_color, 0, 1, "base_color");
         colour(m.emission, 0, kMaxSampleValue, "emission");
         colour(m.eta, 0x1p-10f, 0x1p10f, "eta");

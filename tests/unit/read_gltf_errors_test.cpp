@@ -73,6 +73,32 @@ TEST_CASE("what is not glTF 2 is refused") {
           "model.gltf: JSON nested more than 1024 levels deep; expected a glTF 2.0 document");
 }
 
+TEST_CASE("JSON that is not valid is an error with the line, the column and what would be right there") {
+    const auto read = [](const std::string& text) {
+        const std::string error = test::gltf_error(text), start = "model.gltf: not valid JSON: ";
+        CHECK(error.starts_with(start));
+        return error.substr(std::min(start.size(), error.size()));
+    };
+    CHECK(read("{]") == "line 1, column 2 (byte 1 of the file): expected a name in quotes or }");
+    CHECK(read("{\"asset\":{\"version\":\"2.0\"},\n\"nodes\":[\n {\"mesh\":0,}\n]}") ==
+          "line 3, column 12 (byte 49 of the file): expected a name in quotes");
+    CHECK(read("\xef\xbb\xbf{\n\"\xc3\xa9\" 1}") ==
+          "line 2, column 5 (byte 10 of the file): expected a colon after the name");
+    CHECK(read("{\"a\":[1 2]}") == "line 1, column 9 (byte 8 of the file): expected a comma or ]");
+    CHECK(read("{\"a\":[1,2}") == "line 1, column 10 (byte 9 of the file): expected a comma or ]");
+    CHECK(read("{\"a\":[1,]}") == "line 1, column 9 (byte 8 of the file): expected a value");
+    CHECK(read("{\"a\":{}") == "line 1, column 8 (byte 7 of the file): expected a comma or }");
+    CHECK(read("{} {}") == "line 1, column 4 (byte 3 of the file): expected nothing after the end of the document");
+    CHECK(read("{\"a\":\"\\\"}") ==
+          "line 1, column 6 (byte 5 of the file): expected a quotation mark that ends this string");
+    for (const char* value :
+         {"01", "1.", "-", "1e999", "tru", "<html>", "99999999999999999999", "\"\\q\"", "\"\xff\"", "\"\n\""}) {
+        CAPTURE(value);
+        CHECK(read(std::string("{\"a\": ") + value + "}")
+                  .starts_with("line 1, column 7 (byte 6 of the file): expected a value ("));
+    }
+}
+
 TEST_CASE("a damaged GLB container is an error with the byte where it stops making sense") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});

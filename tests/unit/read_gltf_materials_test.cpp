@@ -111,6 +111,7 @@ TEST_CASE("each texture slot gets its image, its channel and its encoding") {
 TEST_CASE("images come from data URIs, buffer views and files, each once, and only those that are used") {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
     const auto png = [] { // the bytes of kRedPng, by the file that a reader would write
         std::vector<uint8_t> bytes;
         uint32_t bits = 0;
@@ -130,7 +131,8 @@ TEST_CASE("images come from data URIs, buffer views and files, each once, and on
     const auto folder = test::scratch_folder();
     write_file_atomically(folder / "r%.png", std::as_bytes(std::span(png)));
     const std::string text = builder.json(
-        R"("meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0}},{"material":1,"attributes":{"POSITION":0}}]}],)"
+        R"("meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0,"TEXCOORD_0":1}},)"
+        R"({"material":1,"attributes":{"POSITION":0,"TEXCOORD_0":1}}]}],)"
         R"("nodes":[{"mesh":0}],"materials":[)"
         R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"emissiveTexture":{"index":1},"normalTexture":{"index":2}},)"
         R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}},{"emissiveTexture":{"index":3}}],)"
@@ -212,6 +214,40 @@ TEST_CASE("textures that cannot be had are warnings and leave the factor alone")
     read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,AAAA"}])",
          "/images/0");
     read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png,AAAA"}])", "/images/0/uri");
+}
+
+TEST_CASE("an image that may not be read is an error with its pointer") {
+    const auto error = [](const std::string& uri) {
+        return test::gltf_error(with_material(R"({"normalTexture":{"index":0}})",
+                                              R"(,"textures":[{"source":0}],"images":[{"uri":")" + uri + "\"}]"));
+    };
+    const std::string outside = error("../x.png");
+    CHECK(outside.starts_with("model.gltf: /images/0/uri: "));
+    CHECK(outside.find("--allow-path") != std::string::npos);
+    CHECK(error("").starts_with("model.gltf: /images/0/uri: "));
+    CHECK(error("http://a/x.png").starts_with("model.gltf: /images/0/uri: "));
+}
+
+TEST_CASE("a texture over coordinates that the mesh does not have is a warning with the material's pointer") {
+    const auto read = [](const std::string& material) {
+        GltfBuilder builder;
+        builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+        builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
+        Messages messages;
+        const Scene scene = test::read_gltf_text(
+            builder.json(R"("meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0,"TEXCOORD_0":1}}]}],)"
+                         R"("nodes":[{"mesh":0}],"textures":[{"source":0}],)" +
+                         kImage + ",\"materials\":[" + material + "]"),
+            messages);
+        CHECK(scene.images.size() == 1);
+        return messages;
+    };
+    CHECK(read(R"({"emissiveTexture":{"index":0}})").all().empty());
+    for (const std::string slot : {"emissiveTexture", "normalTexture"}) {
+        const Messages messages = read("{\"" + slot + R"(":{"index":0,"texCoord":1}})");
+        CHECK(test::has_warning(messages, {"model.gltf: /materials/0: a texture over TEXCOORD_1"}));
+        CHECK(messages.all().size() == 1);
+    }
 }
 
 TEST_CASE("geometry alone reads no material and opens no image") {

@@ -156,6 +156,66 @@ TEST_CASE("punctual lights shine along their node's -z with candela and lux take
     CHECK(scene.lights[3].cos_outer == doctest::Approx(std::sqrt(0.5)).epsilon(1e-6));
 }
 
+TEST_CASE("a spot of equal cone angles has a sharp edge and a warning; other cones that are none are errors") {
+    const auto spot = [](const std::string& cone) {
+        return only_nodes(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{)" + cone +
+                          R"(}}]}},"nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}])");
+    };
+    for (const std::string angle : {"0.785398163", "1.5707964", "1e-5", "1e-30"}) {
+        CAPTURE(angle);
+        Messages messages;
+        const Scene scene =
+            test::read_gltf_text(spot("\"innerConeAngle\":" + angle + ",\"outerConeAngle\":" + angle), messages);
+        const Light& light = scene.lights.at(0);
+        CHECK(test::has_warning(messages, {"model.gltf: /extensions/KHR_lights_punctual/lights/0/spot: "}));
+        CHECK(light.cos_inner == doctest::Approx(std::cos(std::stod(angle))).epsilon(1e-6));
+        CHECK(light.cos_outer < light.cos_inner); // as validate() demands
+        CHECK(light.cos_outer >= light.cos_inner - 2e-7f);
+    }
+    // So narrow that both cosines are 1.
+    const Light narrow = test::read_gltf_text(spot(R"("outerConeAngle":1e-5)")).lights.at(0);
+    CHECK(narrow.cos_outer < narrow.cos_inner);
+
+    const std::string place = "model.gltf: /extensions/KHR_lights_punctual/lights/0/spot: cone angles ";
+    CHECK(test::gltf_error(spot(R"("innerConeAngle":1)")).starts_with(place));
+    CHECK(test::gltf_error(spot(R"("outerConeAngle":0)")).starts_with(place));
+    CHECK(test::gltf_error(spot(R"("outerConeAngle":1.6)")).starts_with(place));
+}
+
+TEST_CASE("a light that takes light away is an error with the number's pointer") {
+    const auto error = [](const std::string& members) {
+        return test::gltf_error(only_nodes(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)" +
+                                           members +
+                                           R"(}]}},"nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}])"));
+    };
+    const std::string light = "model.gltf: /extensions/KHR_lights_punctual/lights/0/";
+    CHECK(error(R"("intensity":-1)") == light + "intensity: -1; expected a number of at least 0");
+    CHECK(error(R"("color":[1,-0.5,0])") == light + "color/1: -0.5; expected a number of at least 0");
+}
+
+TEST_CASE("what is placed knows where the file describes it") {
+    const Scene scene = test::read_gltf_text(
+        with_triangle(R"("materials":[{},{}],"cameras":[{"type":"perspective","perspective":{"yfov":1}}],)"
+                      R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}},"nodes":[{},{"mesh":0},)"
+                      R"({"camera":0},{"extensions":{"KHR_lights_punctual":{"light":0}}}])"));
+    CHECK(scene.instances.at(0).node == 1);
+    CHECK(scene.meshes.at(0).origin == "/meshes/0/primitives/0");
+    CHECK(scene.cameras.at(0).origin == "/nodes/2");
+    CHECK(scene.lights.at(0).origin == "/nodes/3");
+}
+
+TEST_CASE("a file that shows no mesh says what it has instead") {
+    const auto told = [](const std::string& text) { return test::read_gltf_text(text).no_instances; };
+    CHECK(told(with_triangle(R"("nodes":[{"mesh":0}])")).empty());
+    CHECK(told(with_triangle(R"("nodes":[{},{}])")) ==
+          "/nodes: the scene has 2 nodes, and none shows a mesh (of 1); expected a \"mesh\" in one of them");
+    CHECK(told(with_triangle(R"("scenes":[{"nodes":[1]}],"nodes":[{"mesh":0},{}])"))
+              .starts_with("/nodes: the scene has 1 node,"));
+    CHECK(told(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: there are none"));
+    CHECK(told(only_nodes(R"("meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0}])"))
+              .starts_with("/meshes: none that a node of the scene shows has a triangle"));
+}
+
 TEST_CASE("a skinned mesh stands where its joints put it and its own node does not move it") {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});

@@ -194,6 +194,26 @@ TEST_CASE("a scene without light gets a sky with a notice, one with any light ge
     }
 }
 
+TEST_CASE("what is unlit and a light of strength 0 light nothing; a scene that is all unlit needs no light") {
+    const auto gets_sky = [](const auto& change) {
+        Scene scene;
+        add_box(scene, {}, {1, 1, 1}, kAll, false);
+        add_box(scene, {2, 0, 0}, {3, 1, 1}, kAll, false);
+        scene.instances[1].material = 1;
+        scene.materials.emplace_back().kind = MaterialKind::Unlit;
+        change(scene);
+        Messages messages;
+        add_default_environment(scene, messages);
+        CHECK(messages.all().size() == (scene.environment ? 1 : 0)); // said where it is done
+        return scene.environment.has_value();
+    };
+    CHECK(gets_sky([](Scene&) {}));
+    CHECK(gets_sky([](Scene& scene) { scene.materials[1].emission = grey(1); })); // unlit: it does not glow
+    CHECK(gets_sky([](Scene& scene) { scene.lights.emplace_back().intensity = grey(0); }));
+    CHECK(!gets_sky([](Scene& scene) { scene.instances[0].material = 1; }));
+    CHECK(!gets_sky([](Scene& scene) { scene.lights.emplace_back().intensity = {0, 0, 0.1f}; }));
+}
+
 TEST_CASE("a closed room without light gets lamps inside it") {
     Scene scene;
     add_box(scene, {0, 0, 0}, {20, 6, 8}, kAll, true);

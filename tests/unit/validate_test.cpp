@@ -108,6 +108,69 @@ TEST_CASE("a mesh that loses all its triangles goes with its instances; a scene 
     check_refused("no geometry", ErrorCode::BadInput, [](Scene& scene) { scene = {}; });
 }
 
+TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where all are, the error says so") {
+    const auto add_hidden = [](Scene& scene, uint32_t node) {
+        scene.instances.push_back({.name = "hidden", .world_from_local = make_scale({0, 0, 0}), .node = node});
+    };
+    const Result result = validated([&](Scene& scene) {
+        add_hidden(scene, 5);
+        scene.instances.push_back({.name = "last", .mesh = 0, .material = 0, .world_from_local = {}});
+        add_hidden(scene, 6);
+    });
+    REQUIRE(!result.error);
+    REQUIRE(result.scene.instances.size() == 2);
+    CHECK(result.scene.instances[0].name == "one");
+    CHECK(result.scene.instances[1].name == "last");
+    REQUIRE(result.messages.all().size() == 1);
+    CHECK(result.messages.all()[0].text ==
+          "file: 2 instances with a singular transform, such as a scale of 0: left out; "
+          "the first is /nodes/5 hidden");
+
+    check_refused("file: no geometry, not one triangle to see: 1 instance with a singular transform, the first of them "
+                  "/nodes/5 hidden; expected scales "
+                  "other than 0",
+                  ErrorCode::BadInput, [&](Scene& scene) {
+                      scene.instances.clear();
+                      add_hidden(scene, 5);
+                  });
+}
+
+TEST_CASE("without geometry the error says what there is instead") {
+    check_refused("1 instance of meshes that lost all their triangles, the first of them mesh 0 square; expected",
+                  ErrorCode::BadInput, [](Scene& scene) {
+                      scene.meshes[0].indices = {0, 0, 0};
+                  });
+    check_refused("no geometry, not one triangle to see: as the reader says", ErrorCode::BadInput, [](Scene& scene) {
+        scene = {};
+        scene.no_instances = "as the reader says";
+    });
+}
+
+TEST_CASE("what the file describes somewhere is named by that place") {
+    using E = ErrorCode;
+    check_refused("file: /meshes/3/primitives/1 square: triangle 1", E::BadInput, [](Scene& s) {
+        s.meshes[0].origin = "/meshes/3/primitives/1";
+        s.meshes[0].indices[4] = 4;
+    });
+    check_refused("file: /nodes/7 one lies further", E::OverLimit, [](Scene& s) {
+        s.instances[0].node = 7;
+        s.instances[0].world_from_local = make_scale({1e30f, 1, 1});
+    });
+    check_refused("file: /materials/2: ior is", E::BadInput, [](Scene& s) {
+        s.materials[0].origin = "/materials/2";
+        s.materials[0].ior = kNan;
+    });
+    check_refused("file: /nodes/4 lamp: its range", E::BadInput, [](Scene& s) {
+        s.lights.emplace_back().name = "lamp";
+        s.lights[0].origin = "/nodes/4";
+        s.lights[0].range = -1;
+    });
+    check_refused("file: /nodes/4: its focus distance", E::BadInput, [](Scene& s) {
+        s.cameras.emplace_back().origin = "/nodes/4";
+        s.cameras[0].focus_distance = 0;
+    });
+}
+
 TEST_CASE("normals are made unit; zero and NaN become the surface's own") {
     const Result result = validated([](Scene& scene) {
         Mesh& mesh = scene.meshes[0];

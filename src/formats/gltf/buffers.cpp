@@ -57,7 +57,7 @@ std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAcc
         if (is_new) entry->second = own(read_file(path));
         return entry->second;
     } catch (const Error& error) {
-        throw Error(error.code(), fmt::format("{}: {}", uri.place(), error.what()));
+        throw uri.error(error);
     }
 }
 

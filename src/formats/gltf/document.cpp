@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "formats/gltf/find_json_fault.h"
 
 namespace pertev::gltf {
 namespace {
@@ -101,12 +102,22 @@ void Document::parse(std::span<const std::byte> json) {
     const simdjson::padded_string padded(text);
     simdjson::dom::element element;
     if (const simdjson::error_code failure = parser_.parse(padded).get(element)) {
-        const std::string what = failure == simdjson::DEPTH_ERROR
-                                     ? fmt::format("JSON nested more than {} levels deep", parser_.max_depth())
-                                     : fmt::format("not valid JSON: {}", simdjson::error_message(failure));
-        throw Error(ErrorCode::BadInput, fmt::format("{}: {}; expected a glTF 2.0 document", file_, what));
+        throw bad_json(text, failure);
     }
     root_.emplace(file_, "", element);
+}
+
+Error Document::bad_json(std::string_view text, simdjson::error_code failure) const {
+    std::string what =
+        fmt::format("not valid JSON: {}; expected a glTF 2.0 document", simdjson::error_message(failure));
+    if (failure == simdjson::DEPTH_ERROR) {
+        what = fmt::format("JSON nested more than {} levels deep; expected a glTF 2.0 document", parser_.max_depth());
+    } else if (const std::optional<JsonFault> fault = find_json_fault(text)) {
+        const auto start = static_cast<std::size_t>(text.data() - reinterpret_cast<const char*>(bytes_.data()));
+        what = fmt::format("not valid JSON: {} (byte {} of the file): expected {}", line_and_column(text, fault->byte),
+                           start + fault->byte, fault->expected);
+    }
+    return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what));
 }
 
 void Document::check_version() const {

@@ -47,6 +47,7 @@ public:
 private:
     void split_glb();
     void parse(std::span<const std::byte> json);
+    Error bad_json(std::string_view text, simdjson::error_code failure) const;
     void check_version() const;
     void check_extensions(Messages& messages) const;
 

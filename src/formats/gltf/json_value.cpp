@@ -53,6 +53,10 @@ Error JsonValue::error(const std::string& what) const {
     return Error(ErrorCode::BadInput, fmt::format("{}: {}", place(), what));
 }
 
+Error JsonValue::error(const Error& cause) const {
+    return Error(cause.code(), fmt::format("{}: {}", place(), cause.what()));
+}
+
 JsonValue JsonValue::child(std::string_view key, simdjson::dom::element element) const {
     return {*file_, fmt::format("{}/{}", pointer_, escape(key)), element};
 }

@@ -24,10 +24,14 @@ public:
     JsonValue(const std::string& file, std::string pointer, simdjson::dom::element element)
         : file_(&file), pointer_(std::move(pointer)), element_(element) {}
 
+    /// RFC 6901: where in the document it stands; "" is all of it.
+    const std::string& pointer() const { return pointer_; }
     /// "file: /pointer", for messages.
     std::string place() const;
     /// Error(BadInput) "file: /pointer: what".
     Error error(const std::string& what) const;
+    /// `cause` with this place before it.
+    Error error(const Error& cause) const;
 
     /// Member of an object; nothing when it has none of that name.
     std::optional<JsonValue> find(std::string_view key) const;

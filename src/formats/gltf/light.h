@@ -4,13 +4,14 @@
 //
 // Source: KHR_lights_punctual.
 
+#include "base/messages.h"
 #include "formats/gltf/json_value.h"
 #include "scene/light.h"
 
 namespace pertev::gltf {
 
-/// The light without its place.
-Light read_light(const JsonValue& light);
+/// The light without its place. A cone of equal angles (exporters write it for a sharp edge) is one after a warning.
+Light read_light(const JsonValue& light, Messages& messages);
 
 /// Puts `light` at the origin of a node, shining along the node's -z; its strength does not scale. False where that
 /// direction is lost.

@@ -38,6 +38,7 @@ uint32_t Materials::add(Material material) {
 Material Materials::read(const JsonValue& source) {
     Material material = make_default_material();
     material.name = source.string_or("name", "");
+    material.origin = source.pointer();
     if (const std::optional<JsonValue> pbr = source.find("pbrMetallicRoughness")) {
         read_metallic_roughness(*pbr, material);
     }

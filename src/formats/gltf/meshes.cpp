@@ -51,9 +51,22 @@ std::vector<Meshes::Part> Meshes::read_parts(const JsonValue& node) {
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const std::string part_name = primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
         const std::optional<uint32_t> index = mesh_of(primitives[i], weights, skin, part_name);
-        if (index) parts.push_back({*index, materials_.material_of(primitives[i])});
+        if (!index) continue;
+        parts.push_back({*index, materials_.material_of(primitives[i])});
+        check_texture_coordinates(parts.back());
     }
     return parts;
+}
+
+void Meshes::check_texture_coordinates(const Part& part) {
+    const Mesh& mesh = scene_.meshes[part.mesh];
+    const Material& material = scene_.materials[part.material];
+    for (const TextureRef* texture : material.textures()) {
+        if (!texture->has_image() || !mesh.uv[texture->uv_set].empty()) continue;
+        messages_.warn(fmt::format("{}: {}: a texture over TEXCOORD_{}, which a mesh with this material does not have; "
+                                   "one point of the texture is shown",
+                                   document_.file(), material.origin, texture->uv_set));
+    }
 }
 
 std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, const std::vector<float>& weights,
@@ -73,6 +86,7 @@ std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, const std::v
     }
     buffers_.charge(name.size(), primitive);
     mesh->name = name;
+    mesh->origin = primitive.pointer();
     scene_.meshes.push_back(*std::move(mesh));
     entry->second = static_cast<uint32_t>(scene_.meshes.size() - 1);
     return entry->second;

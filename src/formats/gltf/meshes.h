@@ -32,6 +32,7 @@ public:
 
 private:
     std::vector<Part> read_parts(const JsonValue& node);
+    void check_texture_coordinates(const Part& part);
     std::optional<uint32_t> mesh_of(const JsonValue& primitive, const std::vector<float>& weights,
                                     const std::optional<JsonValue>& skin, const std::string& name);
     const std::vector<Transform>& joints_of(const JsonValue& skin);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/limits.h"
+#include "base/message_text.h"
 #include "formats/gltf/accessor.h"
 #include "formats/gltf/camera.h"
 #include "formats/gltf/light.h"
@@ -45,11 +46,23 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
     return placements;
 }
 
+// Of a scene without instances: what there is, and what would be right.
+std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
+    const std::size_t meshes = document.table("meshes").size(), shown = nodes.scene_nodes().size();
+    if (meshes == 0) return "/meshes: there are none; expected one that a node of the scene shows";
+    const bool is_shown = std::any_of(nodes.scene_nodes().begin(), nodes.scene_nodes().end(), [&](uint32_t node) {
+        return document.table("nodes")[node].find("mesh").has_value();
+    });
+    if (is_shown) return "/meshes: none that a node of the scene shows has a triangle; expected a part that does";
+    return fmt::format("/nodes: the scene has {}, and none shows a mesh (of {}); expected a \"mesh\" in one of them",
+                       counted(shown, "node"), meshes);
+}
+
 } // namespace
 
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Messages& messages) {
-    const auto place_mesh = [&](const JsonValue& node, const Transform& world_from_node) {
+    const auto place_mesh = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
         const std::vector<Meshes::Part>& parts = meshes.parts_of(node);
         const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
         std::vector<Transform> world_from_local = {world_from_node};
@@ -62,7 +75,9 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         const std::string name = node.string_or("name", "");
         buffers.charge(world_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : world_from_local) {
-            for (const Meshes::Part& part : parts) scene.instances.push_back({name, part.mesh, part.material, m});
+            for (const Meshes::Part& part : parts) {
+                scene.instances.push_back({name, part.mesh, part.material, m, index});
+            }
         }
         if (scene.instances.size() > kMaxInstances) {
             throw Error(ErrorCode::OverLimit, fmt::format("{}: more than {} instances", node.place(), kMaxInstances));
@@ -72,10 +87,11 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
     for (const uint32_t index : nodes.scene_nodes()) {
         const JsonValue& node = document.table("nodes")[index];
         const Transform& world_from_node = nodes.world_from_node(index);
-        if (node.find("mesh")) place_mesh(node, world_from_node);
+        if (node.find("mesh")) place_mesh(node, index, world_from_node);
         if (const std::optional<JsonValue> reference = node.find("camera")) {
             Camera camera = read_camera(document.item("cameras", *reference));
             if (camera.name.empty()) camera.name = node.string_or("name", "");
+            camera.origin = node.pointer();
             if (const std::optional<Transform> rigid = without_scale(world_from_node)) {
                 camera.world_from_camera = *rigid;
                 scene.cameras.push_back(std::move(camera));
@@ -84,8 +100,9 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             }
         }
         if (const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual")) {
-            Light light = read_light(document.item("lights", extension->at("light")));
+            Light light = read_light(document.item("lights", extension->at("light")), messages);
             if (light.name.empty()) light.name = node.string_or("name", "");
+            light.origin = node.pointer();
             if (place_light(world_from_node, light)) {
                 scene.lights.push_back(std::move(light));
             } else {
@@ -93,6 +110,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             }
         }
     }
+    if (scene.instances.empty()) scene.no_instances = describe_nothing(document, nodes);
 }
 
 } // namespace pertev::gltf

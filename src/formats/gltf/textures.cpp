@@ -106,7 +106,11 @@ int32_t Textures::add_image(const JsonValue& image) {
     if (!is_data_uri(text)) {
         const std::optional<std::string> path = decode_path_uri(text);
         if (!path) throw uri->error(fmt::format("\"{}\"; expected a relative path or a data URI", text));
-        return loader_.add_file(document_.path(), *path);
+        try {
+            return loader_.add_file(document_.path(), *path);
+        } catch (const Error& error) {
+            throw uri->error(error);
+        }
     }
     std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
     if (!bytes) {
