@@ -22,14 +22,12 @@ uint64_t effort_of_two(uint64_t count, uint64_t long_count) {
     return test::cuda_requested() ? test::effort(count, long_count) : count;
 }
 
-Queue other_queue() { return test::cuda_requested() ? test::make_cuda_queue() : Queue::make_cpu(); }
-
 /// Runs make_stage(queue, out) on both devices over `count` indices and compares what lies in `out`.
 template <class MakeStage>
 void check_same_bits(uint32_t count, const MakeStage& make_stage) {
     std::vector<uint32_t> results[2];
     for (int device = 0; device < 2; ++device) {
-        Queue queue = device == 0 ? Queue::make_cpu() : other_queue();
+        Queue queue = device == 0 ? Queue::make_cpu() : test::queue_asked_for();
         const Buffer<uint32_t> out(queue, count, "results");
         make_stage(queue, out.data(), count);
         queue.wait();
@@ -63,7 +61,7 @@ void check_same_hits(const Scene& scene, uint32_t count) {
     std::vector<Hit> hits[2];
     std::vector<uint32_t> occluded[2];
     for (int device = 0; device < 2; ++device) {
-        Queue queue = device == 0 ? Queue::make_cpu() : other_queue();
+        Queue queue = device == 0 ? Queue::make_cpu() : test::queue_asked_for();
         const SceneOnDevice on_device(queue, prepared);
         const Buffer<Ray> in(queue, std::span<const Ray>(rays), "rays");
         const Buffer<Hit> out(queue, count, "hits");

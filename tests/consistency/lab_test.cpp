@@ -172,7 +172,7 @@ TEST_CASE("CUDA: every combination gives the same hits") {
 }
 
 TEST_CASE("tests that leak miss a few rays, which are counted") {
-    Queue queue = cuda_requested() ? make_cuda_queue() : Queue::make_cpu();
+    Queue queue = queue_asked_for();
     const Vec3 centre = {1.5e5f, 0, -1.5e5f}; // 150 km away: a float's last bits are centimetres there
     const Scene scene = scene_of({"soup", make_soup(1500, 1.5e5f), centre});
     LabSettings settings;
@@ -207,7 +207,7 @@ TEST_CASE("tests that leak miss a few rays, which are counted") {
 }
 
 TEST_CASE("Woop's tests go through instances: but for few rays the hits are those of pictures") {
-    Queue queue = cuda_requested() ? make_cuda_queue() : Queue::make_cpu();
+    Queue queue = queue_asked_for();
     LabSettings settings;
     for (const WalkKind walk : {WalkKind::WhileWhile, WalkKind::Speculative}) {
         settings.only.push_back({StructureKind::SpatialSplits, walk, {.tests = TestKind::Woop}});

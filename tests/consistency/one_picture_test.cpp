@@ -22,6 +22,8 @@ RenderSettings small_settings() {
     return settings;
 }
 
+constexpr LightStrategy kStrategies[] = {LightStrategy::Mis, LightStrategy::NeeOnly, LightStrategy::BsdfOnly};
+
 /// Hash of the picture, the layers and the ids.
 Hash128 hash_of(const RenderResult& result) {
     Hasher hasher;
@@ -74,6 +76,18 @@ TEST_CASE("the wavefront gives the bytes of the loop, for any number of paths in
     }
 }
 
+TEST_CASE("the wavefront gives the bytes of the loop, however lights are found") {
+    for (const LightStrategy strategy : kStrategies) {
+        CAPTURE(static_cast<int>(strategy));
+        RenderSettings settings = small_settings();
+        settings.path.strategy = strategy;
+        const Hash128 loop = cpu_hash(settings);
+        CHECK((loop == reference_hash()) == (strategy == LightStrategy::Mis));
+        settings.body = PathBody::Wavefront;
+        CHECK(cpu_hash(settings) == loop);
+    }
+}
+
 TEST_CASE("the picture does not depend on how the trees were built") {
     for (const int bins : {4, 32}) {
         for (const int leaf : {1, 8}) {
@@ -102,13 +116,16 @@ TEST_CASE("the GPU gives the bytes of the CPU") {
     for (const uint32_t batch : {777u, 1u << 20}) {
         for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent}) {
             for (const PathLight light : {PathLight::Path, PathLight::Direct, PathLight::Indirect}) {
-                RenderSettings settings = small_settings();
-                settings.batch = batch;
-                settings.path.sampler = sampler;
-                settings.path.light = light;
-                const Hash128 gpu =
-                    hash_of(test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings));
-                CHECK(gpu == cpu_hash(settings));
+                for (const LightStrategy strategy : kStrategies) {
+                    RenderSettings settings = small_settings();
+                    settings.batch = batch;
+                    settings.path.sampler = sampler;
+                    settings.path.light = light;
+                    settings.path.strategy = strategy;
+                    const Hash128 gpu =
+                        hash_of(test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings));
+                    CHECK(gpu == cpu_hash(settings));
+                }
             }
         }
     }

@@ -25,8 +25,6 @@ using namespace pertev::test;
 
 namespace {
 
-Queue queue_asked_for() { return cuda_requested() ? make_cuda_queue() : Queue::make_cpu(); }
-
 struct TreeOnDevice {
     Buffer<BvhNode> nodes;
     Buffer<BvhTriangle> triangles;

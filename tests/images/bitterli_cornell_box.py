@@ -3,11 +3,12 @@
 
 Errors are relMSE over the best 98 % of blocks of pixels (`pertev compare --blocks`) and the channel means over the same
 blocks. The render has the reference's size, filter and depth, so the mean over a block is a mean over the same light in
-both: blocks change nothing but the noise. What a block of the render varies by was measured from two seeds: relMSE
-0.0031 for 64 samples a block, so about 0.2 / samples of a block. The reference's own noise is small beside it, 1.6e-5 a
-pixel (from its second differences). Bounds on relMSE are 1.1 to 2 times the sum; for 4096 samples they are the house's
-goal, 0.001, and 3e-5 over blocks of 4. Leaving out the worst 2 %, bright outliers as a rule, darkens the means by
-0.13 % where relMSE is 0.003: hence 0.4 % there and 0.2 % where it is less.
+both: blocks change nothing but the noise. The samples of a pixel are scrambled Sobol points, so with their number the
+error falls faster than 0.2 / samples of a block, which holds at few. Measured: relMSE 1.9e-3 for blocks of 4 and
+2.8e-5 for blocks of 32 at 4 samples a pixel, 1.32e-3 for pixels and 8.5e-5 for blocks of 4 at 64. Bounds on relMSE are
+1.3 to 1.8 times that; for 4096 samples they are the house's goal, 0.001, and 3e-5 over blocks of 4. The reference's own
+noise is small beside them, 1.6e-5 a pixel (from its second differences). Leaving out the worst 2 %, bright outliers as
+a rule, darkens the means: by 0.08 % in the noisiest setting, where 0.2 % is asked of them as everywhere.
 """
 
 import pathlib
@@ -19,12 +20,13 @@ from mitsuba_to_gltf import convert  # noqa: E402
 from reference_job import ReferenceJob  # noqa: E402
 
 FOLDER = pathlib.Path("bitterli/cornell-box")
-# Samples a pixel, and for each side of a block: relMSE at most, means of the channels within.
+# Samples a pixel, and for each side of a block relMSE at most.
 SETTINGS = {
-    "ci": (4, {4: (3.5e-3, 4e-3), 32: (1e-4, 2e-3)}),
-    "long": (64, {1: (3.6e-3, 4e-3), 4: (2.5e-4, 2e-3)}),
-    "cuda": (4096, {1: (1e-3, 2e-3), 4: (3e-5, 2e-3)}),
+    "ci": (4, {4: 2.5e-3, 32: 5e-5}),
+    "long": (64, {1: 2e-3, 4: 1.3e-4}),
+    "cuda": (4096, {1: 1e-3, 4: 3e-5}),
 }
+MEAN_ERROR = 2e-3  # of a channel
 
 
 def main():
@@ -39,11 +41,11 @@ def main():
                        "--filter", "tent", "--filter-radius", 1, "--max-depth", 64, "--device", job.device,
                        "--no-bvh-cache")
         job.check("samples that were not finite", done["invalid_samples"], 0, 0)
-        for side, (error, mean_error) in bounds.items():
+        for side, error in bounds.items():
             far = job.run("compare", "compare", picture, reference, "--blocks", side)
             job.check(f"relMSE of blocks of {side} x {side}", far["rel_mse_98"], 0, error)
             for channel, mean, wanted in zip("RGB", far["mean_98"], far["reference_mean_98"]):
-                job.check(f"mean of {channel}", mean, wanted * (1 - mean_error), wanted * (1 + mean_error))
+                job.check(f"mean of {channel}", mean, wanted * (1 - MEAN_ERROR), wanted * (1 + MEAN_ERROR))
     job.end()
 
 

@@ -35,9 +35,15 @@ Rgb f_of(const Bsdf& bsdf, Vec3 wo, Vec3 wi) { return (1.0f / std::fabs(wi.z)) *
 
 } // namespace
 
-TEST_CASE("a white diffuse surface, a perfect mirror and smooth glass return all light to 0.1 %") {
-    const Bsdf bsdfs[] = {make_diffuse(grey(1)), make_conductor(grey(0), grey(2), 0), make_dielectric(1.5f, 0, grey(1)),
-                          make_dielectric(2.4f, 0, grey(1)), make_dielectric(1, 0.5f, grey(1))};
+TEST_CASE("white diffuse and smooth glTF materials, a perfect mirror and smooth glass return all light to 0.1 %") {
+    const Bsdf bsdfs[] = {make_diffuse(grey(1)),
+                          make_conductor(grey(0), grey(2), 0),
+                          make_dielectric(1.5f, 0, grey(1)),
+                          make_dielectric(2.4f, 0, grey(1)),
+                          make_dielectric(1, 0.5f, grey(1)),
+                          make_metallic_roughness(grey(1), 0, 0, 1.5f),
+                          make_metallic_roughness(grey(1), 0.5f, 0, 1.5f),
+                          make_metallic_roughness(grey(1), 1, 0, 1.5f)};
     for (const Bsdf& bsdf : bsdfs)
         for (const float cosine : {1e-4f, 0.01f, 0.2f, 0.6f, 0.7f, 0.8f, 1.0f})
             for (const float side : {1.0f, -1.0f}) {
@@ -82,13 +88,14 @@ TEST_CASE("rough glass returns all light to 1 %, from outside and from inside") 
         }
 }
 
-TEST_CASE("white glTF materials return all light to 1 %") {
+TEST_CASE("white glTF materials return all light to 1 %, metals to 0.5 %") {
     for (const float metallic : {0.0f, 0.5f, 1.0f}) {
         const MeanWeight range = furnace_range(
             [metallic](float r) { return make_metallic_roughness(grey(1), metallic, r, 1.5f); }, 1, furnace_points());
         INFO("metallic " << metallic << ": mean weight from " << range.least() << " to " << range.largest());
-        CHECK(range.r > 0.99);
-        CHECK(range.b < 1.01);
+        const double error = metallic == 1 ? 0.005 : 0.01;
+        CHECK(range.r > 1 - error);
+        CHECK(range.b < 1 + error);
     }
 }
 
@@ -137,7 +144,7 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
             if (size < 1e-12f) continue;
             compared++;
             // The half vectors of the two ways round differently, by about 1e-7 / alpha of the lobe's width.
-            const float error = std::max(std::fabs(there.r - back.r), std::fabs(there.b - back.b)) / size;
+            const float error = max(max_component(there - back), max_component(back - there)) / size;
             INFO(c.name << " wo.z " << wo.z << " wi.z " << wi.z << " there " << there.r << " back " << back.r);
             CHECK(error < 5e-4f + 1e-5f / std::max(c.bsdf.alpha, 1e-2f));
         }

@@ -157,7 +157,7 @@ TEST_CASE("environment: samples follow the density, within texels too") {
     Environment sky = make_sky(width, height, 1.1f);
     const EnvironmentData data = build(sky);
     const EnvironmentView view = view_of(data);
-    const uint32_t samples = static_cast<uint32_t>(effort(300'000, 10'000'000));
+    const uint32_t samples = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
     // Cells: each texel cut into 3 x 3 parts of equal solid angle, placed by the convention's own formulas in double.
     const auto height_at = [&](uint32_t edge) { // cos(theta) at the upper edge of a row of cells
         const uint32_t row = edge / parts;

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -10,7 +11,10 @@
 #include <optional>
 #include <vector>
 
+#include "math/random.h"
+#include "math/sampler.h"
 #include "shading/build_light_set.h"
+#include "tests/support/chi_square.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 
@@ -121,6 +125,11 @@ double rectangle_irradiance(double a, double b, double h, double radiance) {
     const double x = a / h, y = b / h, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
     return 2 * radiance * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
 }
+
+/// Which of the four triangles that its edges' midpoints cut a triangle into.
+uint32_t quarter(float b1, float b2) { return b1 > 0.5f ? 1 : b2 > 0.5f ? 2 : b1 + b2 < 0.5f ? 3 : 0; }
+
+uint32_t octant(Vec3 w) { return (w.x > 0 ? 1u : 0u) + (w.y > 0 ? 2u : 0u) + (w.z > 0 ? 4u : 0u); }
 
 Light make_light(LightKind kind, Vec3 position, Vec3 direction) {
     Light light;
@@ -304,6 +313,53 @@ TEST_CASE("lights: all kinds together add up, and near and far ones each get a q
         CHECK(sum == doctest::Approx(1).epsilon(1e-6));
         CHECK(far_sum > 0.25 - 1e-6);
         CHECK(far_sum < 0.75 + 1e-6);
+    }
+}
+
+TEST_CASE("lights: draws follow the density, over lights of eight decades of power, each triangle and the sky") {
+    const auto draws = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
+    for (const uint32_t count : {100u, 3000u}) {
+        Random random(count);
+        Scene scene;
+        for (uint32_t i = 0; i < count; ++i) {
+            Mesh mesh;
+            for (int k = 0; k < 3; ++k) mesh.positions.push_back(random.point(1, 2));
+            mesh.indices = {0, 1, 2};
+            add_emitter(scene, mesh, grey(std::pow(10.0f, random.within(-8, 0))), {});
+        }
+        scene.environment = Environment{};
+        const Lights lights(scene);
+        REQUIRE(lights.view.triangle_count == count);
+        // Four cells of equal area a triangle, and eight octants of the sky.
+        std::vector<double> observed(4 * std::size_t(count) + 8), expected;
+        for (uint32_t light = 0; light <= count; ++light) {
+            const uint32_t cells = light < count ? 4 : 8;
+            expected.insert(expected.end(), cells, draws * as_double(alias_pmf(lights.view.choice, light)) / cells);
+        }
+        for (uint32_t i = 0; i < draws; ++i) {
+            const Hash4 h = hash_words(i, count, 1, 2);
+            LightSample sample;
+            const Vec2 u = {unit_interval(h.y), unit_interval(h.z)};
+            if (!sample_light(lights.view, {0, 0, 0}, unit_interval(h.x), u, sample)) continue;
+            const bool from_sky = sample.instance == kNoLight;
+            const uint32_t light = from_sky ? count : light_of(lights.view, sample.instance, sample.primitive);
+            observed[4 * std::size_t(light) + (from_sky ? octant(sample.wi) : quarter(sample.b1, sample.b2))] += 1;
+        }
+        double drawn = 0;
+        for (const double n : observed) drawn += n;
+        CHECK(drawn == draws);
+        // Lights too dim to be counted one by one are held to it by the decade of their probability.
+        std::vector<double> observed_decades(40), expected_decades(40);
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            const auto decade = static_cast<std::size_t>(std::max(0.0, -std::log10(expected[i] / draws)));
+            observed_decades[std::min<std::size_t>(decade, 39)] += observed[i];
+            expected_decades[std::min<std::size_t>(decade, 39)] += expected[i];
+        }
+        CAPTURE(count);
+        const ChiSquareResult cells = test::chi_square(observed, expected);
+        const ChiSquareResult decades = test::chi_square(observed_decades, expected_decades);
+        CHECK_MESSAGE(cells.passes(4), cells.describe());
+        CHECK_MESSAGE(decades.passes(4), "by decades: ", decades.describe());
     }
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr int kTests = 60; // more than this file makes
-constexpr uint32_t kPairs = 1u << 18;
+constexpr uint32_t kPairs = 1u << 20;
 
 /// Are the points (first, second) uniform in the square? 32 x 32 boxes.
 void check_uniform(const std::function<Vec2(uint32_t)>& pair, const char* what) {
@@ -75,7 +75,7 @@ TEST_CASE("samples of one pixel are uncorrelated in different dimensions and in 
 TEST_CASE("successive samples of white noise are independent") {
     const auto one = [](uint32_t sample) { return sample_1d(SamplerKind::Independent, {3, sample, 0}, 6); };
     check_uniform([&](uint32_t i) { return Vec2{one(2 * i), one(2 * i + 1)}; }, "next sample");
-    check_uniform([&](uint32_t i) { return Vec2{one(i), one(i + (1u << 18))}; }, "sample 2^18 later");
+    check_uniform([&](uint32_t i) { return Vec2{one(i), one(i + kPairs)}; }, "sample 2^20 later");
 }
 
 TEST_CASE("a stratified sequence integrates better than white noise") {

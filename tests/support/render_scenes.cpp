@@ -1,6 +1,7 @@
 #include "tests/support/render_scenes.h"
 
 #include "tests/support/meshes.h"
+#include "tests/support/options.h"
 
 namespace pertev::test {
 namespace {
@@ -143,6 +144,7 @@ Scene make_furnace_scene(float albedo) {
 }
 
 Queue make_cuda_queue() { return Queue::make_cuda(0); }
+Queue queue_asked_for() { return cuda_requested() ? make_cuda_queue() : Queue::make_cpu(); }
 
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare) {

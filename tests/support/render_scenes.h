@@ -19,6 +19,8 @@ Camera mixed_scene_camera();
 Scene make_furnace_scene(float albedo);
 
 Queue make_cuda_queue(); // for tests under cuda_requested()
+/// The GPU's with --device cuda, else the CPU's.
+Queue queue_asked_for();
 
 /// Renders with the scene's trees built afresh.
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,

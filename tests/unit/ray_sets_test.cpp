@@ -246,7 +246,7 @@ TEST_CASE("ray sets are the same for any number of threads") {
 
 TEST_CASE("ray sets, hits and work are the same on the GPU") {
     // On the CPU twice where no GPU was asked for.
-    Traced here(make_room()), there(make_room(), cuda_requested() ? make_cuda_queue() : Queue::make_cpu());
+    Traced here(make_room()), there(make_room(), queue_asked_for());
     const uint32_t count = cuda_requested() ? 1000000 : 20000;
     const auto sets = make_record_ray_sets(here.job(256, 144), count);
     CHECK(same_bits(sets, make_record_ray_sets(there.job(256, 144), count)));
