@@ -340,7 +340,7 @@ TEST_CASE("lights: draws follow the density, over lights of eight decades of pow
             const Hash4 h = hash_words(i, count, 1, 2);
             LightSample sample;
             const Vec2 u = {unit_interval(h.y), unit_interval(h.z)};
-            if (!sample_light(lights.view, {0, 0, 0}, unit_interval(h.x), u, sample)) continue;
+            if (!sample_light(lights.view, {0, 0, 0}, h.x, u, sample)) continue;
             const bool from_sky = sample.instance == kNoLight;
             const uint32_t light = from_sky ? count : light_of(lights.view, sample.instance, sample.primitive);
             observed[4 * std::size_t(light) + (from_sky ? octant(sample.wi) : quarter(sample.b1, sample.b2))] += 1;
