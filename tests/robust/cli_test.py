@@ -66,10 +66,10 @@ class WhatIsWritten(CliTest):
 
     def test_an_output_that_fails_late_does_not_cost_the_others(self):
         outcome = self.run_pertev("render", "cornell-box", "-o", "large.hdr", "-o", "small.jpg", "-o", "large.exr",
-                                  "--size", "128x128", "--spp", "1", "--device", "cpu", "--json", preexec_fn=limit_files)
+                                  "--size", "36x36", "--spp", "1", "--device", "cpu", "--json", preexec_fn=limit_files)
         self.assertEqual(outcome.status, 6, outcome)
         self.assertEqual(self.files(), ["small.jpg"])
-        self.assertEqual(self.info("small.jpg")["width"], 128)
+        self.assertEqual(self.info("small.jpg")["width"], 36)
         self.assertEqual(len(outcome.events("done")), 1)
         for name in ["large.hdr", "large.exr"]:
             self.assertIn(name, outcome.stderr)
@@ -130,18 +130,25 @@ class WhatIsWritten(CliTest):
             self.assertEqual(self.run_pertev("info", "nowhere.obj", stderr=full).status, 2)
 
     def test_a_cache_folder_that_cannot_be_written_is_a_warning(self):
-        mesh = "".join(f"v {x} {math.sin(x * y)} {y}\n" for y in range(40) for x in range(40))
-        mesh += "".join(f"f {1 + x + 40 * y} {2 + x + 40 * y} {41 + x + 40 * y}\n" for y in range(39) for x in range(39))
+        n = 130  # enough triangles that their tree is kept
+        mesh = "".join(f"v {x} {math.sin(x * y)} {y}\n" for y in range(n) for x in range(n))
+        mesh += "".join(f"f {x + n * y} {x + 1 + n * y} {x + n + n * y}\n" for y in range(n - 1) for x in range(1, n))
         write(self.path("hills.obj"), mesh)
-        limited = self.succeed("render", "hills.obj", "-o", "limited.png", "--size", "16x16", "--spp", "1",
-                               preexec_fn=limit_files)
-        self.assertIn("cache cannot be written", limited.stderr)
-        self.environment["XDG_CACHE_HOME"] = "/proc"
-        done = self.render(scene="hills.obj")
+        whole = self.render("--no-bvh-cache", scene="hills.obj")["hash"]
+
+        def check_warning(**options):
+            arguments = ["render", "hills.obj", "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu", "--json"]
+            outcome = self.succeed(*arguments, **options)
+            self.assertIn("cache cannot be written", outcome.stderr)
+            self.assertEqual(outcome.events("done")[0]["hash"], whole)
+
+        check_warning(preexec_fn=limit_files)
+        for folder in ["/proc", os.path.abspath(PROGRAM)]:  # the second is a file
+            self.environment["XDG_CACHE_HOME"] = folder
+            check_warning()
         self.environment.pop("XDG_CACHE_HOME")
-        self.environment["HOME"] = "/nowhere"
-        self.assertEqual(self.render(scene="hills.obj")["hash"], done["hash"])
-        self.assertEqual(self.render("--no-bvh-cache", scene="hills.obj")["hash"], done["hash"])
+        self.environment["HOME"] = "/proc"
+        check_warning()
 
 
 class WhatIsSaid(CliTest):
@@ -233,7 +240,7 @@ class WhenItEnds(CliTest):
 
     def test_an_interrupt_writes_the_whole_samples_so_far_and_ends_with_75(self):
         for kind in [signal.SIGINT, signal.SIGTERM]:
-            program = self.start("-o", "part.exr", "-o", "part.png", "--size", "48x48", "--spp", "100000000", "--json")
+            program = self.start("-o", "part.exr", "-o", "part.png", "--size", "48x48", "--spp", "8388607", "--json")
             seen = 0
             for line in program.stdout:
                 seen += json.loads(line)["event"] == "progress"
@@ -262,7 +269,7 @@ class WhenItEnds(CliTest):
         self.assertEqual(self.files(), [])
 
     def test_a_time_limit_ends_at_a_whole_sample_with_0(self):
-        done = self.render("--time", "0.5", size="48x48", spp=100000000)
+        done = self.render("--time", "0.5", size="48x48", spp=8388607)
         self.assertLess(done["seconds"], 60)
         self.assertEqual(self.render(size="48x48", spp=done["samples"])["hash"], done["hash"])
         self.assertEqual(self.render("--time", "1e-9", size="48x48", spp=100)["samples"], 1)
