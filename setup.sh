@@ -341,5 +341,6 @@ summary
 
 if $tests; then
     echo
+    tools/missing_scenes.sh
     ctest --test-dir "$build" --output-on-failure -j 2
 fi

@@ -2,14 +2,14 @@
 # Everything that touches device code, on a machine with a GPU, in one go:
 #   tools/check_gpu.sh BIN SCENES [PART ...]
 # BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
-# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench; all but long and
-# references without any. Exits 1 when something failed.
+# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench; all without any. Exits 1
+# when something failed.
 set -uo pipefail
 bin=$1 scenes=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(tests pictures sanitizers bench)
+[ ${#parts[@]} -gt 0 ] || parts=(tests long pictures sanitizers references bench)
 export PERTEV_SCENES=$scenes
 status=0
 
@@ -25,8 +25,11 @@ for part in "${parts[@]}"; do
         files='*/consistency/*,*/watertight_test.cpp,*/ray_sets_test.cpp,*/glowing_room_test.cpp,*/path_parts_test.cpp'
         run "$bin/pertev_tests" --device cuda --source-file="$files"
         ;;
-    long) run "$bin/pertev_tests" --device cuda --long --source-file='*/device_functions*' ;;
-    pictures) run "$here/compare_devices.sh" "$bin/pertev" "$scenes" 1 16 ;;
+    long)
+        files='*/device_functions_test.cpp,*/lab_test.cpp,*/watertight_test.cpp'
+        run "$bin/pertev_tests" --device cuda --long --source-file="$files"
+        ;;
+    pictures) run "$here/compare_devices.sh" "$bin/pertev" "$scenes" 1 16 64 ;;
     sanitizers)
         for tool in memcheck racecheck initcheck synccheck; do
             run compute-sanitizer --tool "$tool" --error-exitcode 1 "$bin/pertev_tests" --device cuda \

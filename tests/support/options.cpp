@@ -14,6 +14,7 @@ namespace {
 
 bool g_cuda = false;
 bool g_long = false;
+bool g_scene_was_missing = false;
 
 struct ScratchFolders {
     std::vector<std::filesystem::path> folders;
@@ -42,16 +43,20 @@ uint64_t effort(uint64_t count, uint64_t long_count) { return g_long ? long_coun
 std::optional<std::filesystem::path> test_scene(const std::filesystem::path& relative) {
     const char* root = std::getenv("PERTEV_SCENES");
     if (root == nullptr || *root == '\0') {
+        g_scene_was_missing = true;
         std::printf("skipped: %s is not there (set PERTEV_SCENES, see docs/scenes.md)\n", relative.c_str());
         return std::nullopt;
     }
     std::filesystem::path path = std::filesystem::path(root) / relative;
     if (!std::filesystem::exists(path)) {
+        g_scene_was_missing = true;
         std::printf("skipped: %s is not there (see docs/scenes.md)\n", path.c_str());
         return std::nullopt;
     }
     return path;
 }
+
+bool scene_was_missing() { return g_scene_was_missing; }
 
 std::filesystem::path scratch_folder() {
     static ScratchFolders scratch;
