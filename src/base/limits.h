@@ -12,10 +12,21 @@ inline constexpr uint32_t kMaxTrianglesPerMesh = 1u << 30; // primitive ids are 
 inline constexpr uint32_t kMaxInstances = 1u << 30;        // instance ids are 32 bit
 inline constexpr uint32_t kMaxLights = 1u << 30;           // each is drawn by one of 2^32 numbers, so 3/4 go by power
 inline constexpr uint32_t kMaxImageSide = 1u << 16;        // pixels along one side of any image
-inline constexpr uint64_t kMaxImagePixels = uint64_t(1) << 30;  // pixels of one image
+inline constexpr uint64_t kMaxImagePixels = uint64_t(1) << 30;   // pixels of one image
+inline constexpr uint64_t kFreeImageBytes = uint64_t(384) << 20; // decoded; a panorama of 8192 x 4096 in float
+inline constexpr uint64_t kFreeMeshBytes = uint64_t(256) << 20;  // what a scene's files unfold to but for its images
+inline constexpr uint64_t kMaxExpansion = 1024;                  // bytes in memory for each byte of the files
+inline constexpr uint64_t kFreeBakedTriangles = 1u << 21; // in copies of shared meshes, baked for their skewed places
+inline constexpr uint64_t kMaxBakedExpansion = 8;         // further such triangles for each of the scene's meshes
 inline constexpr uint32_t kMaxSamplesPerPixel = (1u << 23) - 1; // of the largest value they just fit the film's sums
 inline constexpr uint32_t kMaxPathDepth = 1u << 16;
 inline constexpr int kMaxBvhDepth = 64;           // levels; also the capacity of a walk's stack
 inline constexpr float kMaxSampleValue = 0x1p40f; // a larger sample counts as invalid
+
+/// Bytes that files of `file_bytes` bytes may take in memory. Honest ones stay far below; this stops a small file that
+/// multiplies itself.
+constexpr uint64_t justified_bytes(uint64_t free_bytes, uint64_t file_bytes) {
+    return free_bytes + kMaxExpansion * file_bytes;
+}
 
 } // namespace pertev

@@ -1,11 +1,14 @@
 #include "formats/load_textures.h"
 
+#include <atomic>
 #include <optional>
+#include <system_error>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
@@ -74,6 +77,11 @@ void put_png16(const Image& image, Uses use, TextureImage& to) {
     to.rgba_float = std::move(rgba);
 }
 
+/// What the picture takes as a TextureImage.
+uint64_t texture_bytes(const ImageHeader& header) {
+    return uint64_t(header.width) * header.height * 4 * (header.is_float ? sizeof(float) : 1);
+}
+
 void decode(std::span<const std::byte> bytes, const std::string& name, Uses use, TextureImage& to, Messages& said) {
     auto image = decode_image(bytes, name, &said);
     if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
@@ -106,7 +114,31 @@ int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> by
     return static_cast<int32_t>(sources_.size() - 1);
 }
 
-void TextureLoader::load_into(Scene& scene) {
+uint64_t TextureLoader::budget(uint64_t scene_bytes) const {
+    uint64_t bytes = scene_bytes;
+    for (const Source& source : sources_) {
+        std::error_code ec;
+        const uint64_t size = source.path.empty() ? 0 : fs::file_size(source.path, ec);
+        if (!ec) bytes += size;
+    }
+    return justified_bytes(kFreeImageBytes, bytes);
+}
+
+void TextureLoader::check_budget(const std::vector<uint64_t>& bytes, uint64_t limit) const {
+    uint64_t sum = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        sum += bytes[i];
+        if (sum <= limit) continue;
+        const Source& source = sources_[i];
+        throw Error(
+            ErrorCode::OverLimit,
+            fmt::format("{}: with this picture the scene's images take {} MiB in memory; the limit for files of "
+                        "this size is {} MiB; use one image many times instead of copies, or smaller ones",
+                        source.path.empty() ? source.name : source.path.string(), sum >> 20, limit >> 20));
+    }
+}
+
+void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
         messages_.warn(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
@@ -114,19 +146,25 @@ void TextureLoader::load_into(Scene& scene) {
     const std::vector<Uses> uses = uses_of(scene, sources_.size());
     std::vector<std::string> faults(sources_.size());
     std::vector<Messages> said(sources_.size());
+    std::vector<uint64_t> bytes_needed(sources_.size());
+    std::atomic<uint64_t> total_needed = 0;
+    const uint64_t limit = budget(scene_bytes);
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
         const Source& source = sources_[i];
         decoded[i].name = source.name;
         try {
-            if (source.path.empty()) {
-                decode(source.bytes, source.name, uses[i], decoded[i], said[i]);
-            } else {
-                decode(read_file(source.path), source.path.string(), uses[i], decoded[i], said[i]);
-            }
+            const bool is_embedded = source.path.empty();
+            const std::vector<std::byte> file = is_embedded ? std::vector<std::byte>() : read_file(source.path);
+            const std::span<const std::byte> bytes = is_embedded ? source.bytes : file;
+            const std::string name = is_embedded ? source.name : source.path.string();
+            bytes_needed[i] = texture_bytes(read_image_header(bytes, name));
+            const uint64_t needed = total_needed += bytes_needed[i];
+            if (needed <= limit) decode(bytes, name, uses[i], decoded[i], said[i]);
         } catch (const Error& error) {
             faults[i] = error.what();
         }
     });
+    check_budget(bytes_needed, limit);
 
     std::vector<int32_t> renumbered(sources_.size(), kNoImage);
     for (std::size_t i = 0; i < sources_.size(); ++i) {

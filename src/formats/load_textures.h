@@ -31,10 +31,15 @@ public:
     int32_t add_bytes(std::string name, std::span<const std::byte> bytes);
 
     /// Decodes everything into scene.images (empty before). Images that turn out broken are left out, each with a
-    /// warning, and the references of scene.materials are renumbered: to kNoImage for a broken one.
-    void load_into(Scene& scene);
+    /// warning, and the references of scene.materials are renumbered: to kNoImage for a broken one. `scene_bytes`: size
+    /// of the files that embedded images are part of. Throws Error(OverLimit) that names an image when all together
+    /// would take more memory than their files justify; no more than that is taken before.
+    void load_into(Scene& scene, uint64_t scene_bytes = 0);
 
 private:
+    uint64_t budget(uint64_t scene_bytes) const;
+    void check_budget(const std::vector<uint64_t>& bytes, uint64_t limit) const;
+
     struct Source {
         std::string name;
         std::filesystem::path path;       // or

@@ -15,9 +15,9 @@ Image read_environment_image(const std::filesystem::path& path, Messages& messag
                                   path.string(), image.width, image.height));
     }
     if (image.channels == 4) { // alpha means nothing here
-        std::vector<float> rgb(image.pixels.size() / 4 * 3);
-        for (std::size_t i = 0; i < rgb.size() / 3; ++i) std::copy_n(&image.pixels[4 * i], 3, &rgb[3 * i]);
-        image.pixels = std::move(rgb);
+        const std::size_t count = image.pixels.size() / 4;
+        for (std::size_t i = 1; i < count; ++i) std::copy_n(&image.pixels[4 * i], 3, &image.pixels[3 * i]);
+        image.pixels.resize(3 * count);
         image.channels = 3;
     }
     const std::string extension = path.extension().string();

@@ -28,7 +28,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, messages);
     gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, messages);
     gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
-    loader.load_into(scene);
+    loader.load_into(scene, buffers.file_bytes());
 
     if (document.root().find("animations")) {
         messages.warn(fmt::format("{}: animations are not played", document.file()));

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "image/check_image_size.h"
+#include "math/scalar.h"
 
 namespace pertev {
 namespace {
@@ -42,12 +43,13 @@ class HeaderWalk {
 public:
     HeaderWalk(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-    void run() {
+    ImageHeader run() {
         need(8);
         const uint32_t version = read<uint32_t>(4);
         offset_ = 8;
         if ((version & 0xff) != 2 || ((version & ~0xffu) & ~kKnownFlags) != 0)
             fail(fmt::format("version word {:#x}; version 2 is supported", version));
+        ImageHeader result{.width = 0, .height = 0, .is_float = true};
         const bool is_multi_part = (version & kMultiPart) != 0;
         for (std::size_t part = 0;; ++part) {
             if (is_multi_part && peek_is_end()) {
@@ -60,8 +62,13 @@ public:
             header.is_deep = !is_multi_part && (version & kDeep) != 0;
             read_part(header);
             check_part(header);
+            if (part == 0) {
+                result.width = static_cast<uint32_t>(header.display->width());
+                result.height = static_cast<uint32_t>(header.display->height());
+            }
             if (!is_multi_part) break;
         }
+        return result;
     }
 
 private:
@@ -155,24 +162,25 @@ private:
         }
     }
 
-    void check_part(const PartHeader& header) const {
+    void check_part(const PartHeader& header) {
         if (header.is_deep) fail("it holds deep samples, which are not supported; flatten it to an ordinary EXR");
         if (!header.data || !header.display || !header.compression || header.channels == 0)
             fail("a part lacks its channels, compression, dataWindow or displayWindow");
-        const uint64_t most = most_per_byte(*header.compression);
-        for (const Box& box : {*header.data, *header.display}) {
-            const uint64_t pixels = multiply_saturated(box.width(), box.height());
-            check_image_size(name_, box.width(), box.height(), multiply_saturated(pixels, header.bytes_per_pixel),
-                             bytes_.size(), most);
-        }
+        const uint64_t decoded_per_pixel = header.channels * sizeof(float); // half becomes float
+        const uint64_t most = most_per_byte(*header.compression) * decoded_per_pixel / header.bytes_per_pixel;
+        const auto check_size = [&](uint64_t width, uint64_t height) {
+            const uint64_t bytes = multiply_saturated(multiply_saturated(width, height), decoded_per_pixel);
+            check_image_size(name_, width, height, bytes, bytes_.size(), most);
+            return bytes;
+        };
+        decoded_bytes_ += max(check_size(header.data->width(), header.data->height()),
+                              check_size(header.display->width(), header.display->height()));
+        check_decoded_bytes(name_, decoded_bytes_, bytes_.size()); // of all parts
         uint64_t chunks =
             (header.data->height() + rows_per_chunk(*header.compression) - 1) / rows_per_chunk(*header.compression);
         if (header.is_tiled) {
             if (header.tile_width == 0 || header.tile_height == 0) fail("tiles without a size");
-            check_image_size(
-                name_, header.tile_width, header.tile_height,
-                multiply_saturated(multiply_saturated(header.tile_width, header.tile_height), header.bytes_per_pixel),
-                bytes_.size(), most);
+            check_size(header.tile_width, header.tile_height);
             chunks = ((header.data->width() + header.tile_width - 1) / header.tile_width) *
                      ((header.data->height() + header.tile_height - 1) / header.tile_height);
         }
@@ -193,10 +201,13 @@ private:
     std::span<const std::byte> bytes_;
     const std::string& name_;
     std::size_t offset_ = 0;
+    uint64_t decoded_bytes_ = 0; // of the parts so far
 };
 
 } // namespace
 
-void check_exr_header(std::span<const std::byte> bytes, const std::string& name) { HeaderWalk(bytes, name).run(); }
+ImageHeader check_exr_header(std::span<const std::byte> bytes, const std::string& name) {
+    return HeaderWalk(bytes, name).run();
+}
 
 } // namespace pertev

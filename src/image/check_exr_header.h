@@ -10,10 +10,12 @@
 #include <span>
 #include <string>
 
+#include "image/image_header.h"
+
 namespace pertev {
 
-/// Returns when every part's header is whole and its picture could be held by the file. Throws Error(BadInput) or
-/// Error(OverLimit) that starts with `name` and says what is wrong.
-void check_exr_header(std::span<const std::byte> bytes, const std::string& name);
+/// The size of the first part's display window, when every part's header is whole and its picture could be held by the
+/// file. Throws Error(BadInput) or Error(OverLimit) that starts with `name` and says what is wrong.
+ImageHeader check_exr_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

@@ -22,6 +22,15 @@ void check_image_size(const std::string& name, uint64_t width, uint64_t height, 
     if (width > kMaxImageSide || height > kMaxImageSide || multiply_saturated(width, height) > kMaxImagePixels)
         throw Error(ErrorCode::OverLimit, fmt::format("{}: {} x {} pixels; the limit is {} along a side and {} in all",
                                                       name, width, height, kMaxImageSide, kMaxImagePixels));
+    check_decoded_bytes(name, decoded_bytes, file_bytes);
+}
+
+void check_decoded_bytes(const std::string& name, uint64_t decoded_bytes, uint64_t file_bytes) {
+    if (decoded_bytes <= justified_bytes(kFreeImageBytes, file_bytes)) return;
+    throw Error(ErrorCode::OverLimit,
+                fmt::format("{}: its pixels take {} MiB in memory; the limit for a picture file of {} bytes is {} MiB "
+                            "and {} times its size; make the picture smaller",
+                            name, decoded_bytes >> 20, file_bytes, kFreeImageBytes >> 20, kMaxExpansion));
 }
 
 } // namespace pertev

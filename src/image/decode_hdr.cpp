@@ -23,11 +23,16 @@ class HdrReader {
 public:
     HdrReader(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-    Image read() {
+    ImageHeader read_header() {
         read_variables();
         read_resolution();
         check_image_size(name_, width_, height_, multiply_saturated(multiply_saturated(width_, height_), 12),
                          bytes_.size(), kMostPerByte);
+        return {static_cast<uint32_t>(width_), static_cast<uint32_t>(height_), true};
+    }
+
+    Image read() {
+        read_header();
         const uint64_t line_length = x_is_major_ ? height_ : width_, lines = x_is_major_ ? width_ : height_;
         if (lines * 4 > bytes_.size() - offset_) // every coding takes a pixel's 4 bytes a line at least
             fail(fmt::format("{} lines of pixels do not fit into the rest of the file; it is cut short", lines));
@@ -208,5 +213,9 @@ private:
 } // namespace
 
 Image decode_hdr(std::span<const std::byte> bytes, const std::string& name) { return HdrReader(bytes, name).read(); }
+
+ImageHeader read_hdr_header(std::span<const std::byte> bytes, const std::string& name) {
+    return HdrReader(bytes, name).read_header();
+}
 
 } // namespace pertev

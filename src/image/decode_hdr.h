@@ -10,10 +10,13 @@
 #include <string>
 
 #include "image/image.h"
+#include "image/image_header.h"
 
 namespace pertev {
 
 /// RGB picture, linear. Values are divided by the header's EXPOSURE and COLORCORR (products of all lines).
 Image decode_hdr(std::span<const std::byte> bytes, const std::string& name);
+/// See read_image_header.
+ImageHeader read_hdr_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

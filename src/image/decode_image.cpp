@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "image/check_exr_header.h"
 #include "image/decode_exr.h"
 #include "image/decode_hdr.h"
 #include "image/decode_jpeg.h"
@@ -11,15 +12,34 @@
 
 namespace pertev {
 
+namespace {
+
+ImageFormat format_of(std::span<const std::byte> bytes, const std::string& name) {
+    if (const std::optional<ImageFormat> format = recognise_image(bytes)) return *format;
+    throw Error(ErrorCode::BadInput,
+                fmt::format("{}: {}; a picture must be PNG, JPEG, Radiance HDR or OpenEXR", name,
+                            bytes.empty() ? "the file is empty" : "its first bytes are of no known picture format"));
+}
+
+} // namespace
+
+ImageHeader read_image_header(std::span<const std::byte> bytes, const std::string& name) {
+    switch (format_of(bytes, name)) {
+    case ImageFormat::Png:
+        return read_png_header(bytes, name);
+    case ImageFormat::Jpeg:
+        return read_jpeg_header(bytes, name);
+    case ImageFormat::Hdr:
+        return read_hdr_header(bytes, name);
+    case ImageFormat::Exr:
+        return check_exr_header(bytes, name);
+    }
+    check_failed("a known image format", __FILE__, __LINE__);
+}
+
 std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name,
                                              Messages* messages) {
-    const std::optional<ImageFormat> format = recognise_image(bytes);
-    if (!format)
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format("{}: {}; a picture must be PNG, JPEG, Radiance HDR or OpenEXR", name,
-                        bytes.empty() ? "the file is empty" : "its first bytes are of no known picture format"));
-    switch (*format) {
+    switch (format_of(bytes, name)) {
     case ImageFormat::Png:
         return decode_png(bytes, name, messages);
     case ImageFormat::Jpeg:

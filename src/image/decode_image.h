@@ -10,6 +10,7 @@
 
 #include "base/messages.h"
 #include "image/image.h"
+#include "image/image_header.h"
 
 namespace pertev {
 
@@ -24,5 +25,8 @@ namespace pertev {
 /// base/limits.h allows. Damage that leaves every pixel known (a bad checksum in a comment) is a warning.
 std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name,
                                              Messages* messages = nullptr);
+
+/// The size of that picture, off the file's header. Throws likewise for what the header shows to be wrong.
+ImageHeader read_image_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

@@ -134,16 +134,20 @@ void convert_cmyk_row(unsigned char* row, std::size_t pixels, bool no_ink_is_255
     throw Error(ErrorCode::BadInput, fmt::format("{}: not a readable JPEG ({}: {})", name, where, what));
 }
 
-} // namespace
-
-Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Messages* messages) {
-    JpegReader reader;
+void open(JpegReader& reader, std::span<const std::byte> bytes, const std::string& name) {
     if (!read_header(reader, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()))
         fail(reader, name, std::nullopt);
     const jpeg_decompress_struct& info = reader.info;
     check_image_size(name, info.image_width, info.image_height,
                      multiply_saturated(uint64_t(info.image_width) * 4, info.image_height), bytes.size(), kMostPerByte);
+}
 
+} // namespace
+
+Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Messages* messages) {
+    JpegReader reader;
+    open(reader, bytes, name);
+    const jpeg_decompress_struct& info = reader.info;
     if (!start(reader)) fail(reader, name, std::nullopt);
     Rgba8Image image{info.output_width, info.output_height, {}};
     const std::size_t row_bytes = std::size_t(image.width) * 4;
@@ -157,6 +161,12 @@ Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name
     if (messages != nullptr && reader.warning[0] != '\0')
         messages->warn(fmt::format("{}: JPEG: {}", name, reader.warning));
     return image;
+}
+
+ImageHeader read_jpeg_header(std::span<const std::byte> bytes, const std::string& name) {
+    JpegReader reader;
+    open(reader, bytes, name);
+    return {reader.info.image_width, reader.info.image_height, false};
 }
 
 } // namespace pertev

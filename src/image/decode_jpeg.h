@@ -10,10 +10,13 @@
 
 #include "base/messages.h"
 #include "image/image.h"
+#include "image/image_header.h"
 
 namespace pertev {
 
 /// See decode_image.
 Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Messages* messages);
+/// See read_image_header.
+ImageHeader read_jpeg_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-// Deflate reaches 1032:1; the limit is on the rows as the file stores them, before palettes are expanded.
+// Deflate reaches 1032:1. Of rows as the file stores them, before palettes and bits are expanded.
 constexpr uint64_t kMostPerByte = 1100;
 
 // libpng reports errors by a jump. The steps below hold nothing that has a destructor, so the jump skips none: all
@@ -103,6 +103,15 @@ bool read_pixels(PngReader& reader, png_bytepp rows, std::size_t row_bytes) {
                                                  reader.error[0] != '\0' ? reader.error : "out of memory"));
 }
 
+void start(PngReader& reader, std::span<const std::byte> bytes, const std::string& name) {
+    reader.bytes = bytes;
+    if (!read_header(reader)) fail(reader, name);
+    const uint64_t row_bytes = uint64_t(reader.width) * reader.channels * (reader.bit_depth == 16 ? sizeof(float) : 1);
+    const uint64_t expansion = (row_bytes + reader.stored_row_bytes - 1) / reader.stored_row_bytes;
+    check_image_size(name, reader.width, reader.height, multiply_saturated(row_bytes, reader.height), bytes.size(),
+                     kMostPerByte * expansion);
+}
+
 template <class T>
 std::vector<T> read_all(PngReader& reader, const std::string& name) {
     const std::size_t per_row = std::size_t(reader.width) * reader.channels;
@@ -118,11 +127,7 @@ std::vector<T> read_all(PngReader& reader, const std::string& name) {
 std::variant<Rgba8Image, Image> decode_png(std::span<const std::byte> bytes, const std::string& name,
                                            Messages* messages) {
     PngReader reader;
-    reader.bytes = bytes;
-    if (!read_header(reader)) fail(reader, name);
-    check_image_size(name, reader.width, reader.height, multiply_saturated(reader.stored_row_bytes, reader.height),
-                     bytes.size(), kMostPerByte);
-
+    start(reader, bytes, name);
     std::variant<Rgba8Image, Image> result;
     if (reader.bit_depth == 16) {
         const std::vector<uint16_t> values = read_all<uint16_t>(reader, name);
@@ -136,6 +141,12 @@ std::variant<Rgba8Image, Image> decode_png(std::span<const std::byte> bytes, con
     if (messages != nullptr && reader.warning[0] != '\0')
         messages->warn(fmt::format("{}: PNG: {}", name, reader.warning));
     return result;
+}
+
+ImageHeader read_png_header(std::span<const std::byte> bytes, const std::string& name) {
+    PngReader reader;
+    start(reader, bytes, name);
+    return {reader.width, reader.height, reader.bit_depth == 16};
 }
 
 } // namespace pertev

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/limits.h"
+#include "base/message_text.h"
 #include "base/parallel_for.h"
 
 namespace pertev {
@@ -23,16 +25,35 @@ void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t
     });
 }
 
+Error too_many_copies(const MeshPlacement& placement, std::size_t instance, const std::string& name, uint64_t limit) {
+    return {ErrorCode::OverLimit,
+            fmt::format(
+                "{}: its transform squeezes one direction more than {} times against another, so its mesh is "
+                "copied into world space; copies so far: {}, with {} triangles, where the limit for this scene is {}; "
+                "squeeze the mesh itself, or use copies of fewer triangles",
+                numbered("instance", instance, name), kMaxCondition, placement.copies, placement.copied_triangles,
+                limit)};
+}
+
 } // namespace
 
 MeshPlacement place_meshes(const Scene& scene) {
     MeshPlacement placement;
     std::vector<uint32_t> uses(scene.meshes.size());
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+    uint64_t own_triangles = 0;
+    for (const Mesh& mesh : scene.meshes) own_triangles += mesh.triangle_count();
+    const uint64_t limit = kFreeBakedTriangles + kMaxBakedExpansion * own_triangles;
     placement.tree_of_mesh.assign(scene.meshes.size(), kBakedMesh);
-    for (const Instance& instance : scene.instances) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
         const bool baked = uses[instance.mesh] == 1 || !(condition_number(instance.world_from_local) <= kMaxCondition);
         placement.is_baked.push_back(baked);
+        if (baked && uses[instance.mesh] > 1) {
+            ++placement.copies;
+            placement.copied_triangles += scene.meshes[instance.mesh].triangle_count();
+            if (placement.copied_triangles > limit) throw too_many_copies(placement, i, instance.name, limit);
+        }
         if (!baked && placement.tree_of_mesh[instance.mesh] == kBakedMesh) {
             placement.tree_of_mesh[instance.mesh] = placement.mesh_tree_count++;
         }

@@ -19,10 +19,12 @@ struct MeshPlacement {
     std::vector<bool> is_baked;         // of each instance
     std::vector<uint32_t> tree_of_mesh; // number of the mesh's own tree, or kBakedMesh where no instance needs one
     uint32_t mesh_tree_count = 0;
+    uint64_t copies = 0, copied_triangles = 0; // baked although their mesh is used more than once
 };
 
 /// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local
-/// space so skewed would cost the boxes of a top level more than the triangles cost memory.
+/// space so skewed would cost the boxes of a top level more than the triangles cost memory. Throws Error(OverLimit)
+/// that names the instance with which such copies are out of all proportion to the scene's own triangles.
 MeshPlacement place_meshes(const Scene& scene);
 
 /// The triangles of all baked instances, in world space. Throws Error(OverLimit) for more than one tree can hold.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
+#include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "image/srgb_table.h"
 #include "render/place_meshes.h"
@@ -10,6 +11,8 @@
 
 namespace pertev {
 namespace {
+
+constexpr uint64_t kManyCopiedTriangles = 1u << 18;
 
 /// Says where a material's index is not the one that is rendered.
 void warn_of_indices(const Scene& scene, Messages& messages) {
@@ -32,6 +35,12 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.scene = &scene;
     warn_of_indices(scene, messages);
     const MeshPlacement placement = place_meshes(scene);
+    if (placement.copied_triangles > kManyCopiedTriangles) {
+        messages.warn(
+            fmt::format("{} of shared meshes squeezed too much for a tree of their own: copied into world space, "
+                        "which takes memory for {} triangles more",
+                        counted(placement.copies, "instance"), placement.copied_triangles));
+    }
 
     prepared.baked = load_or_build_bvh(baked_triangles(scene, placement), options.bvh, options.bvh_cache, messages);
     prepared.mesh_bvhs.resize(placement.mesh_tree_count);

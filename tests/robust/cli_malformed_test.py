@@ -7,7 +7,9 @@ import os
 import re
 import resource
 import shutil
+import struct
 import unittest
+import zlib
 
 from cli_run import SANITIZED, CliTest, limit_addresses, main
 
@@ -27,11 +29,13 @@ def public_files(extensions):
 
 
 class MalformedTest(CliTest):
+    gibibytes = 4
+
     def survive(self, name, *arguments, warns=False):
         """Runs to an error that names `name`, or to a picture or description; with `warns` after a warning that names
         it. Gives the status."""
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        outcome = self.run_pertev(*arguments, preexec_fn=limit_addresses(4))
+        outcome = self.run_pertev(*arguments, preexec_fn=limit_addresses(self.gibibytes))
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         self.assertIn(outcome.status, (0, 2, 3), outcome)
@@ -161,6 +165,62 @@ class FilesDamagedHere(MalformedTest):
             file.write(gltf_with_texture("../whole.png"))
         self.assertEqual(self.survive_render("whole.png", "inner/model.gltf"), 2)
         self.assertEqual(self.survive_render("whole.png", "inner/model.gltf", "--allow-path", "."), 0)
+
+
+def picture_of_one_colour(side, bits):
+    """A grey PNG: about a thousandth of its pixels' packed bytes."""
+    row = b"\0" * (1 + side * bits // 8)
+    packer = zlib.compressobj(9)
+    packed = b"".join(packer.compress(row) for _ in range(side)) + packer.flush()
+    chunks = [(b"IHDR", struct.pack(">IIBBBBB", side, side, bits, 0, 0, 0, 0)), (b"IDAT", packed), (b"IEND", b"")]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in chunks)
+
+
+class SmallFilesThatUnfold(MalformedTest):
+    gibibytes = 2  # of addresses, of which the program and its libraries take their part
+
+    def put(self, name, content):
+        with open(self.path(name), "wb") as file:
+            file.write(content)
+        return self.path(name)
+
+    def test_a_picture_of_one_colour_serves_at_the_size_of_textures(self):
+        self.assertEqual(self.use_image(self.put("wall.png", picture_of_one_colour(4096, 8))), [0, 0, 0, 0])
+        self.put("model.png", picture_of_one_colour(8192, 1))
+        with open(self.path("model.gltf"), "w", encoding="utf-8") as file:
+            file.write(gltf_with_texture("model.png"))
+        self.assertNotIn("model.png", self.succeed("info", "model.gltf").stderr)
+
+    def test_a_picture_far_larger_than_its_file_justifies_is_refused(self):
+        bomb = picture_of_one_colour(16384, 1)
+        self.assertLess(len(bomb), 40000)
+        self.assertEqual(self.use_image(self.put("bomb.png", bomb)), [3, 3, 0, 0])
+        self.assertIn("bomb.png: its pixels take 1024 MiB", self.run_pertev("info", "model.gltf").stderr)
+        # Few enough as bytes, too many as the floats of an environment.
+        self.assertEqual(self.survive_render("8k.png", "cornell-box", "--environment",
+                                             self.put("8k.png", picture_of_one_colour(8192, 1))), 3)
+
+    def test_many_pictures_share_what_their_files_justify(self):
+        picture = picture_of_one_colour(8192, 1)
+        model = json.loads(gltf_with_texture(""))
+        model["images"] = [{"bufferView": 1 + i, "mimeType": "image/png"} for i in range(8)]
+        model["textures"] = [{"source": i} for i in range(8)]
+        model["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}} for i in range(8)]
+        model["bufferViews"] += [{"buffer": 1, "byteLength": len(picture) + i} for i in range(8)]  # all one picture
+        model["buffers"].append({"byteLength": len(picture) + 8, "uri": "one.bin"})
+        primitive = model["meshes"][0]["primitives"][0]
+        model["meshes"][0]["primitives"] = [{**primitive, "material": i} for i in range(8)]
+        self.put("one.bin", picture + b"\0" * 8)
+        self.put("model.gltf", json.dumps(model).encode())
+        self.assertEqual(self.survive_render("model.gltf: /images/1", "model.gltf"), 3)
+
+        for i in range(8):
+            self.put(f"{i}.png", picture)
+        self.put("model.mtl", b"".join(b"newmtl %d\nmap_Kd %d.png\n" % (i, i) for i in range(8)))
+        faces = "".join(f"usemtl {i}\nf 1/1 2/2 3/3\n" for i in range(8))
+        self.put("model.obj", ("mtllib model.mtl\n" + SQUARE + faces).encode())
+        self.assertEqual(self.survive_render("1.png", "model.obj"), 3)
 
 
 class ThePublicCollection(MalformedTest):

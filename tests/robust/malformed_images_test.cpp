@@ -10,10 +10,13 @@
 #include <chrono>
 #include <cstring>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/read_file.h"
+#include "image/check_image_size.h"
 #include "image/decode_image.h"
 #include "image/read_exr.h"
 #include "image/read_image.h"
@@ -22,6 +25,7 @@
 #include "image/write_jpeg.h"
 #include "image/write_png.h"
 #include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -140,6 +144,34 @@ TEST_CASE("pictures with a few bits turned or bytes replaced end in an error or 
         }
     }
     CHECK(peak_memory() - before < uint64_t(128) << 20);
+}
+
+TEST_CASE("the header alone tells the size, of whole and of damaged pictures") {
+    for (const Sample& sample : samples()) {
+        CAPTURE(sample.name);
+        const ImageHeader header = read_image_header(sample.bytes, "whole");
+        CHECK(header.width == 24);
+        CHECK(header.height == 10);
+        CHECK(header.is_float == std::holds_alternative<Image>(decode_image(sample.bytes, "whole")));
+        const auto cut = std::span(sample.bytes).first(20);
+        CHECK(test::says(test::thrown_error([&] { read_image_header(cut, "cut"); }), "cut: "));
+    }
+}
+
+TEST_CASE("a picture may unfold to so much and no more, whatever its format") {
+    const auto outcome = [](uint64_t side, uint64_t decoded_bytes, uint64_t file_bytes) {
+        const auto error =
+            test::thrown_error([&] { check_image_size("a.png", side, side, decoded_bytes, file_bytes, 1 << 16); });
+        return error ? static_cast<int>(error->code()) : -1;
+    };
+    constexpr int fine = -1, bad_input = static_cast<int>(ErrorCode::BadInput);
+    constexpr int over_limit = static_cast<int>(ErrorCode::OverLimit);
+    constexpr uint64_t limit = kFreeImageBytes + kMaxExpansion * 100'000;
+    CHECK(outcome(8192, limit, 100'000) == fine);
+    CHECK(outcome(8192, limit + 1, 100'000) == over_limit);
+    CHECK(outcome(8192, limit, 1000) == bad_input); // more than the bytes could hold
+    CHECK(outcome(kMaxImageSide + 1, 4, 100'000) == over_limit);
+    CHECK(outcome(0, 0, 100'000) == bad_input);
 }
 
 TEST_CASE("content decides over the name, and what is no picture is told what would be") {

@@ -213,7 +213,8 @@ TEST_CASE("textures that cannot be had are warnings and leave the factor alone")
     read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"none.png"}])", "none.png");
     read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,AAAA"}])",
          "/images/0");
-    read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png,AAAA"}])", "/images/0/uri");
+    read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png,AAAA"}])", "/images/0");
+    read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png,%A"}])", "/images/0/uri");
 }
 
 TEST_CASE("an image that may not be read is an error with its pointer") {

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
+#include "base/limits.h"
 #include "base/read_file.h"
 #include "formats/gltf/uri.h"
 
 namespace pertev::gltf {
 namespace {
-
-// What a scene may take in memory for each byte of its files. Honest files stay far below (what they use many times
-// is shared); this stops a small one that multiplies itself.
-constexpr uint64_t kMaxExpansion = 1024, kFreeBytes = uint64_t(256) << 20;
 
 // The vertex codec spends at least two bits on a group of 16 bytes, the others more: no stream can grow further.
 constexpr uint64_t kMaxCodecRatio = 64;
@@ -124,7 +121,7 @@ BufferView Buffers::view(const JsonValue& reference) {
 }
 
 void Buffers::charge(uint64_t bytes, const JsonValue& place) {
-    const uint64_t limit = kFreeBytes + kMaxExpansion * file_bytes_;
+    const uint64_t limit = justified_bytes(kFreeMeshBytes, file_bytes_);
     charged_bytes_ += bytes;
     if (bytes > limit || charged_bytes_ > limit) {
         throw Error(ErrorCode::OverLimit,

@@ -3,6 +3,7 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <span>
 
 namespace pertev::gltf {
 namespace {
@@ -21,23 +22,30 @@ constexpr std::array<uint8_t, 256> make_base64_values() {
 
 constexpr std::array<uint8_t, 256> kBase64Values = make_base64_values();
 
+// White space between digits is skipped: encoders of mail (RFC 2045) break lines.
 std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
-    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
-    if (text.size() % 4 == 1) return std::nullopt;
-    std::vector<std::byte> bytes(text.size() / 4 * 3 + (text.size() % 4 == 0 ? 0 : text.size() % 4 - 1));
+    std::vector<std::byte> bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
     uint32_t bits = 0;
     int held = 0; // bits not yet written
-    std::size_t written = 0;
+    std::size_t digits = 0, padding = 0;
     for (const char c : text) {
+        if (c == ' ' || c == '\t' || c == '\r' || c == '\n') continue;
+        if (c == '=') {
+            if (++padding > 2) return std::nullopt;
+            continue;
+        }
         const uint8_t value = kBase64Values[static_cast<unsigned char>(c)];
-        if (value == kNotBase64) return std::nullopt;
+        if (value == kNotBase64 || padding > 0) return std::nullopt;
+        ++digits;
         bits = bits << 6 | value;
         held += 6;
         if (held >= 8) {
             held -= 8;
-            bytes[written++] = static_cast<std::byte>(bits >> held & 0xffu);
+            bytes.push_back(static_cast<std::byte>(bits >> held & 0xffu));
         }
     }
+    if (digits % 4 == 1) return std::nullopt;
     return bytes;
 }
 
@@ -46,6 +54,23 @@ int hex_digit(char c) {
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
     return -1;
+}
+
+std::optional<std::string> undo_percent_encoding(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        char c = text[i];
+        if (c == '%') {
+            if (text.size() - i < 3) return std::nullopt;
+            const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+            if (high < 0 || low < 0) return std::nullopt;
+            c = static_cast<char>(high * 16 + low);
+            i += 2;
+        }
+        result += c;
+    }
+    return result;
 }
 
 // "C:" is a scheme too: an absolute path of another system is no more a relative path than http: is.
@@ -67,25 +92,20 @@ bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (!is_data_uri(uri) || comma == std::string_view::npos) return std::nullopt;
-    if (!uri.substr(0, comma).ends_with(";base64")) return std::nullopt;
-    return decode_base64(uri.substr(comma + 1));
+    const std::string_view encoded = uri.substr(comma + 1);
+    const bool is_base64 = uri.substr(0, comma).ends_with(";base64");
+    if (is_base64 && encoded.find('%') == std::string_view::npos) return decode_base64(encoded);
+    const std::optional<std::string> text = undo_percent_encoding(encoded);
+    if (!text) return std::nullopt;
+    if (is_base64) return decode_base64(*text);
+    const auto bytes = std::as_bytes(std::span(*text));
+    return std::vector<std::byte>(bytes.begin(), bytes.end());
 }
 
 std::optional<std::string> decode_path_uri(std::string_view uri) {
     if (has_scheme(uri)) return std::nullopt;
-    std::string path;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        char c = uri[i];
-        if (c == '%') {
-            if (uri.size() - i < 3) return std::nullopt;
-            const int high = hex_digit(uri[i + 1]), low = hex_digit(uri[i + 2]);
-            if (high < 0 || low < 0) return std::nullopt;
-            c = static_cast<char>(high * 16 + low);
-            i += 2;
-        }
-        if (c == '\0') return std::nullopt;
-        path += c;
-    }
+    std::optional<std::string> path = undo_percent_encoding(uri);
+    if (path && path->find('\0') != std::string::npos) return std::nullopt;
     return path;
 }
 

@@ -1,0 +1,61 @@
+// Which instances are baked into world space, and how many copies that may make.
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "render/place_meshes.h"
+#include "render/prepare_scene.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+/// A mesh of `triangles` triangles, all the same, used once straight and then by each of `squeezed` instances whose
+/// space is too skewed for a tree.
+Scene scene_of(uint32_t triangles, uint32_t squeezed) {
+    Scene scene;
+    Mesh& mesh = scene.meshes.emplace_back();
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    for (uint32_t i = 0; i < 3 * triangles; ++i) mesh.indices.push_back(i % 3);
+    scene.materials.emplace_back();
+    scene.instances.resize(1 + squeezed);
+    for (uint32_t i = 1; i <= squeezed; ++i) {
+        scene.instances[i].name = "leaf";
+        scene.instances[i].world_from_local = make_scale({1, 1, 1e-4f});
+    }
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("an instance is baked when it alone uses its mesh, or when its space is skewed") {
+    CHECK(place_meshes(scene_of(1, 0)).is_baked == std::vector<bool>{true});
+    CHECK(place_meshes(scene_of(1, 0)).copies == 0);
+    const MeshPlacement placement = place_meshes(scene_of(5, 2));
+    CHECK(placement.is_baked == std::vector<bool>{false, true, true});
+    CHECK(placement.mesh_tree_count == 1);
+    CHECK(placement.copies == 2);
+    CHECK(placement.copied_triangles == 10);
+}
+
+TEST_CASE("baked copies out of all proportion to the scene are refused, and the instance is named") {
+    constexpr uint32_t triangles = 1u << 18, most = kFreeBakedTriangles / triangles + kMaxBakedExpansion;
+    CHECK(place_meshes(scene_of(triangles, most)).copies == most);
+    const auto error = test::thrown_error([] { place_meshes(scene_of(triangles, most + 1)); });
+    REQUIRE(error);
+    CHECK(error->code() == ErrorCode::OverLimit);
+    CHECK(std::string(error->what()).starts_with("instance " + std::to_string(most + 1) + " leaf: "));
+}
+
+TEST_CASE("many baked copies are a warning") {
+    Messages few, many;
+    prepare_scene(scene_of(1u << 10, 2), {}, few);
+    CHECK(few.all().empty());
+    prepare_scene(scene_of(1u << 10, 300), {}, many);
+    CHECK(test::has_warning(many, {"300 instances", "307200 triangles"}));
+}
