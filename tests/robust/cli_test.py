@@ -139,7 +139,7 @@ class WhatIsWritten(CliTest):
         def check_warning(**options):
             arguments = ["render", "hills.obj", "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu", "--json"]
             outcome = self.succeed(*arguments, **options)
-            self.assertIn("cache cannot be written", outcome.stderr)
+            self.assertIn("cache cannot be written", outcome.stdout)
             self.assertEqual(outcome.events("done")[0]["hash"], whole)
 
         check_warning(preexec_fn=limit_files)
