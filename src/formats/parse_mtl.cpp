@@ -101,8 +101,10 @@ private:
     void statement(std::string_view line) {
         const std::string key = lower_case(key_);
         if (key == "newmtl") {
-            materials_.emplace_back().name = rest_as_name(line);
-            if (materials_.back().name.empty()) unknown();
+            MtlStatements& begun = materials_.emplace_back();
+            begun.name = rest_as_name(line);
+            begun.line = lines_.number();
+            if (begun.name.empty()) unknown();
             return;
         }
         if (materials_.empty()) return unknown();

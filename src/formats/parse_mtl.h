@@ -29,6 +29,7 @@ struct MtlTexture {
 /// What one newmtl says, with the format's value for what it does not say.
 struct MtlStatements {
     std::string name;
+    uint32_t line = 0; // of newmtl
     std::optional<Rgb> kd;
     Rgb ks = {}, ke = {}, tf = {};
     float illum = 0, ns = 1, ni = 1, pr = 0, pm = 0;

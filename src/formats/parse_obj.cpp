@@ -27,6 +27,7 @@ struct Face {
 
 struct RawGroup {
     std::string material;
+    uint32_t line = 0;              // of the first face
     std::vector<ObjCorner> corners; // of all faces, one after the other
     std::vector<Face> faces;
 };
@@ -191,7 +192,7 @@ private:
     void face(std::string_view line) {
         if (current_ == nullptr) {
             const auto [found, is_new] = by_material_.try_emplace(material_, groups_.size());
-            if (is_new) groups_.push_back({material_, {}, {}});
+            if (is_new) groups_.push_back({material_, lines_.number(), {}, {}});
             current_ = &groups_[found->second];
         }
         const std::size_t before = current_->corners.size();
@@ -216,6 +217,7 @@ private:
     /// Checks a group's indices and cuts its faces into triangles.
     void finish(RawGroup& raw, ObjGroup& group, CountedLines& without) const {
         group.material = raw.material;
+        group.line = raw.line;
         std::size_t triangles = 0;
         for (const Face& face : raw.faces) triangles += face.corner_count - 2;
         group.corners.reserve(3 * triangles);

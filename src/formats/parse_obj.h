@@ -29,6 +29,7 @@ struct ObjCorner {
 
 struct ObjGroup {
     std::string material;           // of usemtl; empty before the first
+    uint32_t line = 0;              // of the first face
     std::vector<ObjCorner> corners; // [3 * triangles], in file order, every index in range
 };
 

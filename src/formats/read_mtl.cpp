@@ -22,6 +22,7 @@ public:
         MtlMaterial result;
         Material& to = result.material;
         to.name = from.name;
+        to.origin = fmt::format("{}:{}", path_.string(), from.line);
         to.base_color = from.kd.value_or(to.base_color);
         to.base_color_texture = texture(from.map_kd, true);
         if (to.base_color_texture.has_image() && is_black(from.kd.value_or(Rgb{}))) {

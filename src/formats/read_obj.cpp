@@ -78,6 +78,7 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
 Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     Mesh mesh;
     mesh.name = group.material;
+    mesh.origin = fmt::format("line {}", group.line);
     VertexTable table(group.corners.size());
     mesh.indices.reserve(group.corners.size());
     bool has_uv = false, has_normal = false;

@@ -16,14 +16,14 @@ constexpr uint64_t kManyCopiedTriangles = 1u << 18;
 
 /// Says where a material's index is not the one that is rendered.
 void warn_of_indices(const Scene& scene, Messages& messages) {
-    for (const Material& material : scene.materials) {
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
         if (material.kind != MaterialKind::Dielectric) continue;
         const float used = DielectricBsdf::usable_ior(material.ior, alpha_from_roughness(material.roughness));
         if (used == material.ior) continue;
         messages.warn(
-            fmt::format("material {}: rough glass of index {} is rendered with {}; its energy is tabulated for "
-                        "1.1 to 3",
-                        material.name, material.ior, used));
+            fmt::format("{}: rough glass of index {} is rendered with {}; its energy is tabulated for 1.1 to 3",
+                        numbered("material", i, material.name, material.origin), material.ior, used));
     }
 }
 

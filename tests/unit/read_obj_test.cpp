@@ -359,6 +359,14 @@ TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
     CHECK(l.said("broken.png"));
 }
 
+TEST_CASE("obj: meshes and materials know the lines that describe them") {
+    const Scene scene =
+        load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\n# a comment\nf 1 2 3\n", "# one\n\nnewmtl m\nKd 1 0 0\n")
+            .scene;
+    CHECK(scene.meshes.at(0).origin == "line 7");
+    CHECK(scene.materials.at(0).origin.ends_with("a.mtl:3"));
+}
+
 TEST_CASE("mtl: a missing file and a missing material are grey with a warning; geometry only is grey without") {
     const Loaded missing = load_text("mtllib none.mtl other.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     CHECK(missing.scene.materials[0].base_color == grey(0.5f));
