@@ -186,7 +186,8 @@ class SmallFilesThatUnfold(MalformedTest):
         return self.path(name)
 
     def test_a_picture_of_one_colour_serves_at_the_size_of_textures(self):
-        self.assertEqual(self.use_image(self.put("wall.png", picture_of_one_colour(4096, 8)), warns=False), [0, 0, 0, 0])
+        wall = self.put("wall.png", picture_of_one_colour(2048 if SANITIZED else 4096, 8))
+        self.assertEqual(self.use_image(wall, warns=False), [0, 0, 0, 0])
         self.put("model.png", picture_of_one_colour(8192, 1))
         with open(self.path("model.gltf"), "w", encoding="utf-8") as file:
             file.write(gltf_with_texture("model.png"))
