@@ -324,6 +324,7 @@ summary() {
     fi
     if ! grep -q 'PERTEV_TESTS:BOOL=ON' "$build/CMakeCache.txt"; then
         echo "  tests     left out: ./setup.sh --tests builds and runs them"
+        echo "  Embree    left out: only the tests compare with it"
     elif grep -qE '^embree_DIR:PATH=/' "$build/CMakeCache.txt"; then
         echo "  Embree    found: tests compare hits with it"
     else
