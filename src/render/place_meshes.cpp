@@ -25,14 +25,14 @@ void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t
     });
 }
 
-Error too_many_copies(const MeshPlacement& placement, std::size_t instance, const std::string& name, uint64_t limit) {
+Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Instance& instance, uint64_t limit) {
     return {ErrorCode::OverLimit,
             fmt::format(
                 "{}: its transform squeezes one direction more than {} times against another, so its mesh is "
                 "copied into world space; copies so far: {}, with {} triangles, where the limit for this scene is {}; "
                 "squeeze the mesh itself, or use copies of fewer triangles",
-                numbered("instance", instance, name), kMaxCondition, placement.copies, placement.copied_triangles,
-                limit)};
+                numbered("instance", i, instance.name, origin_of(instance)), kMaxCondition, placement.copies,
+                placement.copied_triangles, limit)};
 }
 
 } // namespace
@@ -52,7 +52,7 @@ MeshPlacement place_meshes(const Scene& scene) {
         if (baked && uses[instance.mesh] > 1) {
             ++placement.copies;
             placement.copied_triangles += scene.meshes[instance.mesh].triangle_count();
-            if (placement.copied_triangles > limit) throw too_many_copies(placement, i, instance.name, limit);
+            if (placement.copied_triangles > limit) throw too_many_copies(placement, i, instance, limit);
         }
         if (!baked && placement.tree_of_mesh[instance.mesh] == kBakedMesh) {
             placement.tree_of_mesh[instance.mesh] = placement.mesh_tree_count++;

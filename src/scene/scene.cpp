@@ -2,6 +2,10 @@
 
 namespace pertev {
 
+std::string origin_of(const Instance& instance) {
+    return instance.node == kNoNode ? "" : "/nodes/" + std::to_string(instance.node);
+}
+
 Bounds3 bounds_of(const Mesh& mesh) {
     Bounds3 bounds;
     for (const uint32_t index : mesh.indices) bounds.extend(mesh.positions[index]);

@@ -25,7 +25,7 @@ struct Instance {
     uint32_t mesh = 0;     // index into Scene::meshes
     uint32_t material = 0; // index into Scene::materials
     Transform world_from_local;
-    uint32_t node = kNoNode; // of a glTF file: its origin is /nodes/N. A number, for scenes of millions.
+    uint32_t node = kNoNode; // of a glTF file (origin_of). A number, for scenes of millions.
 };
 
 struct Scene {
@@ -38,6 +38,9 @@ struct Scene {
     std::vector<Camera> cameras;
     std::string no_instances; // where there are none: what the file has instead, and what would be right
 };
+
+/// JSON pointer of the node that an instance comes from; empty for none.
+std::string origin_of(const Instance& instance);
 
 /// World-space box of all instances.
 Bounds3 bounds_of(const Scene& scene);

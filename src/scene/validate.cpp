@@ -69,8 +69,7 @@ private:
     static std::string place_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
 
     static std::string place_of(std::size_t i, const Instance& instance) {
-        const std::string origin = instance.node == kNoNode ? "" : fmt::format("/nodes/{}", instance.node);
-        return numbered("instance", i, instance.name, origin);
+        return numbered("instance", i, instance.name, origin_of(instance));
     }
 
     void references() const {
