@@ -2,7 +2,7 @@
 
 // A scene as a reader leaves it: plain data, nothing derived. Ids are positions in these vectors; the order of
 // `instances` is the scene order of the one-picture law (docs/conventions.md). What has an `origin` says with it where
-// the file describes it, for messages: a JSON pointer; empty where the format has none.
+// the file describes it, for messages: a JSON pointer, or a line; empty where the format has neither.
 
 #include <cstdint>
 #include <optional>
