@@ -53,8 +53,7 @@ private:
 };
 
 bool has_texture(const Material& m) {
-    return m.base_color_texture.has_image() || m.alpha_texture.has_image() || m.metallic_texture.has_image() ||
-           m.roughness_texture.has_image() || m.emission_texture.has_image() || m.normal_texture.has_image();
+    return std::ranges::any_of(m.textures(), [](const TextureRef* texture) { return texture->has_image(); });
 }
 
 void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& data, const std::string& file,
