@@ -1,13 +1,18 @@
 #pragma once
 
-// The random numbers of a path: a pure function of (pixel, sample index, dimension, seed), each strictly inside (0, 1).
-// A dimension is one draw, of one number or of a pair: a path uses each dimension once, and in one of the two ways.
+// The random numbers of a path: a pure function of (pixel, sample index, group, number in the group, seed), each strictly
+// inside (0, 1). A group is four numbers that belong together: what a path decides by them is stratified together.
 //
-// Sobol: for each (pixel, dimension, seed) its own random shuffle of the (0,2)-sequence of Sobol, so that the first 2^k
-// samples of a pixel, in any dimension, have one point in each box 2^-a x 2^-(k-a), and any two dimensions are
-// independent. Source: Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020, sections 3-5; the hash's later
-// constants by Vegdahl, "Building a Better LK Hash", 2021. No tables: the two generator matrices are the bit reversal
-// and the Pascal triangle modulo 2. About 70 integer instructions a pair on a GPU.
+// Sobol: for each (pixel, group, seed) its own random shuffle and scrambling of one four-dimensional sequence. Of the
+// first 2^k samples of a pixel one falls into each 2^k-th of any number, and into each box 2^-a x 2^-(k-a) of the first
+// two numbers and of the last two; of the first 4^k one into each box with sides that are powers of 1/4 and volume 4^-k,
+// in all four. Different groups are independent.
+//
+// Sources: the sequence is Faure's over the field of four elements (Niederreiter, "Point sets and sequences with small
+// discrepancy", 1987), whose digits here are pairs of bits; that pairs of it can be (0,2)-sequences in base 2 as well is
+// in Ahmed et al., "SZ Sequences: Binary-Based (0, 2^q)-Sequences", 2025. Scrambling: Burley, "Practical Hash-based Owen
+// Scrambling", JCGT 9(4), 2020, sections 3-5; the hash's later constants by Vegdahl, "Building a Better LK Hash", 2021.
+// No tables: a generator matrix is a few shifts and masks (pascal_transform).
 
 #include <cstdint>
 
@@ -54,52 +59,111 @@ HD inline uint32_t owen_scramble_reversed(uint32_t x, uint32_t key) {
     return x;
 }
 
-/// Second component of the Sobol sequence, first digit in bit 0: digit k is the sum modulo 2 of C(j, k) times bit j of
-/// the index. C(j, k) is odd where j has every bit of k (Lucas), hence one exclusive-or step a bit of k.
-HD inline uint32_t pascal_transform(uint32_t x) {
-    x ^= x >> 1 & 0x55555555u;
-    x ^= x >> 2 & 0x33333333u;
-    x ^= x >> 4 & 0x0f0f0f0fu;
-    x ^= x >> 8 & 0x00ff00ffu;
-    x ^= x >> 16;
+/// Elements of the field of four: 0, 1, w and w + 1 = w^2.
+enum class FieldElement : uint8_t { One, W, WSquared };
+
+/// Sixteen digits in base 4, each times `factor`. A digit is two bits, the first of them the more significant one.
+HD inline uint32_t multiply_digits(FieldElement factor, uint32_t x) {
+    const uint32_t first = x & 0x55555555u, second = x >> 1 & 0x55555555u;
+    switch (factor) {
+    case FieldElement::One:
+        break;
+    case FieldElement::W:
+        return second | (first ^ second) << 1;
+    case FieldElement::WSquared:
+        return (first ^ second) | first << 1;
+    }
     return x;
 }
 
-/// 32 bits, the first digits of a number in [0, 1).
-HD inline uint32_t sample_bits(SamplerKind kind, SampleKey key, uint32_t dimension) {
+/// Component of Faure's sequence, first digit in the lowest bits: digit k is the sum over j of C(j, k) a^(j-k) times digit
+/// j of the index, a = `factor`. C(j, k) is odd where j has every bit of k (Lucas), hence one step a bit of k.
+HD inline uint32_t pascal_transform(FieldElement factor, uint32_t x) {
+    const bool is_w = factor == FieldElement::W;
+    const FieldElement squared = factor == FieldElement::One ? factor : is_w ? FieldElement::WSquared : FieldElement::W;
+    x ^= multiply_digits(factor, x >> 2 & 0x33333333u); // a, a^2, a^4 = a, a^8 = a^2
+    x ^= multiply_digits(squared, x >> 4 & 0x0f0f0f0fu);
+    x ^= multiply_digits(factor, x >> 8 & 0x00ff00ffu);
+    x ^= multiply_digits(squared, x >> 16);
+    return x;
+}
+
+/// Component `number` of the sequence's point `index`, unscrambled, first digit in bit 0. The sum of a digit's bits in
+/// the first one's place makes the pairs (0, 1) and (2, 3) nets in base 2 as well; base 4 does not see it.
+HD inline uint32_t sequence_component(uint32_t index, uint32_t number) {
+    switch (number) {
+    case 0:
+        return index;
+    case 1: {
+        const uint32_t x = pascal_transform(FieldElement::One, index);
+        return x ^ (x >> 1 & 0x55555555u);
+    }
+    case 2:
+        return pascal_transform(FieldElement::W, index);
+    default: {
+        const uint32_t x = pascal_transform(FieldElement::WSquared, index);
+        return x ^ (x >> 1 & 0x55555555u);
+    }
+    }
+}
+
+/// Two numbers in [0, 1) by their first 32 binary digits.
+struct SampleBits {
+    uint32_t x, y;
+};
+
+/// The first or the last two numbers of a group.
+enum class Pair : uint8_t { First, Last };
+
+/// What the four numbers of a group share.
+struct GroupKeys {
+    uint32_t index; // of the point, shuffled, first digit in bit 0
+    Hash3 keys;
+};
+
+HD inline GroupKeys group_keys(SampleKey key, uint32_t group) {
+    const Hash3 keys = hash_words(key.pixel, group, key.seed);
+    // The order of the points is shuffled by scrambling the index.
+    return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
+}
+
+HD inline uint32_t scrambled_component(const GroupKeys& group, uint32_t number) {
+    const uint32_t key = number % 2 == 0 ? group.keys.y : group.keys.z;
+    return reverse_bits(
+        owen_scramble_reversed(sequence_component(group.index, number), number < 2 ? key : hash_word(key)));
+}
+
+/// 32 bits of each of two numbers of a group.
+HD inline SampleBits sample_bits(SamplerKind kind, SampleKey key, uint32_t group, Pair pair = Pair::First) {
     switch (kind) {
     case SamplerKind::Sobol: {
-        const Hash3 keys = hash_words(key.pixel, dimension, key.seed);
-        // The order of the points is shuffled by scrambling the index; the first component is the index reversed.
-        const uint32_t index = reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x));
-        return reverse_bits(owen_scramble_reversed(index, keys.y));
+        const GroupKeys keys = group_keys(key, group);
+        const uint32_t first = pair == Pair::First ? 0 : 2;
+        return {scrambled_component(keys, first), scrambled_component(keys, first + 1)};
     }
     case SamplerKind::Independent:
         break;
     }
-    return hash_words(key.pixel, key.sample, dimension, key.seed).x;
-}
-
-/// One number in (0, 1).
-HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t dimension) {
-    return unit_interval(sample_bits(kind, key, dimension));
+    const Hash4 bits = hash_words(key.pixel, key.sample, group, key.seed);
+    return pair == Pair::First ? SampleBits{bits.x, bits.y} : SampleBits{bits.z, bits.w};
 }
 
 /// A point of (0, 1)^2.
-HD inline Vec2 sample_2d(SamplerKind kind, SampleKey key, uint32_t dimension) {
+HD inline Vec2 sample_2d(SamplerKind kind, SampleKey key, uint32_t group, Pair pair = Pair::First) {
+    const SampleBits bits = sample_bits(kind, key, group, pair);
+    return {unit_interval(bits.x), unit_interval(bits.y)};
+}
+
+/// One number in (0, 1): number 0 to 3 of the group.
+HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t group, uint32_t number = 0) {
     switch (kind) {
-    case SamplerKind::Sobol: {
-        const Hash3 keys = hash_words(key.pixel, dimension, key.seed);
-        const uint32_t index = reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x));
-        const uint32_t x = owen_scramble_reversed(index, keys.y);
-        const uint32_t y = owen_scramble_reversed(pascal_transform(index), keys.z);
-        return {unit_interval(reverse_bits(x)), unit_interval(reverse_bits(y))};
-    }
+    case SamplerKind::Sobol:
+        return unit_interval(scrambled_component(group_keys(key, group), number));
     case SamplerKind::Independent:
         break;
     }
-    const Hash4 bits = hash_words(key.pixel, key.sample, dimension, key.seed);
-    return {unit_interval(bits.x), unit_interval(bits.y)};
+    const Hash4 bits = hash_words(key.pixel, key.sample, group, key.seed);
+    return unit_interval(number == 0 ? bits.x : number == 1 ? bits.y : number == 2 ? bits.z : bits.w);
 }
 
 } // namespace pertev

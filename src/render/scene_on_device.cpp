@@ -93,7 +93,14 @@ void SceneOnDevice::upload_images(Queue& queue, const Scene& scene) {
 void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
     LightSetView& view = view_.lights;
     view = view_of(lights, view_.images, view_.linear_from_srgb);
-    view.choice.entries = keep(queue, std::span(lights.choice), "light table");
+    const auto keep_table = [&](const OrderedTable& table, OrderedTableView& table_view, const std::string& name) {
+        table_view.starts = keep(queue, std::span(table.starts), name);
+        table_view.guide = keep(queue, std::span(table.guide), name + " guide");
+    };
+    keep_table(lights.choice, view.choice, "light table");
+    view.emitters = keep(queue, std::span(lights.emitters), "emissive instances");
+    view.triangle_starts = keep(queue, std::span(lights.triangle_starts), "tables of emissive triangles");
+    view.triangle_guides = keep(queue, std::span(lights.triangle_guides), "guides of emissive triangles");
     view.triangles = keep(queue, std::span(lights.triangles), "emissive triangles");
     view.punctual = keep(queue, std::span(lights.punctual), "punctual lights");
     view.first_light = keep(queue, std::span(lights.first_light), "lights of instances");
@@ -101,8 +108,8 @@ void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
     if (!lights.has_environment) return;
     view.environment.pixels = keep(queue, std::span(lights.environment.pixels), "environment");
     view.environment.row_bounds = keep(queue, std::span(lights.environment.row_bounds), "bounds of environment rows");
-    view.environment.rows.entries = keep(queue, std::span(lights.environment.rows), "environment rows");
-    view.environment.columns.entries = keep(queue, std::span(lights.environment.columns), "environment columns");
+    keep_table(lights.environment.rows, view.environment.rows, "environment rows");
+    keep_table(lights.environment.columns, view.environment.columns, "environment columns");
 }
 
 std::size_t predicted_bytes(const PreparedScene& prepared) {
@@ -120,9 +127,11 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
         bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
     bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
     const LightSetData& lights = prepared.lights;
-    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.choice) +
-             bytes_of(lights.environment.pixels) + bytes_of(lights.environment.rows) +
-             bytes_of(lights.environment.columns);
+    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.triangle_starts) +
+             bytes_of(lights.triangle_guides) + bytes_of(lights.environment.pixels);
+    for (const OrderedTable* table : {&lights.choice, &lights.environment.rows, &lights.environment.columns}) {
+        bytes += bytes_of(table->starts) + bytes_of(table->guide);
+    }
     return bytes;
 }
 

@@ -70,7 +70,10 @@ void add_triangles(const Scene& scene, LightSetData& data) {
         const Instance& instance = scene.instances[i];
         if (!is_light(scene.materials[instance.material])) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
-        count += scene.meshes[instance.mesh].triangle_count();
+        const uint64_t triangles = scene.meshes[instance.mesh].triangle_count();
+        data.emitters.push_back({.first_triangle = static_cast<uint32_t>(count),
+                                 .triangle_count = static_cast<uint32_t>(triangles)});
+        count += triangles;
         if (count + scene.lights.size() + 1 > kMaxLights) {
             throw Error(ErrorCode::OverLimit, "scene: more than 2^30 lights; an emissive triangle counts as one");
         }
@@ -101,17 +104,55 @@ void add_triangles(const Scene& scene, LightSetData& data) {
     }
 }
 
-/// Makes near and far lights share the draws by power, but leaves neither under a quarter.
-void balance(std::vector<double>& powers, const std::vector<bool>& is_far, std::size_t first_checked) {
+/// Makes near and far sources share the draws by power, but leaves neither under a quarter.
+void balance(std::vector<double>& powers, const std::vector<bool>& is_far) {
     double near_sum = 0, far_sum = 0;
-    for (std::size_t i = 0; i < powers.size(); ++i) {
-        (i >= first_checked && is_far[i - first_checked] ? far_sum : near_sum) += powers[i];
-    }
+    for (std::size_t i = 0; i < powers.size(); ++i) (is_far[i] ? far_sum : near_sum) += powers[i];
     if (!(near_sum > 0) || !(far_sum > 0)) return;
     const double share = std::clamp(far_sum / (near_sum + far_sum), 0.25, 0.75);
     const double factor = share / (1 - share) * (near_sum / far_sum);
-    for (std::size_t i = first_checked; i < powers.size(); ++i) {
-        if (is_far[i - first_checked]) powers[i] *= factor;
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+        if (is_far[i]) powers[i] *= factor;
+    }
+}
+
+/// Tables of the emitters, and their powers.
+std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& pyramids) {
+    std::size_t guides = 0;
+    for (Emitter& emitter : data.emitters) {
+        emitter.first_guide = static_cast<uint32_t>(guides);
+        emitter.guide_bits = guide_bits_for(emitter.triangle_count);
+        guides += (std::size_t(1) << emitter.guide_bits) + 1;
+    }
+    data.triangle_starts.resize(data.triangles.size() + data.emitters.size());
+    data.triangle_guides.resize(guides);
+
+    std::vector<double> triangle_powers(data.triangles.size()), powers(data.emitters.size());
+    parallel_for(data.triangles.size(), 1024, [&](uint64_t i) {
+        triangle_powers[i] = triangle_power(data, pyramids, data.triangles[i]);
+    });
+    parallel_for(data.emitters.size(), 16, [&](uint64_t i) {
+        const Emitter& emitter = data.emitters[i];
+        powers[i] = build_ordered_table(
+            std::span<const double>(triangle_powers).subspan(emitter.first_triangle, emitter.triangle_count),
+            std::span(data.triangle_starts).subspan(emitter.first_triangle + i, emitter.triangle_count + 1),
+            std::span(data.triangle_guides)
+                .subspan(emitter.first_guide, (std::size_t(1) << emitter.guide_bits) + 1));
+    });
+    return powers;
+}
+
+/// Every triangle's probability, from the tables' whole numbers.
+void store_probabilities(LightSetData& data) {
+    if (data.choice.starts.empty()) return;
+    for (std::size_t i = 0; i < data.emitters.size(); ++i) {
+        const Emitter& emitter = data.emitters[i];
+        const double of_source = data.choice.starts[i + 1] - data.choice.starts[i];
+        const uint32_t* starts = data.triangle_starts.data() + emitter.first_triangle + i;
+        for (uint32_t k = 0; k < emitter.triangle_count; ++k) {
+            const double of_triangle = starts[k + 1] - starts[k];
+            data.triangles[emitter.first_triangle + k].pmf = static_cast<float>(of_source * of_triangle * 0x1p-62);
+        }
     }
 }
 
@@ -135,27 +176,20 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     const std::vector<TextureImageView> images = views_of_images(scene);
     const Pyramids pyramids = build_pyramids(data, images, linear_from_srgb);
 
-    std::vector<double> powers(data.triangles.size() + data.punctual.size() + (data.has_environment ? 1 : 0));
-    std::vector<bool> is_far; // of the lights after the triangles
-    parallel_for(data.triangles.size(), 1024,
-                 [&](uint64_t i) { powers[i] = triangle_power(data, pyramids, data.triangles[i]); });
-    for (std::size_t i = 0; i < data.punctual.size(); ++i) {
-        powers[data.triangles.size() + i] = punctual_power(data.punctual[i], radius);
-        is_far.push_back(data.punctual[i].kind == LightKind::Directional);
+    std::vector<double> powers = build_triangle_tables(data, pyramids);
+    std::vector<bool> is_far(powers.size(), false);
+    for (const PunctualLight& light : data.punctual) {
+        powers.push_back(punctual_power(light, radius));
+        is_far.push_back(light.kind == LightKind::Directional);
     }
     if (data.has_environment) {
-        powers.back() = 4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment.mean_radiance);
+        powers.push_back(4 * kPiDouble * kPiDouble * radius * radius *
+                         mean_of_channels(data.environment.mean_radiance));
         is_far.push_back(true);
     }
-    balance(powers, is_far, data.triangles.size());
-
-    double largest = 0;
-    for (const double power : powers) largest = std::max(largest, power);
-    std::vector<float> weights(powers.size());
-    for (std::size_t i = 0; i < powers.size(); ++i) {
-        weights[i] = largest > 0 ? static_cast<float>(powers[i] / largest) : 0.0f;
-    }
-    data.choice = build_alias_table(weights);
+    balance(powers, is_far);
+    data.choice = build_ordered_table(powers);
+    store_probabilities(data);
     return data;
 }
 
@@ -170,11 +204,15 @@ uint64_t count_emissive_triangles(const Scene& scene) {
 LightSetView view_of(const LightSetData& data, const TextureImageView* images, const float* linear_from_srgb) {
     LightSetView view;
     view.choice = view_of(data.choice);
+    view.emitters = data.emitters.data();
     view.triangles = data.triangles.data();
+    view.triangle_starts = data.triangle_starts.data();
+    view.triangle_guides = data.triangle_guides.data();
     view.punctual = data.punctual.data();
+    view.emitter_count = static_cast<uint32_t>(data.emitters.size());
     view.triangle_count = static_cast<uint32_t>(data.triangles.size());
     view.punctual_count = static_cast<uint32_t>(data.punctual.size());
-    if (data.has_environment) view.environment_light = view.triangle_count + view.punctual_count;
+    if (data.has_environment) view.environment_source = view.emitter_count + view.punctual_count;
     view.first_light = data.first_light.data();
     view.emissions = data.emissions.data();
     view.images = images;

@@ -15,8 +15,10 @@
 namespace pertev {
 
 struct LightSetData {
-    std::vector<AliasEntry> choice; // none: nothing gives light
+    OrderedTable choice; // over sources; empty: nothing gives light
+    std::vector<Emitter> emitters;
     std::vector<EmissiveTriangle> triangles;
+    std::vector<uint32_t> triangle_starts, triangle_guides;
     std::vector<PunctualLight> punctual;
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
@@ -24,7 +26,7 @@ struct LightSetData {
     bool has_environment = false;
 
     std::size_t count() const {
-        return choice.empty() ? 0 : triangles.size() + punctual.size() + (has_environment ? 1 : 0);
+        return choice.starts.empty() ? 0 : triangles.size() + punctual.size() + (has_environment ? 1 : 0);
     }
 };
 

@@ -96,7 +96,7 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
     if (data.is_constant) {
         data.pixels = {data.constant};
         data.mean_radiance = data.constant;
-        data.rows = build_alias_table(std::array{max_component(data.constant)});
+        data.rows = build_ordered_table(std::array{static_cast<double>(max_component(data.constant))});
         return data;
     }
 
@@ -115,7 +115,9 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
     };
     std::vector<Sums> row_sums(data.height); // of pixel times the row's share of the sphere
     std::vector<double> row_weights(data.height);
-    data.columns.resize(std::size_t(data.height) << alias_slot_bits(data.width));
+    const std::size_t starts = data.width + 1, guide = (std::size_t(1) << guide_bits_for(data.width)) + 1;
+    data.columns.starts.resize(data.height * starts);
+    data.columns.guide.resize(data.height * guide);
     const auto row = [&](uint64_t y) { return data.pixels.data() + y * data.width; };
     parallel_for(data.height, 16, [&](uint64_t y) {
         const uint64_t from_pole = std::min<uint64_t>(y, data.height - 1 - y);
@@ -129,23 +131,22 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
             row_sums[y].g += share * static_cast<double>(rows[1][x].g);
             row_sums[y].b += share * static_cast<double>(rows[1][x].b);
         }
-        const std::size_t slots = std::size_t(1) << alias_slot_bits(data.width);
-        row_weights[y] =
-            build_alias_entries(weights, AliasNumbers::Floats, std::span(data.columns).subspan(y * slots, slots));
+        row_weights[y] = build_ordered_table(weights, std::span(data.columns.starts).subspan(y * starts, starts),
+                                             std::span(data.columns.guide).subspan(y * guide, guide));
     });
     Sums sum;
     for (const Sums& s : row_sums) sum = {sum.r + s.r, sum.g + s.g, sum.b + s.b};
     const auto mean = [&](double s) { return static_cast<float>(s / data.width); };
     data.mean_radiance = {mean(sum.r), mean(sum.g), mean(sum.b)};
-    data.rows.resize(std::size_t(1) << alias_slot_bits(data.height));
-    build_alias_entries(row_weights, AliasNumbers::Floats, data.rows);
+    data.rows = build_ordered_table(row_weights);
     return data;
 }
 
 EnvironmentView view_of(const EnvironmentData& data) {
     return {data.width,          data.height,
             data.pixels.data(),  data.row_bounds.data(),
-            view_of(data.rows),  {data.columns.data(), alias_slot_bits(data.width)},
+            view_of(data.rows),  {data.columns.starts.data(), data.columns.guide.data(), data.width,
+                                  guide_bits_for(data.width)},
             data.rotation_turns, data.is_constant,
             data.constant};
 }

@@ -3,7 +3,8 @@
 // Light from infinitely far away: radiance by direction, and directions drawn by it. Conventions of scene/light.h: the
 // middle column looks along -z, +x is a quarter of the image to its right, row 0 is +y.
 //
-// A texel is drawn by an alias table (rows, then columns), then a direction uniformly in solid angle within it. A
+// A texel is drawn by ordered tables (the row by y, its column by x), so that near pairs of numbers draw near directions,
+// then a direction uniformly in solid angle within it by what remains of the numbers. A
 // texel's weight is its solid angle times the root mean square, over the texel, of the bilinearly filtered image: of
 // all weights constant over texels the one with the least variance, and positive wherever the filter can reach light.
 // sin^2(theta / 2), theta from the nearer pole, is uniform in solid angle like cos(theta) but keeps its precision.
@@ -19,7 +20,7 @@
 #include "math/vec2.h"
 #include "math/vec3.h"
 #include "scene/light.h"
-#include "shading/alias_table.h"
+#include "shading/ordered_table.h"
 
 namespace pertev {
 
@@ -27,8 +28,8 @@ struct EnvironmentView {
     uint32_t width = 1, height = 1;
     const Rgb* pixels = nullptr;       // [height * width], W/(sr m2), scale applied, finite, >= 0
     const float* row_bounds = nullptr; // [height + 1], sin^2(theta / 2) at the upper edge of each row
-    AliasTableView rows;               // [height]; no entries: black
-    AliasTableView columns;            // [width] of row 0; those of row y are 2^slot_bits entries on, y times
+    OrderedTableView rows;             // [height]; no starts: black
+    OrderedTableView columns;          // [width] of row 0; the tables of the other rows lie behind it
     float rotation_turns = 0;          // [0, 1): rotation about +y, 1 is a full turn
     bool is_constant = true;           // radiance is `constant` from everywhere; pixels and row_bounds are not read
     Rgb constant;
@@ -65,8 +66,10 @@ HD inline Vec2 environment_row_bounds(const EnvironmentView& view, uint32_t y) {
 }
 
 /// Table of the texels of row `y`.
-HD inline AliasTableView environment_columns(const EnvironmentView& view, uint32_t y) {
-    return {view.columns.entries + (uint64_t(y) << view.columns.slot_bits), view.columns.slot_bits};
+HD inline OrderedTableView environment_columns(const EnvironmentView& view, uint32_t y) {
+    const OrderedTableView& first = view.columns;
+    return {first.starts + uint64_t(y) * (first.count + 1),
+            first.guide + uint64_t(y) * ((uint64_t(1) << first.guide_bits) + 1), first.count, first.guide_bits};
 }
 
 /// Density of the directions in texel (x, y) with the given row bounds, 1/sr.
@@ -81,12 +84,12 @@ HD inline Rgb environment_radiance(const EnvironmentView& view, Vec3 direction) 
 
 /// Density of sample_environment at `direction`, 1/sr; 0 where black and everywhere for a black environment.
 HD inline float environment_pdf(const EnvironmentView& view, Vec3 direction) {
-    if (view.rows.entries == nullptr) return 0;
+    if (view.rows.starts == nullptr) return 0;
     if (view.is_constant) return environment_texel_pdf(view, 1.0f, {0, 1});
     const Vec2 place = environment_place(view, direction);
     const auto x = static_cast<uint32_t>(to_int(place.x, 0, static_cast<int>(view.width) - 1));
     const auto y = static_cast<uint32_t>(to_int(place.y, 0, static_cast<int>(view.height) - 1));
-    return environment_texel_pdf(view, alias_pmf(view.rows, y) * alias_pmf(environment_columns(view, y), x),
+    return environment_texel_pdf(view, ordered_pmf(view.rows, y) * ordered_pmf(environment_columns(view, y), x),
                                  environment_row_bounds(view, y));
 }
 
@@ -96,21 +99,22 @@ struct EnvironmentSample {
     float pdf;    // 1/sr, > 0
 };
 
-/// A direction drawn by `u` in [0, 1)^2. False, with nothing written, for a black environment.
-HD inline bool sample_environment(const EnvironmentView& view, Vec2 u, EnvironmentSample& sample) {
-    if (view.rows.entries == nullptr) return false;
-    AliasSample row{0, 1, u.x}, texel{0, 1, u.y};
+/// A direction drawn by `u`. False, with nothing written, for a black environment.
+HD inline bool sample_environment(const EnvironmentView& view, SampleBits u, EnvironmentSample& sample) {
+    if (view.rows.starts == nullptr) return false;
+    const uint32_t more = bits_behind(u);
+    OrderedDraw row = {0, 1u << 31, u.y >> 1, more}, texel = {0, 1u << 31, u.x >> 1, more};
     if (!view.is_constant) {
-        row = sample_alias(view.rows, alias_number(u.x));
-        texel = sample_alias(environment_columns(view, row.index), alias_number(u.y));
+        row = draw_ordered(view.rows, u.y, more);
+        texel = draw_ordered(environment_columns(view, row.index), u.x, more);
     }
     const Vec2 bounds = environment_row_bounds(view, row.index);
-    const float pdf = environment_texel_pdf(view, row.pmf * texel.pmf, bounds);
+    const float pdf = environment_texel_pdf(view, ordered_pmf(row.owned) * ordered_pmf(texel.owned), bounds);
 
-    const float s = lerp(bounds.x, bounds.y, row.u), c = 1.0f - s; // squares of sin, cos of theta / 2
+    const float s = lerp(bounds.x, bounds.y, rest_of(row)), c = 1.0f - s; // squares of sin, cos of theta / 2
     const bool is_south = row.index > view.height - 1 - row.index;
     const float sin_theta = 2.0f * safe_sqrt(s * c), cos_theta = is_south ? s - c : c - s;
-    const float column = static_cast<float>(texel.index) + texel.u;
+    const float column = static_cast<float>(texel.index) + rest_of(texel);
     const float turns = column / static_cast<float>(view.width) - 0.5f - view.rotation_turns;
     float sin_longitude, cos_longitude;
     sin_cos_2pi(turns, sin_longitude, cos_longitude);
@@ -130,7 +134,7 @@ struct EnvironmentData {
     uint32_t width = 1, height = 1;
     std::vector<Rgb> pixels;
     std::vector<float> row_bounds;
-    std::vector<AliasEntry> rows, columns; // of EnvironmentView; no rows: black
+    OrderedTable rows, columns; // of EnvironmentView; no rows: black
     float rotation_turns = 0;
     bool is_constant = true;
     Rgb constant;

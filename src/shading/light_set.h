@@ -1,12 +1,16 @@
 #pragma once
 
 // All lights of a scene behind one door: emissive triangles (any number), point, spot and directional lights, and the
-// environment, drawn by power from one table. sample_light draws a light and a direction to it; pdf_light_hit and
-// pdf_environment give the density of that draw for a direction found otherwise, which multiple importance sampling
-// needs (Veach 1997, section 9.2).
+// environment, drawn by power. sample_light draws a light and a direction to it; pdf_light_hit and pdf_environment give
+// the density of that draw for a direction found otherwise, which multiple importance sampling needs (Veach 1997,
+// section 9.2).
 //
-// Index order: emissive triangles (per instance in scene order, all its primitives in order), punctual lights, the
-// environment. Both faces of a triangle emit; those of unlit materials are no lights.
+// A pair of numbers draws all of it, and near pairs draw near places: x the source (an emissive instance, a punctual
+// light, the environment) and y the instance's triangle, both by ordered tables; what remains of x and y draws the place
+// on the triangle. In the environment y draws the row and what remains of x the column.
+//
+// Order of sources: emissive instances, punctual lights, the environment, each in scene order; lights are numbered
+// alike, with an instance's triangles in order in its place. Both faces of a triangle emit; those of unlit materials are no lights.
 
 #include <cstdint>
 
@@ -18,8 +22,8 @@
 #include "math/vec3.h"
 #include "scene/light.h"
 #include "scene/texture.h"
-#include "shading/alias_table.h"
 #include "shading/environment_light.h"
+#include "shading/ordered_table.h"
 #include "shading/texture_lookup.h"
 
 namespace pertev {
@@ -30,6 +34,13 @@ struct EmissiveTriangle {
     Vec3 a, ab, ac;                                     // first vertex and the edges from it, metres, world space
     Vec2 uv0, uv1, uv2;                                 // of the set that the emission texture reads
     uint32_t instance = 0, primitive = 0, material = 0; // ids in the scene
+    float pmf = 0;                                      // probability that sample_light draws it
+};
+
+/// An emissive instance: its triangles and the table that draws one of them.
+struct Emitter {
+    uint32_t first_triangle = 0, triangle_count = 0;
+    uint32_t first_guide = 0, guide_bits = 0; // of the table in LightSetView::triangle_guides
 };
 
 /// scene/light.h's Light without its name.
@@ -47,16 +58,26 @@ struct SurfaceEmission {
 };
 
 struct LightSetView {
-    AliasTableView choice; // over all lights; no entries: there are none
+    OrderedTableView choice; // over all sources; no starts: there are none
+    const Emitter* emitters = nullptr;
     const EmissiveTriangle* triangles = nullptr;
+    const uint32_t* triangle_starts = nullptr; // tables of the emitters, one after another: [triangles + emitters]
+    const uint32_t* triangle_guides = nullptr;
     const PunctualLight* punctual = nullptr;
-    uint32_t triangle_count = 0, punctual_count = 0;
-    uint32_t environment_light = kNoLight;      // index of the environment
+    uint32_t emitter_count = 0, triangle_count = 0, punctual_count = 0;
+    uint32_t environment_source = kNoLight;     // index of the environment among the sources
     const uint32_t* first_light = nullptr;      // [instances] light of primitive 0, or kNoLight
     const SurfaceEmission* emissions = nullptr; // [materials]
     const TextureImageView* images = nullptr;   // [images of the scene]
     const float* linear_from_srgb = nullptr;    // [256]
     EnvironmentView environment;                // where there is one
+
+    HD bool has_environment() const { return environment_source != kNoLight; }
+    HD OrderedTableView triangles_of(uint32_t source) const {
+        const Emitter& emitter = emitters[source];
+        return {triangle_starts + emitter.first_triangle + source, triangle_guides + emitter.first_guide,
+                emitter.triangle_count, emitter.guide_bits};
+    }
 };
 
 struct LightSample {
@@ -103,7 +124,7 @@ HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float dist
     return falloff;
 }
 
-HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, float pmf, Vec3 from_point, Vec2 u,
+HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, Vec3 from_point, Vec2 u,
                                      LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
     const Vec2 b = sample_uniform_triangle(u);
@@ -112,7 +133,7 @@ HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, f
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
     const Vec3 wi = to_light / distance;
     const Vec3 normal = cross(triangle.ab, triangle.ac);
-    const float pdf = pmf * triangle_pdf(normal, wi, distance_squared);
+    const float pdf = triangle.pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
     const Rgb radiance = surface_emission(view, triangle.material, uv);
@@ -143,25 +164,29 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
-/// Draws a light by 32 random bits and a direction to it by `u` in [0, 1)^2. False where nothing arrives: no lights, a
-/// dark spot of a texture, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha:
-/// where the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
-HD inline bool sample_light(const LightSetView& view, Vec3 from_point, uint32_t choice, Vec2 u, LightSample& sample) {
-    if (view.choice.entries == nullptr) return false;
-    const AliasSample light = sample_alias(view.choice, choice);
-    if (light.index < view.triangle_count) {
-        return sample_triangle_light(view, light.index, light.pmf, from_point, u, sample);
+/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, a dark spot of a texture, outside
+/// a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the triangle's material is
+/// not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
+HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBits u, LightSample& sample) {
+    if (view.choice.starts == nullptr) return false;
+    const uint32_t more = bits_behind(u);
+    const OrderedDraw source = draw_ordered(view.choice, u.x, more);
+    if (source.index < view.emitter_count) {
+        const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
+        return sample_triangle_light(view, view.emitters[source.index].first_triangle + triangle.index, from_point,
+                                     {rest_of(source), rest_of(triangle)}, sample);
     }
-    if (light.index != view.environment_light) {
-        return sample_punctual_light(view.punctual[light.index - view.triangle_count], light.pmf, from_point, sample);
+    const float pmf = ordered_pmf(source.owned);
+    if (source.index != view.environment_source) {
+        return sample_punctual_light(view.punctual[source.index - view.emitter_count], pmf, from_point, sample);
     }
     EnvironmentSample from_environment;
-    if (!sample_environment(view.environment, u, from_environment)) return false;
+    if (!sample_environment(view.environment, {number_of_rest(source), u.y}, from_environment)) return false;
     sample = {};
     sample.wi = from_environment.wi;
     sample.distance = kInfinity;
     sample.radiance = from_environment.radiance;
-    sample.pdf = light.pmf * from_environment.pdf;
+    sample.pdf = pmf * from_environment.pdf;
     return sample.pdf > 0;
 }
 
@@ -172,15 +197,14 @@ HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, Vec3 fro
     const Vec3 to_light = hit_point - from_point;
     const float distance_squared = length_squared(to_light);
     const Vec3 wi = to_light / sqrt(distance_squared);
-    const float pdf =
-        alias_pmf(view.choice, light) * triangle_pdf(cross(triangle.ab, triangle.ac), wi, distance_squared);
+    const float pdf = triangle.pmf * triangle_pdf(cross(triangle.ab, triangle.ac), wi, distance_squared);
     return is_finite(pdf) ? pdf : 0.0f;
 }
 
 /// Density with which sample_light draws direction `wi` for the environment, 1/sr; 0 without one.
 HD inline float pdf_environment(const LightSetView& view, Vec3 wi) {
-    if (view.environment_light == kNoLight || view.choice.entries == nullptr) return 0;
-    return alias_pmf(view.choice, view.environment_light) * environment_pdf(view.environment, wi);
+    if (!view.has_environment() || view.choice.starts == nullptr) return 0;
+    return ordered_pmf(view.choice, view.environment_source) * environment_pdf(view.environment, wi);
 }
 
 } // namespace pertev

@@ -18,8 +18,8 @@ struct PathCamera {
 HD inline PathState generate_path(const PathCamera& camera, const PathSettings& settings, uint32_t pixel,
                                   uint32_t sample) {
     const SampleKey key = {pixel, sample, settings.seed};
-    const Vec2 offset = sample_filter(camera.filter, sample_2d(settings.sampler, key, kSlotFilter));
-    const Vec2 lens = camera.view.aperture_radius > 0 ? sample_2d(settings.sampler, key, kSlotLens) : Vec2{};
+    const Vec2 offset = sample_filter(camera.filter, sample_2d(settings.sampler, key, kGroupCamera));
+    const Vec2 lens = camera.view.aperture_radius > 0 ? sample_2d(settings.sampler, key, kGroupLens) : Vec2{};
     const uint32_t row = pixel / camera.width;
     const Vec2 place = {static_cast<float>(pixel % camera.width) + 0.5f + offset.x,
                         static_cast<float>(row) + 0.5f + offset.y};

@@ -30,12 +30,23 @@ struct ShadowRay {
     Rgb contribution;
 };
 
-/// Random numbers of a path: one slot a decision. A slot is one dimension pair of the sampler.
-enum SampleSlot : uint32_t { kSlotFilter, kSlotLens, kSlotFirstVertex };
-enum VertexSlot : uint32_t { kSlotLight, kSlotOnLight, kSlotLobe, kSlotBsdf, kSlotRoulette, kSlotsPerVertex };
+/// Random numbers of a path, in groups of four (math/sampler.h). The places of numbers that nothing draws yet are kept:
+/// a feature that will draw them changes no picture without it.
+///   camera         place in the pixel, then the light of vertex 0
+///   lens           place on the lens, time, one kept
+///   scatter, of v  direction from vertex v, then the light of vertex v + 1: both decide what v gathers over one bounce
+///   choices, of v  lobe, roulette, two kept for lobes
+enum SampleGroup : uint32_t { kGroupCamera, kGroupLens, kGroupFirstVertex };
+enum VertexGroup : uint32_t { kGroupScatter, kGroupChoices, kGroupsPerVertex };
+inline constexpr uint32_t kNumberLobe = 0, kNumberRoulette = 1;
 
-HD inline uint32_t vertex_slot(const PathState& path, VertexSlot slot) {
-    return kSlotFirstVertex + path.depth * kSlotsPerVertex + slot;
+HD inline uint32_t vertex_group(const PathState& path, VertexGroup group) {
+    return kGroupFirstVertex + path.depth * kGroupsPerVertex + group;
+}
+
+/// The group whose last pair draws the light of the path's vertex.
+HD inline uint32_t light_group(const PathState& path) {
+    return path.depth == 0 ? kGroupCamera : vertex_group(path, kGroupScatter) - kGroupsPerVertex;
 }
 
 /// The coin of blended surfaces for a path's ray at its depth; shadow rays toss another one.

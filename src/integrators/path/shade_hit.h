@@ -57,10 +57,11 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = {path.pixel, path.sample, settings.seed};
-    const uint32_t choice = sample_bits(settings.sampler, key, vertex_slot(path, kSlotLight));
-    const Vec2 place = sample_2d(settings.sampler, key, vertex_slot(path, kSlotOnLight));
     LightSample light;
-    if (!sample_light(scene.lights, surface.position, choice, place, light)) return false;
+    if (!sample_light(scene.lights, surface.position,
+                      sample_bits(settings.sampler, key, light_group(path), Pair::Last), light)) {
+        return false;
+    }
     const Vec3 wo_local = surface.frame.to_local(wo), wi_local = surface.frame.to_local(light.wi);
     if (!surface.is_consistent(wo, light.wi, wo_local, wi_local)) return false;
     const BsdfValue scattered = surface.bsdf.evaluate(wo_local, wi_local);
@@ -95,8 +96,8 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
 /// Draws where the path goes on. False when it ends here.
 HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo) {
     const SampleKey key = {path.pixel, path.sample, settings.seed};
-    const float lobe = sample_1d(settings.sampler, key, vertex_slot(path, kSlotLobe));
-    const Vec2 u = sample_2d(settings.sampler, key, vertex_slot(path, kSlotBsdf));
+    const float lobe = sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe);
+    const Vec2 u = sample_2d(settings.sampler, key, vertex_group(path, kGroupScatter));
     const Vec3 wo_local = surface.frame.to_local(wo);
     const BsdfSample sample = surface.bsdf.sample(wo_local, lobe, u);
     if (!(sample.pdf > 0) || is_black(sample.weight)) return false;
@@ -114,7 +115,8 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     if (vertex >= settings.roulette_depth) {
         const float survival = max_component(path.throughput);
         if (survival < 1) {
-            const float u_roulette = sample_1d(settings.sampler, key, vertex_slot(path, kSlotRoulette));
+            const float u_roulette =
+                sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberRoulette);
             if (!(u_roulette < survival)) return false;
             path.throughput = (1.0f / survival) * path.throughput;
         }
@@ -157,7 +159,7 @@ HD inline bool shade_hit(const SceneView& scene, const PathSettings& settings, c
             film.ids[path.pixel] = {kNoHit, kNoHit, kNoHit};
         }
         const bool is_hidden = settings.hide_background && path.depth == 0;
-        if (scene.lights.environment_light != kNoLight && !is_hidden) {
+        if (scene.lights.has_environment() && !is_hidden) {
             add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction),
                          path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f);
         }
