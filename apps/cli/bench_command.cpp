@@ -34,7 +34,7 @@ namespace {
 struct BenchFlags {
     std::vector<std::string> scenes;
     std::string size = "1920x1080", output, job = "S8";
-    uint32_t samples = 0;
+    uint32_t samples = 0, seed = 0;
     MachineFlags machine;
     ReportFlags report;
 };
@@ -78,6 +78,7 @@ RenderSettings job_settings(const BenchFlags& flags) {
     settings.filter = PixelFilter::Box;
     settings.path.max_depth = flags.job == "S5" ? 5 : 8;
     settings.path.roulette_depth = 2;
+    settings.path.seed = flags.seed;
     return settings;
 }
 
@@ -301,6 +302,10 @@ void add_bench_command(CLI::App& app, int& status) {
         ->type_name("FILE")
         ->required()
         ->expected(1);
+    job.add_option("--seed", job_flags->seed, "of the random numbers")
+        ->type_name("N")
+        ->check(whole_between(0, UINT32_MAX))
+        ->capture_default_str();
     job.add_option("-o,--output", job_flags->output, "keep the picture")->type_name("FILE");
     add_shared_flags(job, *job_flags);
     job.callback([&job, job_flags, &status] {
@@ -308,6 +313,7 @@ void add_bench_command(CLI::App& app, int& status) {
         status = bench_job(*job_flags);
     });
     add_bench_rays_command(verb, status);
+    add_bench_noise_command(verb, status);
     verb.require_subcommand(0, 1);
     verb.callback([&verb, flags, &status] {
         if (verb.get_subcommands().empty()) status = bench_scenes(*flags);

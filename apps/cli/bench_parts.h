@@ -34,5 +34,7 @@ void refuse_flags_before(const CLI::App& verb);
 
 /// `bench rays`, a verb of `bench`.
 void add_bench_rays_command(CLI::App& bench, int& status);
+/// `bench noise`, likewise.
+void add_bench_noise_command(CLI::App& bench, int& status);
 
 } // namespace pertev

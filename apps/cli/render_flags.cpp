@@ -51,6 +51,38 @@ bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> for
 
 } // namespace
 
+void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group) {
+    verb.add_option("--spp", flags.samples, "samples a pixel")
+        ->type_name("N")
+        ->check(whole_between(1, kMaxSamplesPerPixel))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--integrator", flags.integrator, "path, or its parts direct and indirect")
+        ->type_name("NAME")
+        ->check(one_of(names_of(kIntegrators)))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--max-depth", flags.max_depth, "most scatterings of a path: 0 emission, 1 direct light")
+        ->type_name("N")
+        ->check(whole_between(0, kMaxPathDepth - 1))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--seed", flags.seed, "of the random numbers")
+        ->type_name("N")
+        ->check(whole_between(0, UINT32_MAX))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--filter", flags.filter, "of pixels: box, tent, gaussian or blackman-harris")
+        ->type_name("NAME")
+        ->check(one_of(names_of(kFilters)))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--filter-radius", flags.filter_radius, "at most 64 (the filter's own)")
+        ->type_name("PIXELS")
+        ->check(number_above_zero(64))
+        ->group(group);
+}
+
 void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     add_scene_options(verb, flags.scene);
     verb.add_option("-o,--output", flags.outputs, "picture to write: .exr .png .jpg .hdr; may be given again")
@@ -78,43 +110,15 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->check(one_of(names_of(kAovs)))
         ->group(group);
     group = "Quality";
-    verb.add_option("--spp", flags.samples, "samples a pixel")
-        ->type_name("N")
-        ->check(whole_between(1, kMaxSamplesPerPixel))
-        ->capture_default_str()
-        ->group(group);
+    add_light_path_flags(verb, flags, group);
     verb.add_option("--time", flags.time_s, "stop after this time, at a whole sample")
         ->type_name("SECONDS")
         ->check(number_above_zero())
-        ->group(group);
-    verb.add_option("--integrator", flags.integrator, "path, or its parts direct and indirect")
-        ->type_name("NAME")
-        ->check(one_of(names_of(kIntegrators)))
-        ->capture_default_str()
-        ->group(group);
-    verb.add_option("--max-depth", flags.max_depth, "most scatterings of a path: 0 emission, 1 direct light")
-        ->type_name("N")
-        ->check(whole_between(0, kMaxPathDepth - 1))
-        ->capture_default_str()
-        ->group(group);
-    verb.add_option("--seed", flags.seed, "of the random numbers")
-        ->type_name("N")
-        ->check(whole_between(0, UINT32_MAX))
-        ->capture_default_str()
         ->group(group);
     verb.add_option("--sampler", flags.sampler, "sobol or independent")
         ->type_name("NAME")
         ->check(one_of(names_of(kSamplers)))
         ->capture_default_str()
-        ->group(group);
-    verb.add_option("--filter", flags.filter, "of pixels: box, tent, gaussian or blackman-harris")
-        ->type_name("NAME")
-        ->check(one_of(names_of(kFilters)))
-        ->capture_default_str()
-        ->group(group);
-    verb.add_option("--filter-radius", flags.filter_radius, "at most 64 (the filter's own)")
-        ->type_name("PIXELS")
-        ->check(number_above_zero(64))
         ->group(group);
     verb.add_option("--clamp", flags.clamp, "largest contribution after the first scattering; biased,\noff by default")
         ->type_name("X")

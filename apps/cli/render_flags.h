@@ -30,6 +30,9 @@ struct RenderFlags {
 };
 
 void add_render_flags(CLI::App& verb, RenderFlags& flags);
+/// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth, --seed,
+/// --filter, --filter-radius.
+void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
 
 /// What can be told before the scene is read. Throws Error, above all for an output that could not be written.
 void check_render_flags(const RenderFlags& flags, Messages& messages);

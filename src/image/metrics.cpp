@@ -27,6 +27,19 @@ double square_of_difference(float x, float r) {
 
 double relative_square(float x, float r) { return square_of_difference(x, r) / (double(r) * double(r) + 0.01); }
 
+/// The `keep` part of the pixels, those with the least errors first, at least one.
+std::vector<std::size_t> pixels_of_least_error(const std::vector<double>& errors, double keep) {
+    PERTEV_CHECK(keep > 0 && keep <= 1);
+    std::vector<std::size_t> order(errors.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return errors[a] != errors[b] ? errors[a] < errors[b] : a < b; // equal ones in one order everywhere
+    });
+    const auto kept = static_cast<std::size_t>(std::floor(keep * static_cast<double>(errors.size())));
+    order.resize(std::max<std::size_t>(kept, 1));
+    return order;
+}
+
 } // namespace
 
 void check_comparable(const Image& picture, const Image& reference) {
@@ -43,7 +56,6 @@ void check_comparable(const Image& picture, const Image& reference) {
 
 TrimmedError relative_error(const Image& picture, const Image& reference, double keep) {
     check_comparable(picture, reference);
-    PERTEV_CHECK(keep > 0 && keep <= 1);
     const std::size_t count = std::size_t(picture.width) * picture.height;
     std::vector<double> errors(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -52,13 +64,7 @@ TrimmedError relative_error(const Image& picture, const Image& reference, double
                         ? (relative_square(x.r, r.r) + relative_square(x.g, r.g) + relative_square(x.b, r.b)) / 3
                         : kInfinite;
     }
-    std::vector<std::size_t> order(count);
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return errors[a] != errors[b] ? errors[a] < errors[b] : a < b; // equal ones in one order everywhere
-    });
-    const auto kept = static_cast<std::size_t>(std::floor(keep * static_cast<double>(count)));
-    order.resize(std::max<std::size_t>(kept, 1));
+    const std::vector<std::size_t> order = pixels_of_least_error(errors, keep);
 
     TrimmedError result;
     result.pixels = order.size();
@@ -76,6 +82,43 @@ TrimmedError relative_error(const Image& picture, const Image& reference, double
     for (int c = 0; c < 3; ++c) {
         result.mean[c] /= n;
         result.reference_mean[c] /= n;
+    }
+    return result;
+}
+
+TrimmedVariance relative_variance(const std::vector<Image>& pictures, double keep) {
+    PERTEV_CHECK(pictures.size() >= 2);
+    for (const Image& picture : pictures) check_comparable(picture, pictures.front());
+    const std::size_t count = std::size_t(pictures[0].width) * pictures[0].height;
+    const double n = static_cast<double>(pictures.size());
+    std::vector<double> errors(count), means(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        double sum[3] = {}, squares[3] = {}; // of the differences from the first picture, which lose no digits
+        const Rgb first = pixel(pictures[0], i);
+        const float origin[3] = {first.r, first.g, first.b};
+        for (const Image& picture : pictures) {
+            const Rgb x = pixel(picture, i);
+            const float values[3] = {x.r, x.g, x.b};
+            for (int c = 0; c < 3; ++c) {
+                const double difference = double(values[c]) - double(origin[c]);
+                sum[c] += difference;
+                squares[c] += difference * difference;
+            }
+        }
+        for (int c = 0; c < 3; ++c) {
+            const double mean = double(origin[c]) + sum[c] / n;
+            const double variance = std::max(0.0, squares[c] - sum[c] * sum[c] / n) / (n - 1);
+            errors[i] += variance / (mean * mean + 0.01) / 3;
+            means[i] += mean / 3;
+        }
+        if (std::isnan(errors[i])) errors[i] = kInfinite;
+    }
+    const std::vector<std::size_t> order = pixels_of_least_error(errors, keep);
+    TrimmedVariance result;
+    result.pixels = order.size();
+    for (const std::size_t i : order) {
+        result.rel_mse += errors[i] / static_cast<double>(order.size());
+        result.mean += means[i] / static_cast<double>(order.size());
     }
     return result;
 }

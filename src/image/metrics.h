@@ -3,6 +3,8 @@
 // How far a picture is from its reference, as numbers: what `pertev compare` prints and the tests hold bounds on.
 // FLIP is in image/flip.h. Sums are in double and in one fixed order.
 
+#include <vector>
+
 #include "image/image.h"
 #include "math/rgb.h"
 
@@ -19,6 +21,17 @@ struct TrimmedError {
 /// rest. A pixel with a value that is not finite counts as the worst, and makes rel_mse infinite where it is kept.
 /// Both pictures have 3 or 4 channels (alpha is not compared). Throws Error(BadInput) when their sizes differ.
 TrimmedError relative_error(const Image& picture, const Image& reference, double keep = 0.98);
+
+struct TrimmedVariance {
+    double rel_mse = 0; // what relative_error would be on average if the true picture were known
+    double mean = 0;    // of all channels over the kept pixels
+    uint64_t pixels = 0;
+};
+
+/// Variance of pictures that differ by chance alone, as relMSE of one of them: mean over the kept pixels and channels of
+/// s^2 / (m^2 + 0.01), s^2 the unbiased variance over the pictures, m their mean. `keep` as in relative_error. At least
+/// two pictures of one size. Throws Error(BadInput) when sizes differ.
+TrimmedVariance relative_variance(const std::vector<Image>& pictures, double keep = 1);
 
 /// Mean of (x - r)^2 over pixels and R, G, B. Infinite where a value is not finite. Throws as relative_error.
 double mean_squared_error(const Image& picture, const Image& reference);
