@@ -27,6 +27,11 @@ constexpr double kPiDouble = 3.141592653589793;
 double as_double(float x) { return static_cast<double>(x); }
 double luminance_in_double(Rgb c) { return as_double(c.r) + as_double(c.g) + as_double(c.b); }
 
+SampleBits random_bits(Random& random) {
+    const uint32_t x = random.bits();
+    return {x, random.bits()};
+}
+
 /// Mean and standard error of `draw` over `count` draws.
 struct Estimate {
     double mean = 0, error = 0, variance = 0;
@@ -139,7 +144,7 @@ TEST_CASE("environment: a sample's density and radiance are found again from its
         constexpr int draws = 100'000;
         for (int i = 0; i < draws; ++i) {
             EnvironmentSample sample;
-            REQUIRE(sample_environment(view, random.pair(), sample));
+            REQUIRE(sample_environment(view, random_bits(random), sample));
             CHECK(as_double(length(sample.wi)) == doctest::Approx(1).epsilon(1e-6));
             const float pdf = environment_pdf(view, sample.wi);
             const Rgb radiance = environment_radiance(view, sample.wi);
@@ -177,7 +182,7 @@ TEST_CASE("environment: samples follow the density, within texels too") {
     Random random(5);
     for (uint32_t i = 0; i < samples; ++i) {
         EnvironmentSample sample;
-        REQUIRE(sample_environment(view, random.pair(), sample));
+        REQUIRE(sample_environment(view, random_bits(random), sample));
         const double longitude = std::atan2(as_double(sample.wi.x), as_double(-sample.wi.z)) + 1.1;
         const double turns = longitude / (2 * kPiDouble) + 0.5;
         const double row = std::acos(std::clamp(as_double(sample.wi.y), -1.0, 1.0)) / kPiDouble * height;
@@ -200,7 +205,7 @@ TEST_CASE("environment: radiance over density averages to the integral of radian
         Random random(2);
         const Estimate power = estimate(200'000, [&] {
             EnvironmentSample sample;
-            if (!sample_environment(view, random.pair(), sample)) return 0.0;
+            if (!sample_environment(view, random_bits(random), sample)) return 0.0;
             return luminance_in_double(sample.radiance) / as_double(sample.pdf);
         });
         CAPTURE(width);
@@ -224,7 +229,7 @@ TEST_CASE("environment: no image, one pixel and equal pixels are drawn uniformly
         std::array<double, 3> mean{};
         for (int i = 0; i < 10'000; ++i) {
             EnvironmentSample sample;
-            REQUIRE(sample_environment(view, random.pair(), sample));
+            REQUIRE(sample_environment(view, random_bits(random), sample));
             CHECK(sample.pdf == 0.25f * kInvPi);
             CHECK(environment_pdf(view, sample.wi) == sample.pdf);
             CHECK(environment_radiance(view, sample.wi) == sample.radiance);
@@ -249,7 +254,7 @@ TEST_CASE("environment: the image of one bright row at the pole is drawn with fu
     const double exact = 2 * kPiDouble * row * row * (13.0 / 24.0);
     const Estimate power = estimate(100'000, [&] {
         EnvironmentSample sample;
-        return sample_environment(view, random.pair(), sample) ? as_double(sample.radiance.r / sample.pdf) : 0.0;
+        return sample_environment(view, random_bits(random), sample) ? as_double(sample.radiance.r / sample.pdf) : 0.0;
     });
     CHECK(std::abs(power.mean - exact) < 4 * power.error + 1e-4 * exact);
 }
@@ -259,7 +264,7 @@ TEST_CASE("environment: a black one is never drawn, and bad pixels are repaired 
     black.image = {4, 2, 3, std::vector<float>(24)};
     const EnvironmentData data = build(black);
     EnvironmentSample sample;
-    CHECK_FALSE(sample_environment(view_of(data), {0.5f, 0.5f}, sample));
+    CHECK_FALSE(sample_environment(view_of(data), {0x80000000u, 0x80000000u}, sample));
     CHECK(environment_pdf(view_of(data), {0, 1, 0}) == 0);
 
     Environment bad = make_sky(8, 4, 0);

@@ -96,14 +96,25 @@ struct Estimate {
     double mean = 0, error = 0;
 };
 
+SampleBits random_bits(Random& random) {
+    const uint32_t x = random.bits();
+    return {x, random.bits()};
+}
+
+/// Probability that sample_light draws a light, in the order of triangles, punctual lights, the environment.
+float light_pmf(const LightSetView& view, uint32_t light) {
+    if (view.choice.starts == nullptr) return 0;
+    if (light < view.triangle_count) return view.triangles[light].pmf;
+    return ordered_pmf(view.choice, view.emitter_count + light - view.triangle_count);
+}
+
 /// Irradiance (red) at the origin of a surface that faces `normal`, drawn by sample_light.
 Estimate irradiance(const LightSetView& view, Vec3 point, Vec3 normal, uint64_t draws, uint32_t seed) {
     Random random(seed);
     double sum = 0, squares = 0;
     for (uint64_t i = 0; i < draws; ++i) {
-        const uint32_t choice = random.bits();
         LightSample sample;
-        if (!sample_light(view, point, choice, random.pair(), sample)) continue;
+        if (!sample_light(view, point, random_bits(random), sample)) continue;
         REQUIRE(sample.pdf > 0);
         const double value = as_double(max(dot(sample.wi, normal), 0.0f)) * as_double(sample.radiance.r / sample.pdf);
         sum += value;
@@ -216,7 +227,7 @@ TEST_CASE("lights: a triangle is drawn wherever its texture has one bright texel
             }
         }
         for (uint32_t k = 0; k < 2; ++k) {
-            const bool is_drawn = lights.view.choice.entries != nullptr && alias_pmf(lights.view.choice, k) > 0;
+            const bool is_drawn = light_pmf(lights.view, k) > 0;
             CAPTURE(i);
             if (is_lit[k]) CHECK(is_drawn);
             drawn += is_drawn ? 1 : 0;
@@ -237,7 +248,7 @@ TEST_CASE("lights: triangles of a textured mesh are drawn as their texture shine
         const EmissiveTriangle& t = lights.view.triangles[i];
         const Vec2 centre = 0.25f * (t.uv0 + t.uv1) + 0.5f * t.uv2;
         if (!is_black(surface_emission(lights.view, 0, centre)))
-            on_bright += as_double(alias_pmf(lights.view.choice, i));
+            on_bright += as_double(light_pmf(lights.view, i));
     }
     CHECK(on_bright > 0.8); // some dark ones touch a bright square
 }
@@ -249,7 +260,7 @@ TEST_CASE("lights: point, spot and directional lights give what their definition
     const auto only = [&](const Light& light) {
         scene.lights = {light};
         const Lights lights(scene);
-        const bool is_lit = sample_light(lights.view, {0, 0, 0}, 0x80000000u, {0.5f, 0.5f}, sample);
+        const bool is_lit = sample_light(lights.view, {0, 0, 0}, {0x80000000u, 0x80000000u}, sample);
         if (is_lit) {
             CHECK(sample.pdf == 1);
             CHECK(sample.is_delta);
@@ -304,8 +315,8 @@ TEST_CASE("lights: all kinds together add up, and near and far ones each get a q
 
         double sum = 0, far_sum = 0;
         const uint32_t first_punctual = lights.view.triangle_count;
-        for (uint32_t i = 0; i <= lights.view.environment_light; ++i) {
-            const double pmf = as_double(alias_pmf(lights.view.choice, i));
+        for (uint32_t i = 0; i < lights.data.count(); ++i) {
+            const double pmf = as_double(light_pmf(lights.view, i));
             CHECK(pmf > 0);
             sum += pmf;
             if (i >= first_punctual + 2) far_sum += pmf;
@@ -334,13 +345,12 @@ TEST_CASE("lights: draws follow the density, over lights of eight decades of pow
         std::vector<double> observed(4 * std::size_t(count) + 8), expected;
         for (uint32_t light = 0; light <= count; ++light) {
             const uint32_t cells = light < count ? 4 : 8;
-            expected.insert(expected.end(), cells, draws * as_double(alias_pmf(lights.view.choice, light)) / cells);
+            expected.insert(expected.end(), cells, draws * as_double(light_pmf(lights.view, light)) / cells);
         }
         for (uint32_t i = 0; i < draws; ++i) {
             const Hash4 h = hash_words(i, count, 1, 2);
             LightSample sample;
-            const Vec2 u = {unit_interval(h.y), unit_interval(h.z)};
-            if (!sample_light(lights.view, {0, 0, 0}, h.x, u, sample)) continue;
+            if (!sample_light(lights.view, {0, 0, 0}, {h.x, h.y}, sample)) continue;
             const bool from_sky = sample.instance == kNoLight;
             const uint32_t light = from_sky ? count : light_of(lights.view, sample.instance, sample.primitive);
             observed[4 * std::size_t(light) + (from_sky ? octant(sample.wi) : quarter(sample.b1, sample.b2))] += 1;
@@ -374,9 +384,8 @@ TEST_CASE("lights: the density of a sample is found again from its point or its 
     uint64_t on_triangles = 0, from_sky = 0, sky_differs = 0;
     for (int i = 0; i < 50'000; ++i) {
         const Vec3 from = {random.unit() - 0.5f, -random.unit(), random.unit()};
-        const uint32_t choice = random.bits();
         LightSample sample;
-        if (!sample_light(lights.view, from, choice, random.pair(), sample)) continue;
+        if (!sample_light(lights.view, from, random_bits(random), sample)) continue;
         CHECK_FALSE(sample.is_delta);
         if (sample.instance == kNoLight) {
             ++from_sky;
@@ -416,7 +425,7 @@ TEST_CASE("lights: the density of directions to a triangle integrates to its pro
                         as_double(pdf_light_hit(lights.view, light, {0, 0, 0}, hit));
         }
     }
-    CHECK(integral == doctest::Approx(1 - as_double(alias_pmf(lights.view.choice, 2))).epsilon(1e-4));
+    CHECK(integral == doctest::Approx(1 - as_double(light_pmf(lights.view, 2))).epsilon(1e-4));
 }
 
 TEST_CASE("lights: a hit finds its light by instance and primitive; unlit and dark instances have none") {
@@ -449,7 +458,7 @@ TEST_CASE("lights: what cannot be lit is no sample, never a value that is not fi
     LightSample sample;
     Scene empty;
     const Lights none(empty);
-    CHECK_FALSE(sample_light(none.view, {0, 0, 0}, 0x80000000u, {0.5f, 0.5f}, sample));
+    CHECK_FALSE(sample_light(none.view, {0, 0, 0}, {0x80000000u, 0x80000000u}, sample));
     CHECK(pdf_environment(none.view, {0, 1, 0}) == 0);
 
     Scene scene;
@@ -460,14 +469,13 @@ TEST_CASE("lights: what cannot be lit is no sample, never a value that is not fi
     add_emitter(scene, mesh, {1, 1, 1}, {});
     scene.lights = {make_light(LightKind::Point, {0, 1, 0}, {})};
     const Lights lights(scene);
-    CHECK(alias_pmf(lights.view.choice, 2) == 0);
+    CHECK(light_pmf(lights.view, 2) == 0);
     Random random(7);
     for (int i = 0; i < 20'000; ++i) {
         // In the plane of the square, on it, at the point light, and next to them.
         const float tiny = i % 2 == 0 ? 0.0f : 1e-38f;
         const Vec3 from = i % 3 == 0 ? Vec3{0, 1 + tiny, 0} : Vec3{3 * random.unit(), tiny, random.unit() - 0.5f};
-        const uint32_t choice = random.bits();
-        if (!sample_light(lights.view, from, choice, random.pair(), sample)) continue;
+        if (!sample_light(lights.view, from, random_bits(random), sample)) continue;
         CHECK(sample.primitive != 2);
         CHECK(is_finite(sample.wi));
         CHECK(is_finite(sample.radiance));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -16,7 +17,7 @@ using namespace pertev;
 namespace {
 
 constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
-constexpr int kTests = 60; // more than this file makes
+constexpr int kTests = 90; // more than this file makes
 constexpr uint32_t kPairs = 1u << 20;
 
 /// Are the points (first, second) uniform in the square? 32 x 32 boxes.
@@ -36,17 +37,26 @@ void check_uniform(const std::function<Vec2(uint32_t)>& pair, const char* what) 
 TEST_CASE("samples of different pixels, dimensions and seeds are independent") {
     for (const SamplerKind kind : kKinds) {
         for (const uint32_t sample : {0u, 1u, 77u}) {
-            const auto one = [&](uint32_t pixel, uint32_t dimension, uint32_t seed) {
-                return sample_1d(kind, {pixel, sample, seed}, dimension);
+            const auto one = [&](uint32_t pixel, uint32_t group, uint32_t seed) {
+                return sample_1d(kind, {pixel, sample, seed}, group);
             };
             check_uniform([&](uint32_t i) { return sample_2d(kind, {i, sample, 0}, 5); }, "one pair, over pixels");
             check_uniform([&](uint32_t i) { return sample_2d(kind, {7, sample, i}, 5); }, "one pair, over seeds");
-            check_uniform([&](uint32_t i) { return sample_2d(kind, {7, sample, 0}, i); }, "one pair, over dimensions");
+            check_uniform([&](uint32_t i) { return sample_2d(kind, {7, sample, 0}, i); }, "one pair, over groups");
+            check_uniform([&](uint32_t i) { return sample_2d(kind, {i, sample, 0}, 5, Pair::Last); }, "the last pair");
+            for (const auto& [a, b] : {std::pair{0u, 2u}, {0u, 3u}, {1u, 2u}, {1u, 3u}}) {
+                check_uniform(
+                    [&](uint32_t i) {
+                        const SampleKey key = {i, sample, 0};
+                        return Vec2{sample_1d(kind, key, 5, a), sample_1d(kind, key, 5, b)};
+                    },
+                    "numbers of different pairs");
+            }
             check_uniform([&](uint32_t i) { return Vec2{one(2 * i, 0, 0), one(2 * i + 1, 0, 0)}; }, "next pixel");
-            check_uniform([&](uint32_t i) { return Vec2{one(i, 2, 0), one(i, 3, 0)}; }, "next dimension");
+            check_uniform([&](uint32_t i) { return Vec2{one(i, 2, 0), one(i, 3, 0)}; }, "next group");
             check_uniform([&](uint32_t i) { return Vec2{one(i, 2, 8), one(i, 2, 9)}; }, "next seed");
             check_uniform([&](uint32_t i) { return Vec2{one(i, 1, 0), one(i + 1920, 1, 0)}; }, "next row");
-            check_uniform([&](uint32_t i) { return Vec2{one(i, 4, 5), one(i, 5, 4)}; }, "dimension and seed exchanged");
+            check_uniform([&](uint32_t i) { return Vec2{one(i, 4, 5), one(i, 5, 4)}; }, "group and seed exchanged");
         }
     }
 }
@@ -76,6 +86,24 @@ TEST_CASE("successive samples of white noise are independent") {
     const auto one = [](uint32_t sample) { return sample_1d(SamplerKind::Independent, {3, sample, 0}, 6); };
     check_uniform([&](uint32_t i) { return Vec2{one(2 * i), one(2 * i + 1)}; }, "next sample");
     check_uniform([&](uint32_t i) { return Vec2{one(i), one(i + kPairs)}; }, "sample 2^20 later");
+}
+
+TEST_CASE("over a smooth product of two pairs a group has a thirtieth of the variance of white noise") {
+    // The mean of x y z w over 64 samples, as a share of itself.
+    double error[2] = {};
+    for (const SamplerKind kind : kKinds) {
+        for (uint32_t pixel = 0; pixel < 2048; pixel++) {
+            double mean = 0;
+            for (uint32_t i = 0; i < 64; i++) {
+                const Vec2 a = sample_2d(kind, {pixel, i, 0}, 3), b = sample_2d(kind, {pixel, i, 0}, 3, Pair::Last);
+                mean += static_cast<double>(a.x) * static_cast<double>(a.y) * static_cast<double>(b.x) *
+                        static_cast<double>(b.y) / 64;
+            }
+            error[static_cast<size_t>(kind)] += (16 * mean - 1) * (16 * mean - 1) / 2048;
+        }
+    }
+    MESSAGE("relative errors: ", std::sqrt(error[0]), ", white noise ", std::sqrt(error[1]));
+    CHECK(std::sqrt(error[0]) < std::sqrt(error[1]) / 5); // two pairs of their own: half
 }
 
 TEST_CASE("a stratified sequence integrates better than white noise") {

@@ -31,7 +31,8 @@ struct DrawSamples {
     HD void operator()(uint32_t i) const {
         const SampleKey key = {i % 4099, i / 4099, i % 7};
         const Vec2 u = sample_2d(kind, key, i % 61);
-        out[i] = fold(fold(fold(1, u.x), u.y), sample_1d(kind, key, i % 61 + 1));
+        const Vec2 v = sample_2d(kind, key, i % 61, Pair::Last);
+        out[i] = fold(fold(fold(fold(fold(1, u.x), u.y), v.x), v.y), sample_1d(kind, key, i % 61 + 1, i % 4));
     }
 };
 
@@ -63,7 +64,7 @@ struct DrawLights {
         const Hash4 h = hash_words(i, 11, 13, 17);
         const Vec3 from = extent * random_direction(i, 4);
         LightSample sample;
-        if (!sample_light(lights, from, h.x, {unit_interval(h.y), unit_interval(h.z)}, sample)) {
+        if (!sample_light(lights, from, {h.x, h.y}, sample)) {
             out[i] = 0;
             return;
         }

@@ -7,156 +7,146 @@
 #include <random>
 #include <vector>
 
-#include "math/sampler.h"
-#include "shading/alias_table.h"
+#include "shading/ordered_table.h"
 
 using namespace pertev;
 
 namespace {
 
-/// How many of all numbers draw each index, by the thresholds.
-std::vector<uint64_t> drawn_numbers(std::span<const AliasEntry> entries) {
-    const uint64_t slot = (uint64_t(1) << 32) / entries.size();
-    std::vector<uint64_t> drawn(entries.size());
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        REQUIRE(entries[i].threshold <= slot);
-        REQUIRE(entries[i].alias < entries.size());
-        drawn[i] += entries[i].threshold;
-        drawn[entries[i].alias] += slot - entries[i].threshold;
-    }
-    return drawn;
-}
+constexpr double kNumbers = 0x1p31;
 
 /// Weights over many orders of magnitude, every third one zero.
-std::vector<float> random_weights(std::size_t count, uint32_t seed) {
+std::vector<double> random_weights(std::size_t count, uint32_t seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<float> exponent(-20, 10);
-    std::vector<float> weights(count);
-    for (std::size_t i = 0; i < count; ++i) weights[i] = i % 3 == 1 ? 0.0f : std::exp2(exponent(random));
+    std::uniform_real_distribution<double> exponent(-20, 10);
+    std::vector<double> weights(count);
+    for (std::size_t i = 0; i < count; ++i) weights[i] = i % 3 == 1 ? 0.0 : std::exp2(exponent(random));
     return weights;
 }
 
-double sum_of(std::span<const float> weights) {
-    double sum = 0;
-    for (const float weight : weights) sum += static_cast<double>(weight);
-    return sum;
+/// The same by looking at every index.
+uint32_t owner_of(const OrderedTable& table, uint32_t number) {
+    uint32_t owner = 0;
+    for (std::size_t i = 0; i + 1 < table.starts.size(); ++i) {
+        if (table.starts[i] <= number && number < table.starts[i + 1]) owner = static_cast<uint32_t>(i);
+    }
+    return owner;
 }
-
-std::vector<AliasEntry> build(std::span<const float> weights, AliasNumbers numbers) {
-    std::vector<AliasEntry> entries(std::size_t(1) << alias_slot_bits(weights.size()));
-    build_alias_entries(weights, numbers, entries);
-    return entries;
-}
-
-constexpr AliasNumbers kBothNumbers[] = {AliasNumbers::Bits32, AliasNumbers::Floats};
 
 } // namespace
 
-TEST_CASE("alias table: what is drawn has just the probability that is stored, which is the weight's") {
-    for (const AliasNumbers numbers : kBothNumbers) {
-        for (const std::size_t count : {1u, 2u, 3u, 7u, 64u, 1000u, 4096u, 100'000u}) {
-            const std::vector<float> weights = random_weights(count, static_cast<uint32_t>(count));
-            const std::vector<AliasEntry> entries = build(weights, numbers);
-            const std::vector<uint64_t> drawn = drawn_numbers(entries);
-            const double total = sum_of(weights), least = std::ldexp(1.0, -static_cast<int>(numbers));
-            double worst = 0;
-            uint64_t wrong = 0, not_floats = 0;
-            for (std::size_t i = 0; i < entries.size(); ++i) {
-                const double weight = i < count ? static_cast<double>(weights[i]) : 0.0;
-                if (entries[i].pmf != static_cast<float>(std::ldexp(static_cast<double>(drawn[i]), -32))) ++wrong;
-                if ((weight > 0) != (drawn[i] > 0)) ++wrong;
-                if (numbers == AliasNumbers::Floats && entries[i].threshold % 512 != 0) ++not_floats;
-                // One number each, the others by weight.
-                const double by_weight = weight / total * (1 - least * static_cast<double>(count));
-                worst = std::max(worst, std::abs(static_cast<double>(entries[i].pmf) - by_weight) - 1e-7 * by_weight);
-            }
-            CAPTURE(count);
-            CAPTURE(static_cast<int>(numbers));
-            CHECK(wrong == 0);
-            CHECK(not_floats == 0);
-            CHECK(worst <= (count > 1 ? 2 * least + least * static_cast<double>(count) : least));
+TEST_CASE("ordered table: every index owns as many numbers as its weight asks for, at least one, and no weight none") {
+    for (const std::size_t count : {1u, 2u, 3u, 7u, 64u, 1000u, 4096u, 100'000u}) {
+        const std::vector<double> weights = random_weights(count, static_cast<uint32_t>(count));
+        const OrderedTable table = build_ordered_table(weights);
+        REQUIRE(table.starts.size() == count + 1);
+        CHECK(table.starts.front() == 0);
+        CHECK(table.starts.back() == 1u << 31);
+        double total = 0, positive = 0, worst = 0;
+        for (const double weight : weights) total += weight, positive += weight > 0 ? 1 : 0;
+        uint64_t wrong = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double owned = table.starts[i + 1] - table.starts[i]; // unsigned: a step back would be huge
+            if ((weights[i] > 0) != (owned > 0)) ++wrong;
+            worst = std::max(worst, std::abs(owned - weights[i] / total * kNumbers) -
+                                        positive * (weights[i] / total)); // what the ones for each take from all
+            if (ordered_pmf(view_of(table), static_cast<uint32_t>(i)) != static_cast<float>(owned / kNumbers)) ++wrong;
         }
+        CAPTURE(count);
+        CHECK(wrong == 0);
+        CHECK(worst <= 2); // its own one, and the rounding of its ends
     }
 }
 
-TEST_CASE("alias table: all 2^23 floats of the sampler draw each index as often as its probability says") {
-    // Lights of four decades of power: with 4096 slots, 11 bits of a float are left for the threshold.
-    for (const std::size_t count : {5u, 700u, 4096u}) {
-        std::vector<float> weights(count);
-        for (std::size_t i = 0; i < count; ++i) weights[i] = i % 2 == 0 ? 1.0f : 1e-4f;
-        const std::vector<AliasEntry> entries = build(weights, AliasNumbers::Floats);
-        const AliasTableView table = view_of(entries);
-        std::vector<uint32_t> drawn(count);
-        for (uint32_t k = 0; k < 1u << 23; ++k) ++drawn[sample_alias(table, alias_number(unit_interval(k << 9))).index];
+TEST_CASE("ordered table: a number draws the index that owns it, the first and the last number of each too") {
+    for (const std::size_t count : {1u, 2u, 5u, 33u, 700u}) {
+        const OrderedTable table = build_ordered_table(random_weights(count, 5));
+        const OrderedTableView view = view_of(table);
+        std::vector<uint32_t> numbers = {0, 0x7fffffffu};
+        for (const uint32_t start : table.starts) {
+            if (start < 1u << 31) numbers.push_back(start);
+            if (start > 0) numbers.push_back(start - 1);
+        }
+        for (uint32_t k = 0; k < 1000; ++k) numbers.push_back(hash_word(k) >> 1);
         uint64_t wrong = 0;
-        for (uint32_t i = 0; i < count; ++i) {
-            if (alias_pmf(table, i) * 0x1p23f != static_cast<float>(drawn[i]) || drawn[i] == 0) ++wrong;
+        for (const uint32_t number : numbers) {
+            const OrderedDraw draw = draw_ordered(view, number << 1 | (number & 1), 0);
+            if (draw.index != owner_of(table, number)) ++wrong;
+            if (draw.owned != table.starts[draw.index + 1] - table.starts[draw.index]) ++wrong;
+            if (draw.rest != number - table.starts[draw.index] || draw.rest >= draw.owned) ++wrong;
         }
         CAPTURE(count);
         CHECK(wrong == 0);
     }
 }
 
-TEST_CASE("alias table: equal weights give equal probabilities without a detour") {
-    const std::vector<AliasEntry> entries = build_alias_table(std::vector<float>(1024, 0.1f));
-    for (const AliasEntry& entry : entries) {
-        CHECK(entry.threshold == 1u << 22);
-        CHECK(entry.pmf == 0x1p-10f);
+TEST_CASE("ordered table: the order of numbers is kept, through the index and the rest") {
+    const OrderedTable table = build_ordered_table(random_weights(100, 3));
+    const OrderedTableView view = view_of(table);
+    double last = -1;
+    uint64_t backwards = 0;
+    for (uint32_t k = 0; k < 1u << 16; ++k) {
+        const OrderedDraw draw = draw_ordered(view, k << 16, 1u << 31);
+        const double place = draw.index + static_cast<double>(rest_of(draw));
+        if (place < last) ++backwards;
+        last = place;
     }
+    CHECK(backwards == 0);
 }
 
-TEST_CASE("alias table: an even grid of numbers draws each index by its weight and leaves even numbers behind") {
-    const std::vector<float> weights = {1, 0, 5, 2, 0.5f, 1.5f};
-    const std::vector<AliasEntry> entries = build_alias_table(weights);
-    const AliasTableView table = view_of(entries);
-    constexpr uint32_t draws = 1 << 20;
-    std::vector<double> count(weights.size()), moment(weights.size()), square_moment(weights.size());
-    for (uint32_t k = 0; k < draws; ++k) {
-        const AliasSample sample = sample_alias(table, (k << 12) + (1 << 11));
-        REQUIRE(sample.index < weights.size());
-        CHECK(sample.pmf == alias_pmf(table, sample.index));
-        REQUIRE(sample.u >= 0);
-        REQUIRE(sample.u < 1);
-        count[sample.index] += 1;
-        moment[sample.index] += static_cast<double>(sample.u);
-        square_moment[sample.index] += static_cast<double>(sample.u) * static_cast<double>(sample.u);
-    }
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        CHECK(count[i] / draws == doctest::Approx(static_cast<double>(weights[i]) / 10.0).epsilon(1e-4));
-        if (count[i] == 0) continue;
-        CHECK(moment[i] / count[i] == doctest::Approx(0.5).epsilon(1e-3));
-        CHECK(square_moment[i] / count[i] == doctest::Approx(1.0 / 3).epsilon(1e-3));
-    }
-}
-
-TEST_CASE("alias table: the least and the largest random number, and 1 itself, stay in range") {
-    for (const AliasNumbers numbers : kBothNumbers) {
-        for (const std::size_t count : {1u, 3u, 1000u, 4095u, 1u << 20}) {
-            const std::vector<AliasEntry> entries = build(std::vector<float>(count, 1.0f), numbers);
-            for (const uint32_t number :
-                 {0u, 0xffffffffu, alias_number(0), alias_number(0x1.fffffep-1f), alias_number(1)}) {
-                const AliasSample sample = sample_alias(view_of(entries), number);
-                CHECK(sample.index < count);
-                CHECK(sample.pmf > 0);
-                CHECK(sample.u >= 0);
-                CHECK(sample.u < 1);
+TEST_CASE("ordered table: what is left of a number is even again, exactly so where a table is drawn by it") {
+    // Every (rest, more) of an index, with more in steps: each of the drawn numbers' top bits must come equally often.
+    for (const uint32_t owned : {1u, 3u, 5u, 96u, 1000u}) {
+        constexpr uint32_t cells = 64, steps = 1u << 12;
+        std::vector<uint64_t> drawn(cells);
+        double sum = 0;
+        for (uint32_t rest = 0; rest < owned; ++rest) {
+            for (uint32_t k = 0; k < steps; ++k) {
+                const OrderedDraw draw = {0, owned, rest, k << 20 | 1u << 19};
+                ++drawn[number_of_rest(draw) >> 26];
+                const float u = rest_of(draw);
+                REQUIRE(u > 0);
+                REQUIRE(u < 1);
+                sum += static_cast<double>(u);
             }
+        }
+        CAPTURE(owned);
+        for (const uint64_t n : drawn) CHECK(std::abs(static_cast<double>(n) - owned * (steps / 64.0)) <= 1);
+        CHECK(sum / (static_cast<double>(owned) * steps) == doctest::Approx(0.5).epsilon(1e-4));
+    }
+    const OrderedDraw whole = {0, 1u << 31, 0x12345678u, 0x80000000u};
+    CHECK(number_of_rest(whole) == 0x2468acf1u);
+    CHECK(number_of_rest({0, (1u << 31) - 1, 0x7ffffffeu - 1, 0xffffffffu}) >= 0xfffffffdu);
+}
+
+TEST_CASE("ordered table: the bits behind a pair of numbers are a permutation of either one") {
+    constexpr uint32_t count = 1u << 18;
+    for (const uint32_t fixed : {0u, 1u, 0x9e3779b9u}) {
+        std::vector<uint32_t> by_x, by_y;
+        for (uint32_t k = 0; k < count; ++k) {
+            by_x.push_back(bits_behind({hash_word(k), fixed}));
+            by_y.push_back(bits_behind({fixed, hash_word(k)}));
+        }
+        for (std::vector<uint32_t>* bits : {&by_x, &by_y}) { // random words would have 8 pairs of equals
+            std::ranges::sort(*bits);
+            CHECK(std::ranges::adjacent_find(*bits) == bits->end());
         }
     }
 }
 
-TEST_CASE("alias table: weights that are no weights are never drawn, the least one is") {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const std::vector<float> weights = {nan, 1, -3, 1e-45f, kInfinity, 3};
-    const std::vector<AliasEntry> entries = build_alias_table(weights);
-    const std::vector<uint64_t> drawn = drawn_numbers(entries);
-    CHECK(static_cast<double>(entries[1].pmf) == doctest::Approx(0.25));
-    CHECK(static_cast<double>(entries[5].pmf) == doctest::Approx(0.75));
-    for (const std::size_t i : {0u, 2u, 4u, 6u, 7u}) CHECK(drawn[i] == 0);
-    CHECK(drawn[3] == 1);
+TEST_CASE("ordered table: weights that are no weights are never drawn, the least one is") {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+    const std::vector<double> weights = {nan, 1, -3, 1e-300, infinite, 3, 0};
+    const OrderedTable table = build_ordered_table(weights);
+    const OrderedTableView view = view_of(table);
+    CHECK(static_cast<double>(ordered_pmf(view, 1)) == doctest::Approx(0.25));
+    CHECK(static_cast<double>(ordered_pmf(view, 5)) == doctest::Approx(0.75));
+    for (const uint32_t i : {0u, 2u, 4u, 6u}) CHECK(ordered_pmf(view, i) == 0);
+    CHECK(table.starts[4] - table.starts[3] == 1);
+    CHECK(draw_ordered(view, table.starts[3] << 1, 0).index == 3);
 
-    for (const std::vector<float>& none : {std::vector<float>{}, {0, 0, 0}, std::vector<float>(9000), {nan, -1}}) {
-        CHECK(build_alias_table(none).empty());
-        CHECK(view_of(build_alias_table(none)).entries == nullptr);
+    for (const std::vector<double>& none : {std::vector<double>{}, {0, 0, 0}, std::vector<double>(9000), {nan, -1}}) {
+        CHECK(build_ordered_table(none).starts.empty());
+        CHECK(view_of(build_ordered_table(none)).starts == nullptr);
     }
 }

@@ -1,0 +1,143 @@
+// Samples of a pixel are spread evenly over lights, over the places on them and over the sky, and that must show: the
+// variance of a light's estimate with the low-discrepancy sampler against that with independent samples. A table that
+// scatters the order of the numbers leaves a factor of 2 or 3 where an ordered one has ten and more.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+#include "integrators/path/path_state.h"
+#include "shading/build_light_set.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kPixels = 2048, kSamples = 64;
+
+/// Variance, relative to the squared mean, of a pixel's mean of `draw` over kSamples samples.
+double relative_variance_of(const std::function<double(SampleKey)>& draw) {
+    double sum = 0, squares = 0;
+    for (uint32_t pixel = 0; pixel < kPixels; ++pixel) {
+        double mean = 0;
+        for (uint32_t i = 0; i < kSamples; ++i) mean += draw({pixel, i, 1}) / kSamples;
+        sum += mean / kPixels;
+        squares += mean * mean / kPixels;
+    }
+    return squares / (sum * sum) - 1;
+}
+
+/// How many times less variance the estimate of the irradiance at the origin, facing +y, has with strata.
+double gain(const LightSetView& view) {
+    const auto variance = [&](SamplerKind kind) {
+        return relative_variance_of([&](SampleKey key) {
+            LightSample sample;
+            if (!sample_light(view, {0, 0, 0}, sample_bits(kind, key, kGroupCamera, Pair::Last), sample)) return 0.0;
+            return static_cast<double>(max(sample.wi.y, 0.0f)) * static_cast<double>(sample.radiance.g / sample.pdf);
+        });
+    };
+    return variance(SamplerKind::Independent) / variance(SamplerKind::Sobol);
+}
+
+/// A light set with all that its view points to.
+struct Lights {
+    LightSetData data;
+    LightSetView view;
+
+    explicit Lights(const Scene& scene) {
+        Messages messages;
+        data = build_light_set(scene, nullptr, messages); // no textures, so no table of sRGB
+        view = view_of(data, nullptr, nullptr);
+    }
+};
+
+/// A square lamp of side `side` about `centre` that faces down, cut into 2 n^2 triangles.
+void add_lamp(Scene& scene, Vec3 centre, float side, uint32_t n, float radiance) {
+    Mesh mesh;
+    for (uint32_t i = 0; i <= n; ++i) {
+        for (uint32_t j = 0; j <= n; ++j) {
+            const float x = static_cast<float>(i) / static_cast<float>(n) - 0.5f;
+            const float z = static_cast<float>(j) / static_cast<float>(n) - 0.5f;
+            mesh.positions.push_back(centre + Vec3{side * x, 0, side * z});
+            if (i == n || j == n) continue;
+            const uint32_t a = i * (n + 1) + j, b = a + n + 1;
+            mesh.indices.insert(mesh.indices.end(), {a, b, a + 1, b, b + 1, a + 1});
+        }
+    }
+    Material material;
+    material.emission = {radiance, radiance, radiance};
+    Instance instance;
+    instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+    instance.material = static_cast<uint32_t>(scene.materials.size());
+    scene.meshes.push_back(mesh);
+    scene.materials.push_back(material);
+    scene.instances.push_back(instance);
+}
+
+/// A smooth sky, brightest towards (1, 1, 0).
+Environment make_sky(uint32_t height) {
+    Environment sky;
+    sky.image = {2 * height, height, 3, std::vector<float>(std::size_t(6) * height * height)};
+    for (uint32_t y = 0; y < height; ++y) {
+        for (uint32_t x = 0; x < 2 * height; ++x) {
+            const double theta = 3.141592653589793 * (y + 0.5) / height, phi = 3.141592653589793 * (x + 0.5) / height;
+            const double towards = -std::sin(theta) * std::sin(phi) + std::cos(theta);
+            for (int c = 0; c < 3; ++c) sky.image.at(x, y)[c] = static_cast<float>(std::exp(3 * towards));
+        }
+    }
+    return sky;
+}
+
+} // namespace
+
+TEST_CASE("strata: a square lamp of few or many triangles") {
+    for (const uint32_t n : {1u, 8u}) {
+        Scene scene;
+        add_lamp(scene, {0.3f, 1, 0}, 1.5f, n, 1);
+        const double times = gain(Lights(scene).view);
+        MESSAGE(2 * n * n, " triangles: ", times, " times less variance");
+        CHECK(times > (n == 1 ? 60 : 20));
+    }
+}
+
+TEST_CASE("strata: a row of lamps of different power") {
+    Scene scene;
+    for (int i = 0; i < 16; ++i) {
+        const float x = static_cast<float>(i) - 7.5f;
+        add_lamp(scene, {0.5f * x, 2, 0.2f * x}, 0.2f, 1, 1 + 0.1f * x);
+    }
+    const double times = gain(Lights(scene).view);
+    MESSAGE(times, " times less variance");
+    CHECK(times > 15);
+}
+
+TEST_CASE("strata: a sky, alone and beside a lamp") {
+    Scene scene;
+    scene.environment = make_sky(64);
+    const double alone = gain(Lights(scene).view);
+    add_lamp(scene, {0, 3, 0}, 1, 1, 30);
+    const double beside = gain(Lights(scene).view);
+    MESSAGE(alone, " times less variance, ", beside, " beside a lamp");
+    CHECK(alone > 10);
+    CHECK(beside > 5);
+}
+
+TEST_CASE("strata: where a path goes and the light that it asks there belong together, from the pixel on") {
+    for (const uint32_t depth : {0u, 1u, 4u}) {
+        const auto variance = [&](SamplerKind kind) {
+            return relative_variance_of([&](SampleKey key) {
+                PathState before, after;
+                before.depth = depth - 1;
+                after.depth = depth;
+                const Vec2 way = sample_2d(kind, key, depth == 0 ? kGroupCamera : vertex_group(before, kGroupScatter));
+                const Vec2 light = sample_2d(kind, key, light_group(after), Pair::Last);
+                return static_cast<double>(way.x * way.y) * static_cast<double>(light.x * light.y);
+            });
+        };
+        const double times = variance(SamplerKind::Independent) / variance(SamplerKind::Sobol);
+        MESSAGE("depth ", depth, ": ", times, " times less variance");
+        CHECK(times > 20); // pairs of two groups: 4
+    }
+}
