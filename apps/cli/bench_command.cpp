@@ -77,6 +77,7 @@ RenderSettings job_settings(const BenchFlags& flags) {
     settings.samples = flags.samples > 0 ? flags.samples : 256;
     settings.filter = PixelFilter::Box;
     settings.path.max_depth = flags.job == "S5" ? 5 : 8;
+    settings.path.roulette = Roulette::Throughput;
     settings.path.roulette_depth = 2;
     settings.path.seed = flags.seed;
     return settings;

@@ -6,6 +6,7 @@
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "image/srgb_table.h"
+#include "render/balance_lights.h"
 #include "render/place_meshes.h"
 #include "shading/bsdf.h"
 
@@ -57,6 +58,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.build_seconds = watch.seconds();
 
     prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages);
+    balance_lights(prepared, srgb_decode_table().data());
     return prepared;
 }
 

@@ -99,6 +99,7 @@ void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
     };
     keep_table(lights.choice, view.choice, "light table");
     view.emitters = keep(queue, std::span(lights.emitters), "emissive instances");
+    view.triangle_order = keep(queue, std::span(lights.triangle_order), "order of emissive triangles");
     view.triangle_starts = keep(queue, std::span(lights.triangle_starts), "tables of emissive triangles");
     view.triangle_guides = keep(queue, std::span(lights.triangle_guides), "guides of emissive triangles");
     view.triangles = keep(queue, std::span(lights.triangles), "emissive triangles");
@@ -127,8 +128,8 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
         bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
     bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
     const LightSetData& lights = prepared.lights;
-    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.triangle_starts) +
-             bytes_of(lights.triangle_guides) + bytes_of(lights.environment.pixels);
+    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.triangle_order) +
+             bytes_of(lights.triangle_starts) + bytes_of(lights.triangle_guides) + bytes_of(lights.environment.pixels);
     for (const OrderedTable* table : {&lights.choice, &lights.environment.rows, &lights.environment.columns}) {
         bytes += bytes_of(table->starts) + bytes_of(table->guide);
     }

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
+#include "math/hilbert_curve.h"
 #include "shading/brightness_pyramid.h"
 
 namespace pertev {
@@ -104,27 +106,64 @@ void add_triangles(const Scene& scene, LightSetData& data) {
     }
 }
 
-/// Makes near and far sources share the draws by power, but leaves neither under a quarter.
-void balance(std::vector<double>& powers, const std::vector<bool>& is_far) {
-    double near_sum = 0, far_sum = 0;
-    for (std::size_t i = 0; i < powers.size(); ++i) (is_far[i] ? far_sum : near_sum) += powers[i];
-    if (!(near_sum > 0) || !(far_sum > 0)) return;
-    const double share = std::clamp(far_sum / (near_sum + far_sum), 0.25, 0.75);
-    const double factor = share / (1 - share) * (near_sum / far_sum);
-    for (std::size_t i = 0; i < powers.size(); ++i) {
-        if (is_far[i]) powers[i] *= factor;
-    }
+Vec3 middle_of(const EmissiveTriangle& triangle) { return triangle.a + (triangle.ab + triangle.ac) / 3.0f; }
+
+/// Numbers [0, n) along Hilbert's curve through their points, so that an even split of a table splits space.
+std::vector<uint32_t> order_in_space(std::span<const Vec3> points) {
+    Bounds3 bounds;
+    for (const Vec3 point : points) bounds.extend(point);
+    std::vector<uint64_t> keys(points.size());
+    parallel_for(points.size(), 4096, [&](uint64_t i) {
+        keys[i] = uint64_t(hilbert_position(points[i], bounds)) << 32 | i; // the rank decides between equals
+    });
+    std::ranges::sort(keys);
+    std::vector<uint32_t> order(points.size());
+    std::ranges::transform(keys, order.begin(), [](uint64_t key) { return static_cast<uint32_t>(key); });
+    return order;
 }
 
-/// Tables of the emitters, and their powers.
+/// Puts emitters and the triangles in their tables into the order of space.
+void order_emitters(LightSetData& data) {
+    data.triangle_order.resize(data.triangles.size());
+    std::vector<Vec3> middles;
+    for (const Emitter& emitter : data.emitters) {
+        const auto triangles =
+            std::span<const EmissiveTriangle>(data.triangles).subspan(emitter.first_triangle, emitter.triangle_count);
+        std::vector<Vec3> points(triangles.size());
+        std::ranges::transform(triangles, points.begin(), middle_of);
+        std::ranges::copy(order_in_space(points), data.triangle_order.begin() + emitter.first_triangle);
+        Bounds3 bounds;
+        for (const Vec3 point : points) bounds.extend(point);
+        middles.push_back(bounds.is_empty() ? Vec3{} : bounds.centre());
+    }
+    std::vector<Emitter> ordered;
+    for (const uint32_t i : order_in_space(middles)) ordered.push_back(data.emitters[i]);
+    data.emitters = std::move(ordered);
+}
+
+/// Puts punctual lights into the order of space, those without a place last.
+void order_punctual_lights(LightSetData& data) {
+    const auto first_far = std::ranges::stable_partition(data.punctual, [](const PunctualLight& light) {
+        return light.kind != LightKind::Directional;
+    });
+    std::vector<Vec3> places;
+    for (auto light = data.punctual.begin(); light != first_far.begin(); ++light) places.push_back(light->position);
+    std::vector<PunctualLight> ordered;
+    for (const uint32_t i : order_in_space(places)) ordered.push_back(data.punctual[i]);
+    std::ranges::copy(ordered, data.punctual.begin());
+}
+
+/// Tables of the emitters, in their order in space, and their powers.
 std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& pyramids) {
-    std::size_t guides = 0;
+    std::size_t starts = 0, guides = 0;
     for (Emitter& emitter : data.emitters) {
+        emitter.first_start = static_cast<uint32_t>(starts);
+        starts += emitter.triangle_count + 1;
         emitter.first_guide = static_cast<uint32_t>(guides);
         emitter.guide_bits = guide_bits_for(emitter.triangle_count);
         guides += (std::size_t(1) << emitter.guide_bits) + 1;
     }
-    data.triangle_starts.resize(data.triangles.size() + data.emitters.size());
+    data.triangle_starts.resize(starts);
     data.triangle_guides.resize(guides);
 
     std::vector<double> triangle_powers(data.triangles.size()), powers(data.emitters.size());
@@ -133,9 +172,12 @@ std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& py
     });
     parallel_for(data.emitters.size(), 16, [&](uint64_t i) {
         const Emitter& emitter = data.emitters[i];
+        std::vector<double> in_order(emitter.triangle_count);
+        for (uint32_t k = 0; k < emitter.triangle_count; ++k) {
+            in_order[k] = triangle_powers[emitter.first_triangle + data.triangle_order[emitter.first_triangle + k]];
+        }
         powers[i] = build_ordered_table(
-            std::span<const double>(triangle_powers).subspan(emitter.first_triangle, emitter.triangle_count),
-            std::span(data.triangle_starts).subspan(emitter.first_triangle + i, emitter.triangle_count + 1),
+            in_order, std::span(data.triangle_starts).subspan(emitter.first_start, emitter.triangle_count + 1),
             std::span(data.triangle_guides)
                 .subspan(emitter.first_guide, (std::size_t(1) << emitter.guide_bits) + 1));
     });
@@ -148,10 +190,11 @@ void store_probabilities(LightSetData& data) {
     for (std::size_t i = 0; i < data.emitters.size(); ++i) {
         const Emitter& emitter = data.emitters[i];
         const double of_source = data.choice.starts[i + 1] - data.choice.starts[i];
-        const uint32_t* starts = data.triangle_starts.data() + emitter.first_triangle + i;
+        const uint32_t* starts = data.triangle_starts.data() + emitter.first_start;
         for (uint32_t k = 0; k < emitter.triangle_count; ++k) {
             const double of_triangle = starts[k + 1] - starts[k];
-            data.triangles[emitter.first_triangle + k].pmf = static_cast<float>(of_source * of_triangle * 0x1p-62);
+            data.triangles[emitter.first_triangle + data.triangle_order[emitter.first_triangle + k]].pmf =
+                static_cast<float>(of_source * of_triangle * 0x1p-62);
         }
     }
 }
@@ -176,21 +219,42 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     const std::vector<TextureImageView> images = views_of_images(scene);
     const Pyramids pyramids = build_pyramids(data, images, linear_from_srgb);
 
-    std::vector<double> powers = build_triangle_tables(data, pyramids);
-    std::vector<bool> is_far(powers.size(), false);
+    order_emitters(data);
+    order_punctual_lights(data);
+    data.source_powers = build_triangle_tables(data, pyramids);
+    const auto add_source = [&](double power, bool is_far) {
+        data.source_powers.push_back(power);
+        if (!is_far) data.near_count = static_cast<uint32_t>(data.source_powers.size());
+    };
+    data.near_count = static_cast<uint32_t>(data.source_powers.size());
     for (const PunctualLight& light : data.punctual) {
-        powers.push_back(punctual_power(light, radius));
-        is_far.push_back(light.kind == LightKind::Directional);
+        add_source(punctual_power(light, radius), light.kind == LightKind::Directional);
     }
     if (data.has_environment) {
-        powers.push_back(4 * kPiDouble * kPiDouble * radius * radius *
-                         mean_of_channels(data.environment.mean_radiance));
-        is_far.push_back(true);
+        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment.mean_radiance), true);
     }
-    balance(powers, is_far);
-    data.choice = build_ordered_table(powers);
-    store_probabilities(data);
+    share_draws(data, 0.5);
     return data;
+}
+
+bool LightSetData::has_both_kinds() const {
+    const auto is_light = [](double power) { return power > 0; };
+    const auto first_far = source_powers.begin() + near_count;
+    return std::any_of(source_powers.begin(), first_far, is_light) &&
+           std::any_of(first_far, source_powers.end(), is_light);
+}
+
+void share_draws(LightSetData& data, double far_share) {
+    std::vector<double> weights = data.source_powers;
+    if (data.has_both_kinds()) {
+        const auto first_far = weights.begin() + data.near_count;
+        const double near_sum = std::accumulate(weights.begin(), first_far, 0.0);
+        const double far_sum = std::accumulate(first_far, weights.end(), 0.0);
+        for (auto weight = weights.begin(); weight != first_far; ++weight) *weight *= (1 - far_share) / near_sum;
+        for (auto weight = first_far; weight != weights.end(); ++weight) *weight *= far_share / far_sum;
+    }
+    data.choice = build_ordered_table(weights);
+    store_probabilities(data);
 }
 
 uint64_t count_emissive_triangles(const Scene& scene) {
@@ -206,6 +270,7 @@ LightSetView view_of(const LightSetData& data, const TextureImageView* images, c
     view.choice = view_of(data.choice);
     view.emitters = data.emitters.data();
     view.triangles = data.triangles.data();
+    view.triangle_order = data.triangle_order.data();
     view.triangle_starts = data.triangle_starts.data();
     view.triangle_guides = data.triangle_guides.data();
     view.punctual = data.punctual.data();

@@ -3,7 +3,7 @@
 // Gathers a scene's lights and the table that draws them by power. Powers, in W: a triangle 2 pi area mean emission;
 // a point light 4 pi intensity; a spot what its cone lets through; a directional light pi R^2 irradiance and the
 // environment 4 pi^2 R^2 mean radiance, R the radius of the scene. R says little about what matters inside a house, so
-// where there are both near and far lights, each kind together gets at least a quarter of the draws.
+// where there are both near and far lights, how they share the draws is said apart (render/balance_lights.h).
 
 #include <cstdint>
 #include <vector>
@@ -18,13 +18,17 @@ struct LightSetData {
     OrderedTable choice; // over sources; empty: nothing gives light
     std::vector<Emitter> emitters;
     std::vector<EmissiveTriangle> triangles;
-    std::vector<uint32_t> triangle_starts, triangle_guides;
+    std::vector<uint32_t> triangle_order, triangle_starts, triangle_guides;
     std::vector<PunctualLight> punctual;
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
     EnvironmentData environment; // meaningful where has_environment
     bool has_environment = false;
+    std::vector<double> source_powers; // W; emitters, point and spot lights, then the far ones
+    uint32_t near_count = 0;           // of the sources
 
+    /// Light from near and from far, some of each.
+    bool has_both_kinds() const;
     std::size_t count() const {
         return choice.starts.empty() ? 0 : triangles.size() + punctual.size() + (has_environment ? 1 : 0);
     }
@@ -32,6 +36,10 @@ struct LightSetData {
 
 /// `scene` has passed validate(). `linear_from_srgb` [256]. Throws Error(OverLimit) for more than kMaxLights.
 LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages);
+
+/// Makes the table that draws a source: by power within near and far ones, `far_share` (0, 1) of the draws for the far
+/// ones where there are both.
+void share_draws(LightSetData& data, double far_share);
 
 /// Triangles that give light, each placed one a light of its own.
 uint64_t count_emissive_triangles(const Scene& scene);

@@ -9,8 +9,10 @@
 // light, the environment) and y the instance's triangle, both by ordered tables; what remains of x and y draws the place
 // on the triangle. In the environment y draws the row and what remains of x the column.
 //
-// Order of sources: emissive instances, punctual lights, the environment, each in scene order; lights are numbered
-// alike, with an instance's triangles in order in its place. Both faces of a triangle emit; those of unlit materials are no lights.
+// Order of sources: emissive instances, punctual lights, the environment; instances, their triangles and punctual lights
+// lie along Hilbert's curve, so that even numbers draw what is evenly spread in space. A light's number is another
+// thing: emissive triangles by instance and primitive, then punctual lights in their order, then the environment. Both
+// faces of a triangle emit; those of unlit materials are no lights.
 
 #include <cstdint>
 
@@ -40,7 +42,7 @@ struct EmissiveTriangle {
 /// An emissive instance: its triangles and the table that draws one of them.
 struct Emitter {
     uint32_t first_triangle = 0, triangle_count = 0;
-    uint32_t first_guide = 0, guide_bits = 0; // of the table in LightSetView::triangle_guides
+    uint32_t first_start = 0, first_guide = 0, guide_bits = 0; // of the table in LightSetView::triangle_starts, _guides
 };
 
 /// scene/light.h's Light without its name.
@@ -61,7 +63,8 @@ struct LightSetView {
     OrderedTableView choice; // over all sources; no starts: there are none
     const Emitter* emitters = nullptr;
     const EmissiveTriangle* triangles = nullptr;
-    const uint32_t* triangle_starts = nullptr; // tables of the emitters, one after another: [triangles + emitters]
+    const uint32_t* triangle_order = nullptr;  // [triangles] per emitter: its primitives in the order of its table
+    const uint32_t* triangle_starts = nullptr; // tables of the emitters: [triangles + emitters]
     const uint32_t* triangle_guides = nullptr;
     const PunctualLight* punctual = nullptr;
     uint32_t emitter_count = 0, triangle_count = 0, punctual_count = 0;
@@ -75,8 +78,8 @@ struct LightSetView {
     HD bool has_environment() const { return environment_source != kNoLight; }
     HD OrderedTableView triangles_of(uint32_t source) const {
         const Emitter& emitter = emitters[source];
-        return {triangle_starts + emitter.first_triangle + source, triangle_guides + emitter.first_guide,
-                emitter.triangle_count, emitter.guide_bits};
+        return {triangle_starts + emitter.first_start, triangle_guides + emitter.first_guide, emitter.triangle_count,
+                emitter.guide_bits};
     }
 };
 
@@ -173,7 +176,8 @@ HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBit
     const OrderedDraw source = draw_ordered(view.choice, u.x, more);
     if (source.index < view.emitter_count) {
         const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
-        return sample_triangle_light(view, view.emitters[source.index].first_triangle + triangle.index, from_point,
+        const uint32_t first = view.emitters[source.index].first_triangle;
+        return sample_triangle_light(view, first + view.triangle_order[first + triangle.index], from_point,
                                      {rest_of(source), rest_of(triangle)}, sample);
     }
     const float pmf = ordered_pmf(source.owned);

@@ -93,6 +93,16 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     return true;
 }
 
+HD inline float survival_probability(Roulette roulette, float throughput) {
+    switch (roulette) {
+    case Roulette::Throughput:
+        return throughput;
+    case Roulette::FourthRoot:
+        break;
+    }
+    return sqrt(sqrt(throughput));
+}
+
 /// Draws where the path goes on. False when it ends here.
 HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo) {
     const SampleKey key = {path.pixel, path.sample, settings.seed};
@@ -113,7 +123,7 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing of it would count
     const uint32_t vertex = path.depth + 1;
     if (vertex >= settings.roulette_depth) {
-        const float survival = max_component(path.throughput);
+        const float survival = survival_probability(settings.roulette, max_component(path.throughput));
         if (survival < 1) {
             const float u_roulette =
                 sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberRoulette);

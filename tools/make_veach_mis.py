@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Writes Veach's four plates and three balls of light as OBJ and MTL, from Bitterli's Mitsuba 3 file of that scene:
+tools/make_veach_mis.py scene_mitsuba3.xml OUT.obj
+
+For measuring noise, not for comparing pictures: the balls are meshes, and the plates' Beckmann metals are GGX ones of the
+same roughness. Camera: --eye 28.2792,3.5,0 --target 0,3.5,0 --fov 20.11 (16:9), direct light alone.
+
+Source of the scene: Veach, Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995, figure 2.
+"""
+
+import math
+import pathlib
+import sys
+import xml.etree.ElementTree as ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "images"))
+from mitsuba_to_gltf import CUBE, RECTANGLE, matrix_of, transformed  # noqa: E402
+
+SPHERE_SIDES = 48  # around; half as many from pole to pole
+
+
+def sphere(centre, radius):
+    """Quads (triangles at the poles) of a sphere, counter-clockwise seen from outside."""
+    rows = SPHERE_SIDES // 2
+
+    def corner(i, j):
+        theta, phi = math.pi * i / rows, 2 * math.pi * j / SPHERE_SIDES
+        return tuple(c + radius * d for c, d in zip(centre, (
+            math.sin(theta) * math.cos(phi), math.cos(theta), -math.sin(theta) * math.sin(phi))))
+
+    for i in range(rows):
+        for j in range(SPHERE_SIDES):
+            quad = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
+            yield [p for k, p in enumerate(quad) if not (i == 0 and k == 3) and not (i == rows - 1 and k == 2)]
+
+
+def material_lines(bsdf):
+    inner = bsdf.find("bsdf")
+    values = {e.get("name"): e.get("value").replace(",", " ") for e in inner if e.get("value")}
+    if inner.get("type") == "diffuse":
+        return [f"Kd {values['reflectance']}"]
+    scale = [float(c) for c in values["specular_reflectance"].split()]
+    eta, k = ([float(c) for c in values[name].split()] for name in ("eta", "k"))
+    at_normal = [s * ((n - 1) ** 2 + m * m) / ((n + 1) ** 2 + m * m) for s, n, m in zip(scale, eta, k)]
+    return ["Kd " + " ".join(f"{c:.6f}" for c in at_normal), "Pm 1", f"Pr {math.sqrt(float(values['alpha'])):.6f}"]
+
+
+def main():
+    source, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    scene = ElementTree.parse(source).getroot()
+    mtl = []
+    for bsdf in scene.findall("bsdf"):
+        mtl += [f"newmtl {bsdf.get('id')}", *material_lines(bsdf)]
+    obj, count = [f"mtllib {out.with_suffix('.mtl').name}"], 0
+    for shape in scene.findall("shape"):
+        name = shape.find("ref").get("id")
+        if shape.get("type") == "sphere":
+            place = shape.find("point")
+            polygons = sphere([float(place.get(c)) for c in "xyz"], float(shape.find("float").get("value")))
+            name = shape.get("id")
+            mtl += [f"newmtl {name}", "Kd 0 0 0", "Ke " + shape.find("emitter/rgb").get("value").replace(",", " ")]
+        else:
+            quads = {"rectangle": RECTANGLE, "cube": CUBE}[shape.get("type")]
+            matrix = matrix_of(shape)
+            polygons = [[transformed(matrix, corner) for corner in quad] for quad in quads]
+        obj.append(f"usemtl {name}")
+        for polygon in polygons:
+            obj += ["v " + " ".join(f"{c:.9g}" for c in p) for p in polygon]
+            obj.append("f " + " ".join(str(count + 1 + i) for i in range(len(polygon))))
+            count += len(polygon)
+    out.write_text("\n".join(obj) + "\n")
+    out.with_suffix(".mtl").write_text("\n".join(mtl) + "\n")
+
+
+if __name__ == "__main__":
+    main()
