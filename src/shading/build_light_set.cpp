@@ -108,17 +108,51 @@ void add_triangles(const Scene& scene, LightSetData& data) {
 
 Vec3 middle_of(const EmissiveTriangle& triangle) { return triangle.a + (triangle.ab + triangle.ac) / 3.0f; }
 
-/// Numbers [0, n) along Hilbert's curve through their points, so that an even split of a table splits space.
+/// The line that points lie along, if they do.
+struct Row {
+    Vec3 middle, along; // along: not unit
+    bool is_straight = false;
+};
+
+/// From their middle to the farthest of the points; straight where they lie within a quarter of their spread from it.
+Row find_row(std::span<const Vec3> points) {
+    Row row;
+    double sum[3] = {};
+    for (const Vec3 p : points) {
+        sum[0] += static_cast<double>(p.x), sum[1] += static_cast<double>(p.y), sum[2] += static_cast<double>(p.z);
+    }
+    const double n = static_cast<double>(std::max<std::size_t>(points.size(), 1));
+    row.middle = {static_cast<float>(sum[0] / n), static_cast<float>(sum[1] / n), static_cast<float>(sum[2] / n)};
+    for (const Vec3 p : points) {
+        if (length_squared(p - row.middle) > length_squared(row.along)) row.along = p - row.middle;
+    }
+    double spread = 0, beside = 0;
+    for (const Vec3 p : points) {
+        const double whole = static_cast<double>(length_squared(p - row.middle));
+        const double across = static_cast<double>(length_squared(cross(row.along, p - row.middle)));
+        spread += whole;
+        beside += across / std::max(static_cast<double>(length_squared(row.along)), 1e-300);
+    }
+    row.is_straight = 16 * beside <= spread;
+    return row;
+}
+
+/// Numbers [0, n) in the order of their points, so that an even split of a table splits space: along a row, where the
+/// points lie in one, else along Hilbert's curve.
 std::vector<uint32_t> order_in_space(std::span<const Vec3> points) {
+    std::vector<uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    if (const Row row = find_row(points); row.is_straight) {
+        std::vector<float> keys(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) keys[i] = dot(points[i] - row.middle, row.along);
+        std::ranges::stable_sort(order, {}, [&](uint32_t i) { return keys[i]; });
+        return order;
+    }
     Bounds3 bounds;
     for (const Vec3 point : points) bounds.extend(point);
-    std::vector<uint64_t> keys(points.size());
-    parallel_for(points.size(), 4096, [&](uint64_t i) {
-        keys[i] = uint64_t(hilbert_position(points[i], bounds)) << 32 | i; // the rank decides between equals
-    });
-    std::ranges::sort(keys);
-    std::vector<uint32_t> order(points.size());
-    std::ranges::transform(keys, order.begin(), [](uint64_t key) { return static_cast<uint32_t>(key); });
+    std::vector<uint32_t> positions(points.size());
+    parallel_for(points.size(), 4096, [&](uint64_t i) { positions[i] = hilbert_position(points[i], bounds); });
+    std::ranges::stable_sort(order, {}, [&](uint32_t i) { return positions[i]; });
     return order;
 }
 

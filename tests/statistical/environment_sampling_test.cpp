@@ -149,7 +149,8 @@ TEST_CASE("environment: a sample's density and radiance are found again from its
             const float pdf = environment_pdf(view, sample.wi);
             const Rgb radiance = environment_radiance(view, sample.wi);
             if (std::abs(pdf - sample.pdf) > 1e-5f * sample.pdf) ++differing; // rounding took it over a texel's edge
-            if (std::abs(radiance.r - sample.radiance.r) > 0.02f * (sample.radiance.r + 0.01f)) ++far_off;
+            // Beside the sun of 100 a rounding of 2^-12 texels, a float's at row 2048, is worth 0.025.
+            if (std::abs(radiance.r - sample.radiance.r) > 0.02f * sample.radiance.r + 0.025f) ++far_off;
         }
         CAPTURE(height);
         CHECK(differing < draws / 500);

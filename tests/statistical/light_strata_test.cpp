@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -97,7 +98,7 @@ TEST_CASE("strata: a square lamp of few or many triangles") {
         Scene scene;
         add_lamp(scene, {0.3f, 1, 0}, 1.5f, n, 1);
         const double times = gain(Lights(scene).view);
-        MESSAGE(2 * n * n, " triangles: ", times, " times less variance");
+        MESSAGE((2 * n * n), " triangles: ", times, " times less variance");
         CHECK(times > (n == 1 ? 60 : 20));
     }
 }
@@ -110,7 +111,26 @@ TEST_CASE("strata: a row of lamps of different power") {
     }
     const double times = gain(Lights(scene).view);
     MESSAGE(times, " times less variance");
-    CHECK(times > 15);
+    CHECK(times > 100);
+}
+
+TEST_CASE("strata: a ball of light, and lamps in a square, whose places no single row could keep together") {
+    Scene ball, square;
+    add_lamp(ball, {0, 0, 0}, 1, 24, 1);
+    for (Vec3& p : ball.meshes[0].positions) { // the square wrapped around a ball by height and angle
+        const double angle = 6.283185307179586 * (static_cast<double>(p.x) + 0.5), height = 1.9 * static_cast<double>(p.z);
+        const double ring = std::sqrt(std::max(0.0, 1 - height * height));
+        p = {static_cast<float>(ring * std::cos(angle)), static_cast<float>(3 + height),
+             static_cast<float>(ring * std::sin(angle))};
+    }
+    for (int i = 0; i < 64; ++i) {
+        const int k = 29 * i % 64; // a file's order may be any
+        add_lamp(square, {static_cast<float>(k % 8) - 3.5f, 2, static_cast<float>(k / 8) - 3.5f}, 0.2f, 1, 1);
+    }
+    const double on_ball = gain(Lights(ball).view), in_square = gain(Lights(square).view);
+    MESSAGE("ball: ", on_ball, " times less variance, square: ", in_square);
+    CHECK(on_ball > 2.5); // 1.6 in the order of the file
+    CHECK(in_square > 100);
 }
 
 TEST_CASE("strata: a sky, alone and beside a lamp") {
