@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
+#include "apps/cli/aim_camera.h"
+#include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/render_flags.h"
@@ -35,16 +37,16 @@ bool report_progress(const RenderProgress& now, double time_limit_s, Reporter& r
     return !interrupted();
 }
 
-int render(const RenderFlags& flags) {
+int render(RenderFlags flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     check_render_flags(flags, messages);
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     const Stopwatch watch;
-    const LoadedScene loaded = load_scene(flags.scene, messages);
-    const Scene& scene = loaded.scene;
+    const Scene scene = load_scene(flags.scene, messages);
     const RenderSettings settings = render_settings(flags, scene);
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    aim_eye(flags.scene, scene, messages);
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
     const double load_s = watch.seconds();
     PrepareOptions prepare;
@@ -59,19 +61,20 @@ int render(const RenderFlags& flags) {
                              queue->device_name(), mebibytes(predicted_bytes(prepared, settings, queue->is_cuda()))));
 
     listen_for_interrupt();
+    const Display display = choose_display(flags, *queue, prepared, camera, settings, reporter);
     RenderResult result = render_picture(*queue, prepared, camera, settings, [&](const RenderProgress& now) {
         return report_progress(now, settings.time_limit_s, reporter);
     });
     reporter.end_progress();
     const RenderRecord record = {.device = queue->device_name(),
                                  .is_cuda = queue->is_cuda(),
-                                 .default_light = loaded.default_light,
                                  .has_environment = scene.environment.has_value(),
                                  .filter_radius = filter_radius_of(settings),
                                  .camera = camera,
+                                 .display = display,
                                  .load_seconds = load_s,
                                  .build_seconds = prepared.build_seconds};
-    const WrittenResult written = write_result(flags, record, result, reporter);
+    const WrittenResult written = write_result(flags, record, result);
     report_result(record, result, written.hash, watch.seconds(), reporter);
     if (!written.failures.empty()) {
         throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(written.failures, "\npertev: ")));

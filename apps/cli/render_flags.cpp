@@ -61,13 +61,12 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     verb.add_option("--size", flags.size, "in pixels (1280x720, or the shape that the scene's camera\nasks for)")
         ->type_name("WIDTHxHEIGHT")
         ->group(group);
-    verb.add_option("--tone-map", flags.tone_map, "of PNG and JPEG: srgb, agx, aces or neutral")
+    verb.add_option("--tone-map", flags.tone_map, "of PNG and JPEG: srgb, agx, aces or neutral (agx)")
         ->type_name("NAME")
         ->check(one_of({"srgb", "agx", "aces", "neutral"}))
-        ->capture_default_str()
         ->group(group);
     verb.add_option("--exposure", flags.exposure,
-                    "of PNG and JPEG: stops, or auto (0; auto where the\nlight was made up for lack of any)")
+                    "of PNG and JPEG: stops, or auto, which looks at a small\npicture of its own (auto)")
         ->type_name("STOPS|auto")
         ->group(group);
     verb.add_flag("--transparent", flags.transparent, "keep how much of a pixel is covered as alpha")->group(group);
@@ -143,7 +142,7 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
             messages.warn(output + ": --transparent: this format has no alpha; the background becomes black");
         }
     }
-    if ((!flags.exposure.empty() || flags.tone_map != "srgb") &&
+    if ((!flags.exposure.empty() || !flags.tone_map.empty()) &&
         !writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg})) {
         throw Error(ErrorCode::BadInput, fmt::format("--{}: light is mapped to tones in PNG and JPEG alone; add -o "
                                                      "NAME.png or .jpg",

@@ -75,7 +75,7 @@ void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& set
     const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
     const RenderResult local = render(queue, prepared, scene.camera, settings, PathLight::Direct);
     const RenderResult global = render(queue, prepared, scene.camera, settings, PathLight::Path);
-    const float stops = scene.default_light ? auto_exposure_stops(global.picture) : 0;
+    const float stops = scene.default_light ? auto_exposure_stops(global.picture, ToneMap::Srgb) : 0;
     const auto caption = [&](const char* light, const RenderResult& result) {
         return fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result.samples,
                            interrupted() ? " (interrupted)" : "");

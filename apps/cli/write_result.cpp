@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/version.h"
-#include "image/auto_exposure.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_image.h"
@@ -65,6 +64,13 @@ void add_environment(const SceneOptions& options, bool is_there, ExrMetadata& me
                      {"pertev.environment_rotation", options.environment_rotation_deg}});
 }
 
+/// How the PNG or JPEG beside this EXR shows the picture.
+void add_display(const Display& display, ExrMetadata& metadata) {
+    if (!display.is_used) return;
+    metadata.insert(metadata.end(), {{"pertev.tone_map", std::string(name_of(display.tone_map))},
+                                     {"pertev.exposure", display.exposure_stops}});
+}
+
 /// How the picture was made, all that is needed to make it again among it.
 ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, const RenderRecord& record,
                         const std::string& hash) {
@@ -87,6 +93,7 @@ ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, co
                             {"pertev.rays", static_cast<double>(result.rays.total())}};
     add_camera(flags.scene, record.camera, metadata);
     add_environment(flags.scene, record.has_environment, metadata);
+    add_display(record.display, metadata);
     return metadata;
 }
 
@@ -103,36 +110,13 @@ std::vector<ExrLayer> layers_of(RenderResult& result) {
     return layers;
 }
 
-bool is_tone_mapped(const std::string& output) {
-    const ImageFormat format = image_format_for(output);
-    return format == ImageFormat::Png || format == ImageFormat::Jpeg;
-}
-
-bool wants_auto_exposure(const RenderFlags& flags, bool default_light) {
-    return flags.exposure == "auto" || (flags.exposure.empty() && default_light);
-}
-
-/// Stops for PNG and JPEG.
-float exposure_of(const RenderFlags& flags, bool default_light, const Image& picture, Reporter& reporter) {
-    if (!wants_auto_exposure(flags, default_light)) {
-        return flags.exposure.empty() ? 0.0f : parse_number("--exposure", flags.exposure);
-    }
-    const float stops = auto_exposure_stops(picture);
-    if (std::ranges::any_of(flags.outputs, is_tone_mapped)) {
-        reporter.messages().note(fmt::format("exposed by {:+.2f} stops (--exposure {:.2f})", stops, stops));
-        reporter.say_messages();
-    }
-    return stops;
-}
-
 } // namespace
 
-WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
-                           Reporter& reporter) {
+WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result) {
     WrittenResult written = {picture_hash(result.picture).hex(), {}};
     WriteImageOptions write;
-    write.tone_map = *tone_map_named(flags.tone_map);
-    write.exposure_stops = exposure_of(flags, record.default_light, result.picture, reporter);
+    write.tone_map = record.display.tone_map;
+    write.exposure_stops = record.display.exposure_stops;
     write.transparent = flags.transparent;
     const std::vector<ExrLayer> layers = layers_of(result);
     write.layers = layers;

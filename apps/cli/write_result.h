@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/choose_display.h"
 #include "apps/cli/render_flags.h"
 #include "apps/cli/reporter.h"
 
@@ -14,10 +15,10 @@ namespace pertev {
 struct RenderRecord {
     std::string device;
     bool is_cuda = false;
-    bool default_light = false; // made up for lack of any: the exposure then follows the picture
     bool has_environment = false;
     float filter_radius = 0; // pixels
     Camera camera;
+    Display display;
     double load_seconds = 0, build_seconds = 0;
 };
 
@@ -28,8 +29,7 @@ struct WrittenResult {
 
 /// Writes the files that the flags name, each all or nothing; one that fails does not keep the others from being
 /// written. Takes the layers out of `result`.
-WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
-                           Reporter& reporter);
+WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result);
 
 /// Says time, rates, memory, invalid samples and hash. `total_seconds` since the scene began to load.
 void report_result(const RenderRecord& record, const RenderResult& result, const std::string& hash,
