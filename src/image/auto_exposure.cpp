@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kMiddleGrey = 0.18f;
 constexpr double kBurntShare = 0.005; // of all pixels: half of what is promised, for what a small picture averages away
-constexpr double kBrightShare = 0.05; // of what counts
+constexpr double kBrightShare = 0.1;  // of what counts
 constexpr float kBright = 0.8f;       // as shown: 1 is white
 constexpr double kTrimmedShare = 0.1; // at either end of the mean
 constexpr int kMostHundredths = 6000; // of a stop

@@ -10,7 +10,7 @@ namespace pertev {
 /// Stops by which the geometric mean of the luminance becomes 0.18 (Reinhard et al., "Photographic Tone Reproduction
 /// for Digital Images", SIGGRAPH 2002, equation 1), or as many fewer as it takes so that `tone_map`
 ///   - burns (makes white, all channels at 255) at most 0.5 % of the pixels, and
-///   - shows at most a twentieth of what counts brighter than four fifths of white.
+///   - shows at most a tenth of what counts brighter than four fifths of white.
 /// One or three channels count everywhere. Of two or four the last says where: the share of the pixel that counts, with
 /// which the others are multiplied already; 0 leaves the pixel out. Means are taken over blocks of pixels, some 40
 /// along the longer side, so that noise does not matter; the mean leaves out the darkest and the brightest tenth. A

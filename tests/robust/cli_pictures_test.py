@@ -140,6 +140,12 @@ class WhatHalfACameraSees(CliTest):
                     again = ["--eye", told["pertev.eye"], "--target", told["pertev.target"], "--up", told["pertev.up"]]
                     self.assertEqual(self.hash_again(again, scene), made)
 
+    def test_lab_aims_an_eye_alone_too(self):
+        write(self.path("sheet.obj"), SHEET)
+        said = self.succeed("lab", "sheet.obj", "--eye", "3,2.5,4", "--structures", "binned", "--walks", "if-if", "--runs",
+                            "1", "--device", "cpu", "--size", "16x12", "--json")
+        self.assertEqual(len([event for event in said.events("notice") if "--target 0,1,0)" in event["text"]]), 1)
+
     def test_a_target_alone_names_the_eye_that_looks_at_it(self):
         write(self.path("sheet.obj"), SHEET)
         notices, _ = self.notices("--target", "0,2,0", scene="sheet.obj")
