@@ -26,12 +26,13 @@ Display choose_display(const RenderFlags& flags, Queue& queue, const PreparedSce
     const std::string name = flags.tone_map.empty() ? kDefaultToneMap : flags.tone_map;
     Display display{*tone_map_named(name), 0, std::ranges::any_of(flags.outputs, is_tone_mapped)};
     if (!display.is_used) return display;
-    if (!flags.exposure.empty() && flags.exposure != "auto") {
-        display.exposure_stops = parse_number("--exposure", flags.exposure);
-        return display;
-    }
-    const float stops = meter_exposure(queue, prepared, camera, settings, display.tone_map);
+    const bool is_given = !flags.exposure.empty() && flags.exposure != "auto";
+    const float stops = is_given ? parse_number("--exposure", flags.exposure)
+                                 : meter_exposure(queue, prepared, camera, settings, display.tone_map);
     display.exposure_stops = stops;
+    reporter.event(fmt::format(R"({{"event":"exposure","stops":{},"auto":{},"tone_map":"{}"}})",
+                               json_number(static_cast<double>(stops)), !is_given, name));
+    if (is_given) return display;
     reporter.messages().note(fmt::format("exposed by {:+.2f} stops, shown by {} (--exposure {:.2f} --tone-map {} fixes "
                                          "that; --exposure 0 --tone-map srgb shows plain values)",
                                          stops, name, stops, name));

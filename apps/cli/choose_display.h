@@ -15,7 +15,7 @@ struct Display {
 };
 
 /// Renders the meter's small picture where the exposure is not given and some output needs it; a notice then tells the
-/// flags that fix what was found. Throws Error.
+/// flags that fix what was found. With --json, an object of the exposure. Throws Error.
 Display choose_display(const RenderFlags& flags, Queue& queue, const PreparedScene& prepared, const Camera& camera,
                        const RenderSettings& settings, Reporter& reporter);
 

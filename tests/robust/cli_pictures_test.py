@@ -52,6 +52,17 @@ class HowPicturesAreShown(CliTest):
         with open(self.path(name), "rb") as file:
             return file.read()
 
+    def test_the_exposure_and_the_tone_map_are_an_object_of_the_json_lines(self):
+        def told(*arguments, output="x.png"):
+            return self.succeed("render", "cornell-box", "-o", output, "--size", "16x16", "--spp", 1, "--device", "cpu",
+                                "--json", *arguments).events("exposure")
+
+        found = told()
+        self.assertEqual([(one["auto"], one["tone_map"]) for one in found], [(True, "agx")])
+        given = told("--exposure", -1.5, "--tone-map", "aces")
+        self.assertEqual([(one["auto"], one["tone_map"], one["stops"]) for one in given], [(False, "aces", -1.5)])
+        self.assertEqual(told(output="x.exr"), [])
+
     def flags_in(self, notice):
         return re.search(r"\((--exposure \S+ --tone-map \S+) ", notice).group(1).split()
 
