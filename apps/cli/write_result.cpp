@@ -3,6 +3,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -70,7 +73,7 @@ ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, co
                         const std::string& hash) {
     ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
                             {"pertev.scene", flags.scene.scene},
-                            {"pertev.samples", static_cast<int32_t>(result.samples)},
+                            {"pertev.spp", static_cast<int32_t>(result.samples)},
                             {"pertev.max_depth", static_cast<int32_t>(flags.max_depth)},
                             {"pertev.integrator", flags.integrator},
                             {"pertev.sampler", flags.sampler},
@@ -125,7 +128,28 @@ float exposure_of(const RenderFlags& flags, bool default_light, const Image& pic
     return stops;
 }
 
+/// Of a value of an EXR's metadata.
+template <class Value>
+std::string json_of(const Value& value) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+        return json_string(value);
+    } else {
+        return json_number(static_cast<double>(value));
+    }
+}
+
 } // namespace
+
+void report_camera(const SceneOptions& options, const Camera& camera, Reporter& reporter) {
+    ExrMetadata flags;
+    add_camera(options, camera, flags);
+    std::string object = R"({"event":"camera")";
+    for (const auto& [name, value] : flags) {
+        object += fmt::format(",{}:{}", json_string(name.substr(std::string_view("pertev.").size())),
+                              std::visit([](const auto& v) { return json_of(v); }, value));
+    }
+    reporter.event(object + '}');
+}
 
 WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
                            Reporter& reporter) {
@@ -134,14 +158,21 @@ WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record,
     write.tone_map = *tone_map_named(flags.tone_map);
     write.exposure_stops = exposure_of(flags, record.default_light, result.picture, reporter);
     write.transparent = flags.transparent;
+    if (std::ranges::any_of(flags.outputs, is_tone_mapped)) {
+        reporter.event(fmt::format(R"({{"event":"exposure","stops":{},"auto":{},"tone_map":"{}"}})",
+                                   json_number(static_cast<double>(write.exposure_stops)),
+                                   wants_auto_exposure(flags, record.default_light), flags.tone_map));
+    }
     const std::vector<ExrLayer> layers = layers_of(result);
     write.layers = layers;
     write.metadata = metadata_of(flags, result, record, written.hash);
     for (const std::string& output : flags.outputs) {
         try {
             write_image(output, result.picture, write);
+            reporter.output(output);
         } catch (const Error& error) {
             written.failures.emplace_back(error.what());
+            reporter.output(output, error.what());
         }
     }
     return written;
@@ -161,10 +192,10 @@ void report_result(const RenderRecord& record, const RenderResult& result, const
         record.is_cuda ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
         counted(result.invalid_samples, "invalid sample"), hash));
     reporter.event(fmt::format(
-        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{}}})",
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, json_number(samples_per_second),
         json_number(rays_per_second), host_bytes, result.device_peak_bytes, result.invalid_samples, hash,
-        json_string(record.device)));
+        json_string(record.device), record.interrupted));
 }
 
 } // namespace pertev
