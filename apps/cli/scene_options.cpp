@@ -121,6 +121,7 @@ void check_scene_options(const SceneOptions& options) {
 void add_view_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
         ->type_name("")
+        ->check(file_name())
         ->required();
     const char* group = "Camera";
     verb.add_option("--camera", options.camera, "the scene's camera of this name or number, from 0")

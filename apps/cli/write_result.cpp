@@ -3,6 +3,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -76,7 +79,7 @@ ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, co
                         const std::string& hash) {
     ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
                             {"pertev.scene", flags.scene.scene},
-                            {"pertev.samples", static_cast<int32_t>(result.samples)},
+                            {"pertev.spp", static_cast<int32_t>(result.samples)},
                             {"pertev.max_depth", static_cast<int32_t>(flags.max_depth)},
                             {"pertev.integrator", flags.integrator},
                             {"pertev.sampler", flags.sampler},
@@ -110,9 +113,31 @@ std::vector<ExrLayer> layers_of(RenderResult& result) {
     return layers;
 }
 
+/// Of a value of an EXR's metadata.
+template <class Value>
+std::string json_of(const Value& value) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+        return json_string(value);
+    } else {
+        return json_number(static_cast<double>(value));
+    }
+}
+
 } // namespace
 
-WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result) {
+void report_camera(const SceneOptions& options, const Camera& camera, Reporter& reporter) {
+    ExrMetadata flags;
+    add_camera(options, camera, flags);
+    std::string object = R"({"event":"camera")";
+    for (const auto& [name, value] : flags) {
+        object += fmt::format(",{}:{}", json_string(name.substr(std::string_view("pertev.").size())),
+                              std::visit([](const auto& v) { return json_of(v); }, value));
+    }
+    reporter.event(object + '}');
+}
+
+WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
+                           Reporter& reporter) {
     WrittenResult written = {picture_hash(result.picture).hex(), {}};
     WriteImageOptions write;
     write.tone_map = record.display.tone_map;
@@ -124,8 +149,10 @@ WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record,
     for (const std::string& output : flags.outputs) {
         try {
             write_image(output, result.picture, write);
+            reporter.output(output);
         } catch (const Error& error) {
             written.failures.emplace_back(error.what());
+            reporter.output(output, error.what());
         }
     }
     return written;
@@ -145,10 +172,10 @@ void report_result(const RenderRecord& record, const RenderResult& result, const
         record.is_cuda ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
         counted(result.invalid_samples, "invalid sample"), hash));
     reporter.event(fmt::format(
-        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{}}})",
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, json_number(samples_per_second),
         json_number(rays_per_second), host_bytes, result.device_peak_bytes, result.invalid_samples, hash,
-        json_string(record.device)));
+        json_string(record.device), record.interrupted));
 }
 
 } // namespace pertev

@@ -20,6 +20,7 @@ struct RenderRecord {
     Camera camera;
     Display display;
     double load_seconds = 0, build_seconds = 0;
+    bool interrupted = false; // before all samples were done
 };
 
 struct WrittenResult {
@@ -27,9 +28,14 @@ struct WrittenResult {
     std::vector<std::string> failures; // why a file could not be written, for each such
 };
 
+/// With --json, an object of the flags that place this camera, under the names and with the values that they have in an
+/// EXR's metadata.
+void report_camera(const SceneOptions& options, const Camera& camera, Reporter& reporter);
+
 /// Writes the files that the flags name, each all or nothing; one that fails does not keep the others from being
 /// written. Takes the layers out of `result`.
-WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result);
+WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
+                           Reporter& reporter);
 
 /// Says time, rates, memory, invalid samples and hash. `total_seconds` since the scene began to load.
 void report_result(const RenderRecord& record, const RenderResult& result, const std::string& hash,
