@@ -13,4 +13,12 @@ execute_process(COMMAND ${prefix}/bin/pertev render cornell-box --size 16x16 --s
 if(NOT EXISTS ${prefix}/picture.png)
   message(FATAL_ERROR "the installed program wrote no picture")
 endif()
+# A debug build keeps its symbols. The program that was built has some, else this would test nothing.
+if(NOT CONFIG MATCHES "^(Debug|RelWithDebInfo)$")
+  execute_process(COMMAND ${NM} ${BUILD}/bin/pertev OUTPUT_VARIABLE built ERROR_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${NM} ${prefix}/bin/pertev OUTPUT_VARIABLE installed ERROR_QUIET)
+  if(built STREQUAL "" OR NOT installed STREQUAL "")
+    message(FATAL_ERROR "the installed program is not stripped")
+  endif()
+endif()
 file(REMOVE_RECURSE ${prefix})

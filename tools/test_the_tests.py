@@ -199,6 +199,16 @@ MUTATIONS = [
     Mutation("the film adds floats", [edit("src/render/film_view.h", "atomic_add(&sums[0], to_fixed(radiance.r));",
                                            "sums[0] = to_fixed(mean_of(sums[0], 1) + radiance.r);")],
              ["unit/film"]),
+    Mutation("the light meter looks into lamps", [edit("src/integrators/meter_exposure.cpp",
+                                                       "lamps = light_of(&emitted.pixels[i])",
+                                                       "lamps = 0.0f * light_of(&emitted.pixels[i])")],
+             ["unit/meter_exposure"]),
+    Mutation("the light meter takes the picture's samples", [edit("src/integrators/meter_exposure.cpp",
+                                                                  "meter.path.seed = 0;", "static_cast<void>(0);")],
+             ["unit/meter_exposure"]),
+    Mutation("highlights burn", [edit("src/image/auto_exposure.cpp", "constexpr double kBurntShare = 0.005;",
+                                      "constexpr double kBurntShare = 0.5;")],
+             ["unit/auto_exposure"]),
 ]
 
 

@@ -97,6 +97,7 @@ int bench_job(const BenchFlags& flags) {
     check_bench_scene(flags.scenes.front());
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
+    reporter.set_work(fmt::format("measuring {}", flags.scenes.front()));
     const Stopwatch watch;
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
     const double load_s = watch.seconds();
@@ -111,7 +112,10 @@ int bench_job(const BenchFlags& flags) {
     render_all(*queue, prepared, camera, warm_up);
     const RenderResult result = render_all(*queue, prepared, camera, settings);
     const std::string hash = picture_hash(result.picture).hex();
-    if (!flags.output.empty()) write_image(flags.output, result.picture);
+    if (!flags.output.empty()) {
+        write_image(flags.output, result.picture);
+        reporter.output(flags.output);
+    }
     if (flags.report.json) {
         reporter.event(fmt::format(
             R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"mean":{:.6f},"invalid_samples":{},"hash":"{}"}})",
@@ -261,6 +265,7 @@ int bench_scenes(const BenchFlags& flags) {
                     "bounce", "shadow", "B/tri");
     for (const std::string& scene : scenes) {
         for (const auto& queue : queues) {
+            reporter.set_work(fmt::format("measuring {} on {}", scene, queue->device_name()));
             settings.samples = flags.samples > 0 ? flags.samples : (queue->is_cuda() ? 64 : 4);
             const SceneFigures figures = measure(scene, *queue, settings);
             reporter.answer(std::exchange(header, "")); // over the first row

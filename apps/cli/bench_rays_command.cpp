@@ -138,6 +138,7 @@ void print(const SetFigures& f, bool is_checked, Reporter& reporter) {
 void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, std::string& header,
                  Reporter& reporter) {
     Messages& messages = reporter.messages();
+    reporter.set_work(fmt::format("{}: making sets of rays", name));
     Stopwatch watch;
     const Scene scene = read_geometry(name, messages);
     const double load_s = watch.seconds();
@@ -160,6 +161,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const RecordScene* const record = find_record_scene(name);
     const bool is_moved = !flags.camera.eye.empty() || !flags.camera.target.empty() || flags.camera.fov_deg > 0;
     for (std::size_t i = 0; i < sets.size(); ++i) {
+        reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
         SetFigures figures = measure(queue, trees, sets[i], flags, prepared);
         figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
         if (record != nullptr && !is_moved) figures.record = &record->sets[i];

@@ -73,8 +73,11 @@ int compare(const CompareFlags& flags) {
 void add_compare_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("compare", "Say how far a picture is from a reference: relMSE, FLIP, hash");
     const auto flags = std::make_shared<CompareFlags>();
-    verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")->type_name("")->required();
-    verb.add_option("B", flags->reference, "the reference")->type_name("")->required();
+    verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")
+        ->type_name("")
+        ->check(file_name())
+        ->required();
+    verb.add_option("B", flags->reference, "the reference")->type_name("")->check(file_name())->required();
     verb.add_option("--blocks", flags->blocks, "compare means over blocks of N x N pixels: less noise, same structure")
         ->type_name("N")
         ->check(whole_between(1, 4096))

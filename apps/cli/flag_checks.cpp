@@ -45,6 +45,10 @@ CLI::Validator whole_between(uint32_t low, uint32_t high) {
     return checked(accepts, fmt::format("a whole number from {} to {}", low, high));
 }
 
+CLI::Validator file_name() {
+    return {[](std::string& text) { return std::string(text.empty() ? "the name is empty" : ""); }, ""};
+}
+
 CLI::Validator one_of(std::vector<std::string> names) {
     const std::string wanted = fmt::format("one of {}", fmt::join(names, ", "));
     const auto accepts = [names = std::move(names)](const std::string& text) {

@@ -22,6 +22,9 @@ inline CLI::Validator length_m() { return number_above_zero(kMaxCoordinate); }
 /// A whole number in [low, high], in decimal digits.
 CLI::Validator whole_between(uint32_t low, uint32_t high);
 
+/// The name of a file: not empty.
+CLI::Validator file_name();
+
 /// One of these names.
 CLI::Validator one_of(std::vector<std::string> names);
 

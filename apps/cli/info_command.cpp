@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
@@ -153,6 +154,7 @@ void add_info_command(CLI::App& app, int& status) {
     const auto flags = std::make_shared<InfoFlags>();
     verb.add_option("FILE", flags->file, "a scene (.gltf .glb .obj .ply or a built-in one) or a picture")
         ->type_name("")
+        ->check(file_name())
         ->required();
     add_allow_path(verb, flags->allowed_paths);
     add_report_flags(verb, flags->report);

@@ -1,7 +1,12 @@
 #include "apps/cli/interrupt.h"
 
-#include <csignal>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstddef>
+#include <string>
+
+#include "apps/cli/report_error.h"
 #include "base/error.h"
 
 namespace pertev {
@@ -9,13 +14,36 @@ namespace {
 
 volatile std::sig_atomic_t g_interrupted = 0;
 
-extern "C" void handle_interrupt(int) {
-    g_interrupted = 1;
-    std::signal(SIGINT, SIG_DFL); // a second one of either kind ends the process
+// Made before the signal, whose handler may do little but write() and _exit().
+std::string g_last_line;
+int g_last_line_goes_to = STDERR_FILENO;
+
+/// A second signal of either kind ends the process.
+void hear_no_second() {
+    std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
 }
 
+extern "C" void handle_interrupt(int) {
+    g_interrupted = 1;
+    hear_no_second();
+}
+
+extern "C" void end_process(int) {
+    hear_no_second(); // whoever should read the line may not
+    [[maybe_unused]] const ssize_t written = ::write(g_last_line_goes_to, g_last_line.data(), g_last_line.size());
+    ::_exit(exit_status(ErrorCode::Interrupted));
+}
+
 } // namespace
+
+void end_at_interrupt(bool json) {
+    const std::string text = "interrupted before there was anything to keep";
+    g_last_line = json ? error_object(ErrorCode::Interrupted, text) + '\n' : "pertev: " + text + '\n';
+    g_last_line_goes_to = json ? STDOUT_FILENO : STDERR_FILENO;
+    std::signal(SIGINT, end_process);
+    std::signal(SIGTERM, end_process);
+}
 
 void listen_for_interrupt() {
     std::signal(SIGINT, handle_interrupt);

@@ -140,6 +140,7 @@ int run(const LabFlags& flags) {
     }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     LabSettings settings = lab_settings(flags, queue->is_cuda());
+    reporter.set_work("loading");
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 
     const Scene scene = read_lab_scene(flags.scene, messages);

@@ -1,4 +1,5 @@
-// The command line: pertev VERB ... Each verb is one file. Errors become one line on stderr and an exit status here.
+// The command line: pertev VERB ... Each verb is one file. Errors become an exit status here, and a line or, with
+// --json, an object.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,13 +12,15 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
-#include <string>
-#include <vector>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "apps/cli/commands.h"
+#include "apps/cli/describe_usage_error.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/report_error.h"
 #include "base/error.h"
 #include "base/version.h"
 
@@ -38,53 +41,22 @@ void turn_signals_into_errors() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-/// One line to stderr, or nothing where that is full or gone.
-int fail(ErrorCode code, const std::string& message) {
-    std::fputs(fmt::format("pertev: {}\n", message).c_str(), stderr);
-    return exit_status(code);
-}
-
-/// The line names none of the verbs there are.
-std::string describe_missing_verb(const CLI::App& app) {
-    std::vector<std::string> verbs;
-    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-        verbs.push_back(verb->get_name());
+/// Whether errors are wanted as JSON: also where the line is wrong, so that no verb has read it.
+bool wants_json(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        if (word == "--") return false; // what follows is no flag
+        if (word == "--json" || word.starts_with("--json=")) return true;
     }
-    const std::vector<std::string> strange = app.remaining();
-    return fmt::format("{}a verb is required: {}", strange.empty() ? "" : strange.front() + " is not understood; ",
-                       fmt::join(verbs, ", "));
-}
-
-/// Says which flag is given more often than it is taken; nothing where none is.
-std::string describe_repetition(const CLI::App& verb) {
-    for (const CLI::Option* flag : verb.get_options()) {
-        const int most = std::max(flag->get_items_expected_max(), 1);
-        if (flag->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw && int(flag->count()) > most) {
-            return fmt::format("{}: given {} times, taken once", flag->get_name(), flag->count());
-        }
-    }
-    return "";
-}
-
-std::string describe(const CLI::App* app, const CLI::Error& error) {
-    std::string path = app->get_name(), what = error.what();
-    const CLI::App* verb = app;
-    while (!verb->get_subcommands().empty()) {
-        verb = verb->get_subcommands().front();
-        path += ' ' + verb->get_name();
-    }
-    if (verb == app) what = describe_missing_verb(*app);
-    if (const std::string repeated = describe_repetition(*verb); !repeated.empty()) what = repeated;
-    return fmt::format("pertev: {}\n({} --help lists what there is)\n", what, path);
+    return false;
 }
 
 /// Parses the command line, which runs its verb.
-int run(int argc, char** argv) {
+int run(int argc, char** argv, bool json) {
     CLI::App app("Pertev: a path tracer for GPUs without ray-tracing hardware, and for CPUs.", "pertev");
     app.set_version_flag("--version", fmt::format("pertev {} ({})", version(), git_commit()));
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
-    app.failure_message(describe);
     int status = 0;
     add_render_command(app, status);
     add_compare_command(app, status);
@@ -95,16 +67,19 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
         return status;
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : exit_status(ErrorCode::BadInput);
+        if (error.get_exit_code() == 0) return app.exit(error); // help or version
+        const UsageError usage = describe_usage_error(app, error);
+        return report_error(json, ErrorCode::BadInput, usage.text, usage.help);
     } catch (const Error& error) {
-        return fail(error.code(), error.what());
+        return report_error(json, error.code(), error.what());
     } catch (const std::bad_alloc&) {
-        return fail(ErrorCode::OutOfMemory, "out of memory on this machine");
+        return report_error(json, ErrorCode::OutOfMemory, "out of memory on this machine");
     } catch (const std::filesystem::filesystem_error& error) {
-        return fail(ErrorCode::BadInput, fmt::format("{}: {}", error.path1().string(), error.code().message()));
+        return report_error(json, ErrorCode::BadInput,
+                            fmt::format("{}: {}", error.path1().string(), error.code().message()));
     } catch (const std::exception& error) {
-        return fail(ErrorCode::DeviceFault,
-                    fmt::format("a mistake of pertev's own, please report it: {}", error.what()));
+        return report_error(json, ErrorCode::DeviceFault,
+                            fmt::format("a mistake of pertev's own, please report it: {}", error.what()));
     }
 }
 
@@ -119,12 +94,14 @@ int main(int argc, char** argv) {
                    stderr);
         return 2;
     }
+    const bool json = wants_json(argc, argv);
     open_standard_files();
     turn_signals_into_errors();
-    const int status = run(argc, argv);
+    end_at_interrupt(json);
+    const int status = run(argc, argv, json);
     std::cout.flush(); // CLI11 writes help and version there
     if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-        return std::max(status, fail(ErrorCode::FileWrite, "cannot write to the standard output"));
+        return std::max(status, report_error(false, ErrorCode::FileWrite, "cannot write to the standard output"));
     }
     return status;
 }

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
+#include "apps/cli/aim_camera.h"
+#include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/render_flags.h"
@@ -35,52 +37,87 @@ bool report_progress(const RenderProgress& now, double time_limit_s, Reporter& r
     return !interrupted();
 }
 
-int render(const RenderFlags& flags) {
-    Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    check_render_flags(flags, messages);
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
-    const Stopwatch watch;
-    const LoadedScene loaded = load_scene(flags.scene, messages);
-    const Scene& scene = loaded.scene;
-    const RenderSettings settings = render_settings(flags, scene);
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
-    const double load_s = watch.seconds();
-    PrepareOptions prepare;
-    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
-    const PreparedScene prepared = prepare_scene(scene, prepare, messages);
-    reporter.say_messages();
+/// --strict: throws Error(BadInput) that repeats the first warning of a texture or a file of materials that is missing.
+void refuse_missing(const Messages& messages) {
+    const std::vector<Message>& all = messages.all();
+    const auto missing = static_cast<uint64_t>(std::ranges::count_if(all, &Message::is_missing));
+    if (missing == 0) return;
+    throw Error(ErrorCode::BadInput,
+                fmt::format("--strict: {}{}; nothing is rendered",
+                            std::ranges::find_if(all, &Message::is_missing)->text,
+                            missing > 1 ? fmt::format(" (and {} like it)", counted(missing - 1, "warning")) : ""));
+}
+
+/// What is about to be rendered, and on what.
+void report_start(const RenderFlags& flags, const Scene& scene, const PreparedScene& prepared,
+                  const RenderSettings& settings, const Queue& queue, double load_s, Reporter& reporter) {
+    const std::size_t bytes = predicted_bytes(prepared, settings, queue.is_cuda());
     reporter.say(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
                              "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
                              flags.scene.scene, counted(prepared.triangles, "triangle"),
                              counted(scene.instances.size(), "instance"), counted(prepared.lights.count(), "light"),
                              load_s, prepared.build_seconds, settings.width, settings.height, settings.samples,
-                             queue->device_name(), mebibytes(predicted_bytes(prepared, settings, queue->is_cuda()))));
+                             queue.device_name(), mebibytes(bytes)));
+    reporter.event(fmt::format(
+        R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
+        json_string(flags.scene.scene), prepared.triangles, scene.instances.size(), prepared.lights.count(), load_s,
+        prepared.build_seconds));
+    reporter.event(
+        fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",
+                    settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
+}
 
+int render(RenderFlags flags) {
+    Reporter reporter(flags.report);
+    Messages& messages = reporter.messages();
+    check_render_flags(flags, messages);
+    const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
+    reporter.say_messages();
+    reporter.set_work(fmt::format("loading {}", flags.scene.scene));
+    const Stopwatch watch;
+    const Scene scene = load_scene(flags.scene, messages);
+    if (flags.strict) refuse_missing(messages);
+    const RenderSettings settings = render_settings(flags, scene);
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    aim_eye(flags.scene, scene, messages);
+    const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
+    const double load_s = watch.seconds();
+    PrepareOptions prepare;
+    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
+    reporter.set_work("building trees");
+    const PreparedScene prepared = prepare_scene(scene, prepare, messages);
+    reporter.say_messages();
     listen_for_interrupt();
+    report_start(flags, scene, prepared, settings, *queue, load_s, reporter);
+    report_camera(flags.scene, camera, reporter);
+    reporter.set_work("metering");
+    const Display display = choose_display(flags, *queue, prepared, camera, settings, reporter);
     RenderResult result = render_picture(*queue, prepared, camera, settings, [&](const RenderProgress& now) {
         return report_progress(now, settings.time_limit_s, reporter);
     });
     reporter.end_progress();
+    const bool cut_short = interrupted() && result.samples < settings.samples;
+    if (cut_short) reporter.say(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
+    reporter.set_work("writing");
     const RenderRecord record = {.device = queue->device_name(),
                                  .is_cuda = queue->is_cuda(),
-                                 .default_light = loaded.default_light,
                                  .has_environment = scene.environment.has_value(),
                                  .filter_radius = filter_radius_of(settings),
                                  .camera = camera,
+                                 .display = display,
                                  .load_seconds = load_s,
-                                 .build_seconds = prepared.build_seconds};
+                                 .build_seconds = prepared.build_seconds,
+                                 .interrupted = cut_short};
     const WrittenResult written = write_result(flags, record, result, reporter);
     report_result(record, result, written.hash, watch.seconds(), reporter);
     if (!written.failures.empty()) {
-        throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(written.failures, "\npertev: ")));
+        throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(written.failures, "; ")));
     }
     if (flags.strict && result.invalid_samples > 0) {
         throw Error(ErrorCode::BadInput, fmt::format("--strict: {} not finite; the picture is written",
                                                      counted(result.invalid_samples, "sample")));
     }
-    return interrupted() && result.samples < settings.samples ? exit_status(ErrorCode::Interrupted) : 0;
+    return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
 } // namespace

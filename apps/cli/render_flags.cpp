@@ -49,6 +49,26 @@ bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> for
     });
 }
 
+bool is_picture(const std::string& name) {
+    try {
+        image_format_for(name);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// "a.png,b.exr" is one file's name, which hardly anybody means. Throws Error(BadInput) where it is no picture's.
+void check_for_list(const std::string& output, Messages& messages) {
+    const std::size_t comma = output.find(',');
+    if (comma == std::string::npos || !is_picture(output.substr(0, comma))) return;
+    const std::string text = fmt::format("-o {}: this is the name of one file; each picture has a -o of its own: -o {} "
+                                         "-o {}",
+                                         output, output.substr(0, comma), output.substr(comma + 1));
+    if (!is_picture(output)) throw Error(ErrorCode::BadInput, text);
+    messages.warn(text);
+}
+
 } // namespace
 
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group) {
@@ -88,18 +108,18 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     verb.add_option("-o,--output", flags.outputs, "picture to write: .exr .png .jpg .hdr; may be given again")
         ->type_name("FILE")
         ->allow_extra_args(false)
+        ->check(file_name())
         ->required();
     const char* group = "Picture";
     verb.add_option("--size", flags.size, "in pixels (1280x720, or the shape that the scene's camera\nasks for)")
         ->type_name("WIDTHxHEIGHT")
         ->group(group);
-    verb.add_option("--tone-map", flags.tone_map, "of PNG and JPEG: srgb, agx, aces or neutral")
+    verb.add_option("--tone-map", flags.tone_map, "of PNG and JPEG: srgb, agx, aces or neutral (agx)")
         ->type_name("NAME")
         ->check(one_of({"srgb", "agx", "aces", "neutral"}))
-        ->capture_default_str()
         ->group(group);
     verb.add_option("--exposure", flags.exposure,
-                    "of PNG and JPEG: stops, or auto (0; auto where the\nlight was made up for lack of any)")
+                    "of PNG and JPEG: stops, or auto, which looks at a small\npicture of its own (auto)")
         ->type_name("STOPS|auto")
         ->group(group);
     verb.add_flag("--transparent", flags.transparent, "keep how much of a pixel is covered as alpha")->group(group);
@@ -127,7 +147,10 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     group = "Machine";
     add_machine_flags(verb, flags.machine, group);
     verb.add_flag("--no-bvh-cache", flags.no_cache, "build the tree even if it was built before")->group(group);
-    verb.add_flag("--strict", flags.strict, "fail, after writing, when a sample is not finite");
+    verb.add_flag("--strict", flags.strict,
+                  "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
+                  "where a sample is "
+                  "not finite");
     add_report_flags(verb, flags.report);
 }
 
@@ -135,7 +158,10 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
     if (!flags.exposure.empty() && flags.exposure != "auto") parse_number("--exposure", flags.exposure);
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
-    for (const std::string& output : flags.outputs) check_image_output(output, size.width, size.height);
+    for (const std::string& output : flags.outputs) {
+        check_for_list(output, messages);
+        check_image_output(output, size.width, size.height);
+    }
     if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }
@@ -147,7 +173,7 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
             messages.warn(output + ": --transparent: this format has no alpha; the background becomes black");
         }
     }
-    if ((!flags.exposure.empty() || flags.tone_map != "srgb") &&
+    if ((!flags.exposure.empty() || !flags.tone_map.empty()) &&
         !writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg})) {
         throw Error(ErrorCode::BadInput, fmt::format("--{}: light is mapped to tones in PNG and JPEG alone; add -o "
                                                      "NAME.png or .jpg",

@@ -16,7 +16,7 @@ struct RenderFlags {
     SceneOptions scene;
     std::vector<std::string> outputs;
     std::string size;
-    std::string tone_map = "srgb", exposure;
+    std::string tone_map, exposure; // empty: agx, and auto
     bool transparent = false;
     std::vector<std::string> aovs;
     uint32_t samples = 64;

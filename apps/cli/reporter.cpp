@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -17,14 +20,25 @@ void write(std::FILE* file, const std::string& text) {
     std::fflush(file);
 }
 
+/// Whether stderr is a terminal that moves its cursor when told so.
+bool is_drawn_on() {
+    const char* const kind = std::getenv("TERM");
+    return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
+}
+
 } // namespace
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags) {
     verb.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
-    verb.add_flag("--json", flags.json, "one JSON object a line on stdout, and nothing else there");
+    verb.add_flag("--json", flags.json, "one JSON object a line on stdout, errors too, and nothing\nelse there");
 }
 
-Reporter::Reporter(const ReportFlags& flags) : flags_(flags), terminal_(::isatty(STDERR_FILENO) == 1) {}
+Reporter::Reporter(const ReportFlags& flags) : flags_(flags), redraws_(is_drawn_on()) {
+    if (is_silent() || redraws_) return;
+    heartbeat_ = std::make_unique<Heartbeat>(std::chrono::seconds(10), [](double seconds, const std::string& work) {
+        write(stderr, fmt::format("{:.0f} s: {}\n", seconds, work));
+    });
+}
 
 Reporter::~Reporter() {
     end_progress();
@@ -54,12 +68,17 @@ void Reporter::say(const std::string& line) {
 }
 
 void Reporter::progress(double share, const std::string& detail) {
-    if (is_silent() || !terminal_) return;
+    if (!redraws_) set_work(fmt::format("{:.0f} %  {}", 100 * share, detail));
+    if (is_silent() || !redraws_) return;
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
     write(stderr,
           fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
     drawn_ = true;
+}
+
+void Reporter::set_work(const std::string& work) {
+    if (heartbeat_) heartbeat_->set_work(work);
 }
 
 void Reporter::event(const std::string& object) {
@@ -68,6 +87,11 @@ void Reporter::event(const std::string& object) {
 
 void Reporter::answer(const std::string& lines) {
     if (!is_silent()) write(stdout, lines);
+}
+
+void Reporter::output(const std::string& path, const std::string& why_not) {
+    event(fmt::format(R"({{"event":"output","path":{},"written":{},"error":{}}})", json_string(path), why_not.empty(),
+                      why_not.empty() ? "null" : json_string(why_not)));
 }
 
 void Reporter::end_progress() {

@@ -3,8 +3,10 @@
 // What a verb says: messages and a progress line for people on stderr, or one JSON object a line on stdout.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
+#include "base/heartbeat.h"
 #include "base/json_text.h"
 #include "base/messages.h"
 
@@ -33,12 +35,17 @@ public:
     void say_messages();
     /// One line for people, on stderr.
     void say(const std::string& line);
-    /// Share done in [0, 1], and what stands behind the bar. Redrawn in place, only on a terminal.
+    /// Share done in [0, 1], and what stands behind the bar. Redrawn in place on a terminal; where there is none, or a
+    /// dumb one, a line every 10 s.
     void progress(double share, const std::string& detail);
+    /// What is being done from now on, for these lines: where there is no share yet.
+    void set_work(const std::string& work);
     /// A JSON object ("{...}") of the given event; only with --json.
     void event(const std::string& object);
     /// What the verb was asked for, for people, on stdout.
     void answer(const std::string& lines);
+    /// A file that was written, or with a reason one that was not; only with --json.
+    void output(const std::string& path, const std::string& why_not = "");
     void end_progress();
 
     bool json() const { return flags_.json; }
@@ -48,9 +55,10 @@ private:
 
     ReportFlags flags_;
     Messages messages_;
-    bool terminal_;
+    bool redraws_; // a terminal that takes escapes
     bool drawn_ = false;
     std::size_t said_ = 0;
+    std::unique_ptr<Heartbeat> heartbeat_; // where nobody sees a bar
 };
 
 } // namespace pertev

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/aim_camera.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
@@ -66,7 +67,19 @@ void place_camera(const SceneOptions& options, Camera& camera) {
                                 eye.z, target.x, target.y, target.z, of_up));
     }
     camera.world_from_camera = placed;
-    if (options.focus_m <= 0) camera.focus_distance = length(target - eye);
+    if (!options.target.empty()) camera.focus_distance = length(target - eye);
+}
+
+/// For a scene without a camera and flags without an eye.
+Camera make_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages) {
+    if (options.target.empty()) return make_default_camera(scene, aspect, messages);
+    Messages unsaid; // of a view that is not to be: it looks elsewhere
+    const Camera camera = make_default_camera(scene, aspect, unsaid);
+    const Vec3 eye = camera.world_from_camera.translation;
+    messages.note(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {:.4g},{:.4g},{:.4g} "
+                              "--target {})",
+                              eye.x, eye.y, eye.z, options.target));
+    return camera;
 }
 
 /// Turns a perspective camera into an orthographic one that shows as much of what it looks at.
@@ -108,12 +121,15 @@ void check_scene_options(const SceneOptions& options) {
 void add_view_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
         ->type_name("")
+        ->check(file_name())
         ->required();
     const char* group = "Camera";
     verb.add_option("--camera", options.camera, "the scene's camera of this name or number, from 0")
         ->type_name("NAME|N")
         ->group(group);
-    verb.add_option("--eye", options.eye, "where the camera is, metres")->type_name("X,Y,Z")->group(group);
+    verb.add_option("--eye", options.eye, "where the camera is, metres; looks at the scene's middle\nwithout --target")
+        ->type_name("X,Y,Z")
+        ->group(group);
     verb.add_option("--target", options.target, "what it looks at")->type_name("X,Y,Z")->group(group);
     verb.add_option("--up", options.up, "upwards (0,1,0)")->type_name("X,Y,Z")->group(group);
     verb.add_option("--fov", options.fov_deg, "full vertical angle of view, degrees")
@@ -141,7 +157,8 @@ void add_lens_options(CLI::App& verb, SceneOptions& options) {
         ->check(number_between(0, kMaxCoordinate))
         ->group(group);
     verb.add_option("--focus", options.focus_m,
-                    "of a lens with an aperture: distance in focus, metres (that of\nthe target)")
+                    "of a lens with an aperture: distance in focus, metres (that of\n--target, else of what is in the "
+                    "middle of the picture)")
         ->type_name("M")
         ->check(length_m())
         ->group(group);
@@ -181,15 +198,12 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
     return read_scene(name, read, messages);
 }
 
-LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
+Scene load_scene(const SceneOptions& options, Messages& messages) {
     Scene scene = read_any_scene(options.scene, options.allowed_paths, messages);
     if (!options.environment.empty()) {
         scene.environment = environment_of(options, messages);
     }
-    const bool had_environment = scene.environment.has_value();
-    const std::size_t lights = scene.lights.size();
     add_default_environment(scene, messages);
-    const bool default_light = scene.lights.size() != lights || scene.environment.has_value() != had_environment;
     if (scene.environment) {
         scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
         scene.environment->scale = options.environment_scale * scene.environment->scale;
@@ -200,7 +214,7 @@ LoadedScene load_scene(const SceneOptions& options, Messages& messages) {
         if (options.environment_rotation_deg != 0) warn("--environment-rotation");
         if (options.environment_scale != 1) warn("--environment-scale");
     }
-    return {std::move(scene), default_light};
+    return scene;
 }
 
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene) {
@@ -208,13 +222,14 @@ const Camera* scene_camera(const SceneOptions& options, const Scene& scene) {
     return scene.cameras.empty() ? nullptr : &scene.cameras.front();
 }
 
-Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages) {
+Camera choose_camera(const SceneOptions& said, const Scene& scene, float aspect, Messages& messages) {
+    SceneOptions options = said;
+    aim_eye(options, scene, messages);
     Camera camera;
-    const bool placed = !options.eye.empty() && !options.target.empty();
     if (const Camera* given = scene_camera(options, scene)) {
         camera = *given;
-    } else if (!placed) {
-        camera = make_default_camera(scene, aspect, messages);
+    } else if (options.eye.empty()) {
+        camera = make_camera(options, scene, aspect, messages);
     }
     place_camera(options, camera);
     if (options.fov_deg > 0) camera.fov_y = options.fov_deg * kRadiansPerDegree;
@@ -224,6 +239,7 @@ Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspe
     const bool flattened = options.projection == "orthographic" && camera.projection == Projection::Perspective;
     if (flattened) flatten(options, scene, camera);
     if (options.view_height_m > 0) camera.ortho_height = options.view_height_m;
+    focus_in_the_middle(options, scene, camera, messages);
     warn_of_useless_flags(options, camera, flattened, messages);
     return camera;
 }

@@ -21,7 +21,8 @@ struct SceneOptions {
     std::vector<std::filesystem::path> allowed_paths;
     std::string camera; // name or number
     std::string eye, target, up;
-    float fov_deg = 0; // 0: the camera's own
+    bool is_aimed = false; // the target is made up (apps/cli/aim_camera.h)
+    float fov_deg = 0;     // 0: the camera's own
     float aperture_m = -1, focus_m = 0;
     std::string projection; // "", "perspective", "orthographic"
     float view_height_m = 0;
@@ -43,14 +44,9 @@ void check_scene_options(const SceneOptions& options);
 Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
                      Messages& messages);
 
-struct LoadedScene {
-    Scene scene;
-    bool default_light = false; // it brought none of its own
-};
-
 /// The scene read, with the environment that the flags or the defaults give it. A flag that this scene makes useless is
 /// a warning. Throws Error.
-LoadedScene load_scene(const SceneOptions& options, Messages& messages);
+Scene load_scene(const SceneOptions& options, Messages& messages);
 
 /// The scene's own camera: the one that --camera names, else the first, else null. Throws Error(BadInput) that lists
 /// those there are when none is named so.

@@ -75,7 +75,7 @@ void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& set
     const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
     const RenderResult local = render(queue, prepared, scene.camera, settings, PathLight::Direct);
     const RenderResult global = render(queue, prepared, scene.camera, settings, PathLight::Path);
-    const float stops = scene.default_light ? auto_exposure_stops(global.picture) : 0;
+    const float stops = scene.default_light ? auto_exposure_stops(global.picture, ToneMap::Srgb) : 0;
     const auto caption = [&](const char* light, const RenderResult& result) {
         return fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result.samples,
                            interrupted() ? " (interrupted)" : "");
@@ -142,12 +142,16 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         if (has_findings(report)) {
             thesis.scenes.push_back(std::move(report));
             if (!output.empty()) {
+                reporter.set_work(fmt::format("{}: rendering pictures", scene.name));
                 if (!interrupted()) add_pictures(queue, scene, settings, reporter.messages(), thesis);
                 write_files(output, thesis);
             }
         }
         if (interrupted()) break;
     }
+    const bool cut_short = interrupted();
+    reporter.event(
+        fmt::format(R"({{"event":"thesis","scenes":{},"interrupted":{}}})", thesis.scenes.size(), cut_short));
     if (thesis.scenes.empty()) { // only an interrupt comes so early
         reporter.say("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);
@@ -157,7 +161,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
     }
     for (const LabReport& report : thesis.scenes) fail_if_wrong(report);
-    return interrupted() ? exit_status(ErrorCode::Interrupted) : 0;
+    return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
 } // namespace pertev

@@ -3,6 +3,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -11,7 +14,6 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/version.h"
-#include "image/auto_exposure.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_image.h"
@@ -65,12 +67,19 @@ void add_environment(const SceneOptions& options, bool is_there, ExrMetadata& me
                      {"pertev.environment_rotation", options.environment_rotation_deg}});
 }
 
+/// How the PNG or JPEG beside this EXR shows the picture.
+void add_display(const Display& display, ExrMetadata& metadata) {
+    if (!display.is_used) return;
+    metadata.insert(metadata.end(), {{"pertev.tone_map", std::string(name_of(display.tone_map))},
+                                     {"pertev.exposure", display.exposure_stops}});
+}
+
 /// How the picture was made, all that is needed to make it again among it.
 ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, const RenderRecord& record,
                         const std::string& hash) {
     ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
                             {"pertev.scene", flags.scene.scene},
-                            {"pertev.samples", static_cast<int32_t>(result.samples)},
+                            {"pertev.spp", static_cast<int32_t>(result.samples)},
                             {"pertev.max_depth", static_cast<int32_t>(flags.max_depth)},
                             {"pertev.integrator", flags.integrator},
                             {"pertev.sampler", flags.sampler},
@@ -87,6 +96,7 @@ ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, co
                             {"pertev.rays", static_cast<double>(result.rays.total())}};
     add_camera(flags.scene, record.camera, metadata);
     add_environment(flags.scene, record.has_environment, metadata);
+    add_display(record.display, metadata);
     return metadata;
 }
 
@@ -103,36 +113,35 @@ std::vector<ExrLayer> layers_of(RenderResult& result) {
     return layers;
 }
 
-bool is_tone_mapped(const std::string& output) {
-    const ImageFormat format = image_format_for(output);
-    return format == ImageFormat::Png || format == ImageFormat::Jpeg;
-}
-
-bool wants_auto_exposure(const RenderFlags& flags, bool default_light) {
-    return flags.exposure == "auto" || (flags.exposure.empty() && default_light);
-}
-
-/// Stops for PNG and JPEG.
-float exposure_of(const RenderFlags& flags, bool default_light, const Image& picture, Reporter& reporter) {
-    if (!wants_auto_exposure(flags, default_light)) {
-        return flags.exposure.empty() ? 0.0f : parse_number("--exposure", flags.exposure);
+/// Of a value of an EXR's metadata.
+template <class Value>
+std::string json_of(const Value& value) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+        return json_string(value);
+    } else {
+        return json_number(static_cast<double>(value));
     }
-    const float stops = auto_exposure_stops(picture);
-    if (std::ranges::any_of(flags.outputs, is_tone_mapped)) {
-        reporter.messages().note(fmt::format("exposed by {:+.2f} stops (--exposure {:.2f})", stops, stops));
-        reporter.say_messages();
-    }
-    return stops;
 }
 
 } // namespace
+
+void report_camera(const SceneOptions& options, const Camera& camera, Reporter& reporter) {
+    ExrMetadata flags;
+    add_camera(options, camera, flags);
+    std::string object = R"({"event":"camera")";
+    for (const auto& [name, value] : flags) {
+        object += fmt::format(",{}:{}", json_string(name.substr(std::string_view("pertev.").size())),
+                              std::visit([](const auto& v) { return json_of(v); }, value));
+    }
+    reporter.event(object + '}');
+}
 
 WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record, RenderResult& result,
                            Reporter& reporter) {
     WrittenResult written = {picture_hash(result.picture).hex(), {}};
     WriteImageOptions write;
-    write.tone_map = *tone_map_named(flags.tone_map);
-    write.exposure_stops = exposure_of(flags, record.default_light, result.picture, reporter);
+    write.tone_map = record.display.tone_map;
+    write.exposure_stops = record.display.exposure_stops;
     write.transparent = flags.transparent;
     const std::vector<ExrLayer> layers = layers_of(result);
     write.layers = layers;
@@ -140,8 +149,10 @@ WrittenResult write_result(const RenderFlags& flags, const RenderRecord& record,
     for (const std::string& output : flags.outputs) {
         try {
             write_image(output, result.picture, write);
+            reporter.output(output);
         } catch (const Error& error) {
             written.failures.emplace_back(error.what());
+            reporter.output(output, error.what());
         }
     }
     return written;
@@ -161,10 +172,10 @@ void report_result(const RenderRecord& record, const RenderResult& result, const
         record.is_cuda ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
         counted(result.invalid_samples, "invalid sample"), hash));
     reporter.event(fmt::format(
-        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{}}})",
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, json_number(samples_per_second),
         json_number(rays_per_second), host_bytes, result.device_peak_bytes, result.invalid_samples, hash,
-        json_string(record.device)));
+        json_string(record.device), record.interrupted));
 }
 
 } // namespace pertev

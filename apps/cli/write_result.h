@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/choose_display.h"
 #include "apps/cli/render_flags.h"
 #include "apps/cli/reporter.h"
 
@@ -14,17 +15,22 @@ namespace pertev {
 struct RenderRecord {
     std::string device;
     bool is_cuda = false;
-    bool default_light = false; // made up for lack of any: the exposure then follows the picture
     bool has_environment = false;
     float filter_radius = 0; // pixels
     Camera camera;
+    Display display;
     double load_seconds = 0, build_seconds = 0;
+    bool interrupted = false; // before all samples were done
 };
 
 struct WrittenResult {
     std::string hash;                  // of the picture
     std::vector<std::string> failures; // why a file could not be written, for each such
 };
+
+/// With --json, an object of the flags that place this camera, under the names and with the values that they have in an
+/// EXR's metadata.
+void report_camera(const SceneOptions& options, const Camera& camera, Reporter& reporter);
 
 /// Writes the files that the flags name, each all or nothing; one that fails does not keep the others from being
 /// written. Takes the layers out of `result`.

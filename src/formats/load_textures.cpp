@@ -97,8 +97,8 @@ int32_t TextureLoader::add_file(const fs::path& from, const std::string& referen
     const std::optional<fs::path> path = access_.find(from, reference, messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_.warn(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(),
-                                       shortened(reference)));
+            messages_.warn_of_missing(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(),
+                                                  shortened(reference)));
         }
         return kNoImage;
     }
@@ -138,7 +138,7 @@ void TextureLoader::check_budget(const std::vector<uint64_t>& bytes, uint64_t li
 
 void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
-        messages_.warn(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
+        messages_.warn_of_missing(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
     std::vector<TextureImage> decoded(sources_.size());
     const std::vector<Uses> uses = uses_of(scene, sources_.size());
@@ -174,7 +174,7 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
             }
         }
         if (!faults[i].empty()) {
-            messages_.warn(fmt::format("{}; its factor alone is used", faults[i]));
+            messages_.warn_of_missing(fmt::format("{}; its factor alone is used", faults[i]));
             continue;
         }
         renumbered[i] = static_cast<int32_t>(scene.images.size());

@@ -70,8 +70,7 @@ private:
             if (from.ni > 1) to.ior = from.ni;
             return;
         }
-        const bool is_glass = from.illum == 6 || from.illum == 7 ||
-                              ((from.illum == 4 || from.illum == 9) && (from.d < 1 || is_dark)) ||
+        const bool is_glass = from.illum == 6 || from.illum == 7 || ((from.illum == 4 || from.illum == 9) && is_dark) ||
                               (from.d < 1 && from.ni > 1 && !is_black(from.tf));
         if (is_glass && !has_map_d) {
             to.kind = MaterialKind::Dielectric;

@@ -3,7 +3,7 @@
 // Wavefront .mtl files (parse_mtl.h) to our materials. MTL says how a Phong shader of 1990 blends colours; the
 // conversion, in this order:
 //   PBR keys (Pr, Pm, map_Pr, map_Pm)           MetallicRoughness with them
-//   illum 6 or 7; illum 4 or 9 with d < 1 or Kd near black; d < 1 with Ni > 1 and Tf
+//   illum 6 or 7; illum 4 or 9 with Kd near black; d < 1 with Ni > 1 and Tf
 //                                               smooth Dielectric of index Ni, tinted by sqrt(Tf) at each surface
 //   Ks above 0.1 with Kd near black, or illum 3, 5 or 8 with Ks above Kd
 //                                               metal of colour Ks; a mirror for illum 3, 5, 8, else rough by Ns

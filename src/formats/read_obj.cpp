@@ -119,7 +119,7 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
         if (const std::optional<fs::path> path = access.find(place, name, messages)) {
             found.push_back(*path);
         } else {
-            messages.warn(
+            messages.warn_of_missing(
                 fmt::format("{}: there is no material file {}; what it describes is grey", place, shortened(name)));
         }
     }

@@ -16,7 +16,8 @@ namespace pertev {
 /// result is opaque: the picture over black.
 Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops = 0, bool keep_alpha = true);
 
-/// The kind of a name on the command line: srgb, agx, aces, neutral.
+/// Names on the command line: srgb, agx, aces, neutral.
+std::string_view name_of(ToneMap kind);
 std::optional<ToneMap> tone_map_named(std::string_view name);
 
 } // namespace pertev

@@ -39,50 +39,96 @@ std::optional<double> seconds_of(const LabReport& report, const ThesisVariant& v
     return c != nullptr && !c->wrong ? frame_seconds(report, *c, depth) : std::nullopt;
 }
 
+using Names = std::vector<std::string>;
+
 struct Table {
     std::string title;
     std::vector<std::vector<std::string>> rows; // the first is the head
 };
 
-enum class Quantity { Frames, Rays };
-
-std::string figure_text(const LabReport& report, int depth, double seconds, Quantity quantity) {
-    if (quantity == Quantity::Frames) {
-        return fmt::format("{} ({})", fixed_text(1 / seconds, 2), fixed_text(seconds, 5));
-    }
-    return fixed_text(static_cast<double>(frame_rays(report, depth)) / seconds * 1e-6, 2);
+/// The variants of these names that this kind of device has, in their own order.
+std::vector<ThesisVariant> variants_named(const Names& names, bool is_cuda) {
+    std::vector<ThesisVariant> variants = thesis_variants(is_cuda);
+    std::erase_if(variants, [&](const ThesisVariant& v) { return std::ranges::find(names, v.name) == names.end(); });
+    return variants;
 }
 
-/// Of one scene: a row a depth, a column a variant.
-Table make_table(const LabReport& report, bool is_cuda, const std::string& title, Quantity quantity) {
-    Table table = {title, {{"depth"}}};
-    const std::vector<ThesisVariant> variants = thesis_variants(is_cuda);
-    for (const ThesisVariant& v : variants) table.rows[0].emplace_back(v.name);
+/// Two columns a variant.
+void add_head(const std::vector<ThesisVariant>& variants, std::vector<std::string>& head) {
+    for (const ThesisVariant& v : variants) {
+        head.push_back(fmt::format("{} frames/s (s)", v.name));
+        head.push_back(fmt::format("{} Mrays/s", v.name));
+    }
+}
+
+/// A row for each depth of the report, with `first` in front.
+void add_rows(const LabReport& report, const std::vector<ThesisVariant>& variants,
+              const std::vector<std::string>& first, Table& table) {
     for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
-        std::vector<std::string> row = {fmt::format("{}", depth)};
+        std::vector<std::string> row = first;
+        row.push_back(fmt::format("{}", depth));
         for (const ThesisVariant& v : variants) {
             const CombinationFigures* c = find(report, v.combination);
-            const std::optional<double> seconds = seconds_of(report, v, depth);
-            row.push_back(seconds ? figure_text(report, depth, *seconds, quantity)
-                                  : (c != nullptr && c->wrong ? "WRONG" : "-"));
+            if (const std::optional<double> seconds = seconds_of(report, v, depth)) {
+                const double rays = static_cast<double>(frame_rays(report, depth));
+                row.push_back(fmt::format("{} ({})", fixed_text(1 / *seconds, 2), fixed_text(*seconds, 5)));
+                row.push_back(fixed_text(rays / *seconds * 1e-6, 2));
+            } else {
+                row.insert(row.end(), 2, c != nullptr && c->wrong ? "WRONG" : "-");
+            }
         }
         table.rows.push_back(row);
     }
+}
+
+/// Of one scene: a row a depth.
+Table depth_table(const LabReport& report, const std::string& title, const std::vector<ThesisVariant>& variants) {
+    Table table = {title, {{"depth"}}};
+    add_head(variants, table.rows[0]);
+    add_rows(report, variants, {}, table);
     return table;
 }
 
+/// Table 6.6.
+Table peer_table(const ThesisReport& thesis) {
+    const std::vector<ThesisVariant> variants =
+        variants_named({"SWW", "PSWW", "Packet", "PPacket", "A"}, on_cuda(thesis));
+    const LabReport& one = thesis.scenes.front();
+    Table table = {fmt::format("Table 6.6: {} at {}x{} against Aila and Laine's kernel (A)",
+                               thesis.scenes.size() > 1 ? "both scenes" : one.scene, one.width, one.height),
+                   {{"scene", "depth"}}};
+    add_head(variants, table.rows[0]);
+    for (const LabReport& report : thesis.scenes) add_rows(report, variants, {report.scene}, table);
+    return table;
+}
+
+/// As the thesis's captions number them, and then what its figures draw and no table has.
 std::vector<Table> tables_of(const ThesisReport& thesis) {
-    std::vector<Table> tables;
-    int number = 3;
-    for (const LabReport& report : thesis.scenes) {
-        tables.push_back(
-            make_table(report, on_cuda(thesis),
-                       fmt::format("Table 6.{}: {}, frames a second (seconds a frame)", number++, report.scene),
-                       Quantity::Frames));
-        tables.push_back(make_table(report, on_cuda(thesis),
-                                    fmt::format("Table 6.{}: {}, million rays a second", number++, report.scene),
-                                    Quantity::Rays));
+    const bool is_cuda = on_cuda(thesis);
+    const char* const both_ways =
+        is_cuda ? "with and without persistent threads" : "without persistent threads, which a CPU has not got";
+    const char* const without_rta = is_cuda ? "with persistent threads and without RTA"
+                                            : "without RTA, and without persistent threads, which a CPU has not got";
+    const Names in_figures = {"SWW-R", "PSWW-R", "Packet-R", "PPacket-R"};
+    const Names of_table_5 = is_cuda ? Names{"PSWW-R", "PPacket-R"} : Names{"SWW-R", "Packet-R"};
+    std::vector<Table> tables, beside;
+    for (std::size_t i = 0; i < thesis.scenes.size(); ++i) {
+        const LabReport& report = thesis.scenes[i];
+        tables.push_back(depth_table(report, fmt::format("Table 6.{}: {} {}", 3 + i, report.scene, both_ways),
+                                     variants_named({"SWW", "PSWW", "Packet", "PPacket"}, is_cuda)));
+        std::vector<ThesisVariant> rest = variants_named(in_figures, is_cuda);
+        if (i > 0) {
+            const std::string title = fmt::format("Table 6.5: {} {}", report.scene, without_rta);
+            tables.push_back(depth_table(report, title, variants_named(of_table_5, is_cuda)));
+            std::erase_if(rest, [&](const ThesisVariant& v) {
+                return std::ranges::find(of_table_5, v.name) != of_table_5.end();
+            });
+        }
+        const std::string title = fmt::format("Figures 6.9 to 6.11 beside: {} without RTA", report.scene);
+        if (!rest.empty()) beside.push_back(depth_table(report, title, rest));
     }
+    if (!thesis.scenes.empty()) tables.push_back(peer_table(thesis));
+    tables.insert(tables.end(), beside.begin(), beside.end());
     return tables;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 // Chapter 6 of Bellek, "Realtime photo-realistic rendering using modern GPU systems", M.Sc. thesis, ITU 2014, measured
-// anew: tables 6.3 to 6.6 (frames a second, seconds a frame and rays a second over the depth of paths, in the Cornell
-// box and in Sibenik cathedral at 1024x768) and figures 6.7 to 6.11. P = persistent threads, R = without redundant
-// traversal avoidance, A = Aila and Laine's kernel: dynamic fetch, Woop's unit-triangle test, boxes that are not grown.
+// anew: frames a second, seconds a frame and rays a second over the depth of paths at 1024x768. Table 6.3: the Cornell
+// box with and without persistent threads; 6.4: Sibenik cathedral likewise; 6.5: Sibenik with persistent threads and
+// without redundant traversal avoidance; 6.6: both against Aila and Laine's kernel. And figures 6.7 to 6.11.
+// P = persistent threads, R = without redundant traversal avoidance, A = Aila and Laine's kernel: dynamic fetch, Woop's
+// unit-triangle test, boxes that are not grown.
 
 #include <string>
 #include <vector>

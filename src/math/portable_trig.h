@@ -62,8 +62,6 @@ HD inline ReducedAngle reduce_large_angle(float x) {
     return {high, static_cast<float>(angle - static_cast<double>(high)), turns};
 }
 
-HD inline bool is_large_angle(float x) { return (bits_of(x) & 0x7fffffffu) >= 0x47800000u; } // 2^16, or NaN
-
 /// For finite x; high + low is good to about 2^-45.
 HD inline ReducedAngle reduce_angle(float x) {
     const bool large = (bits_of(x) & 0x7fffffffu) >= 0x47800000u; // 2^16

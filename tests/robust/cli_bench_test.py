@@ -28,7 +28,7 @@ class Bench(CliTest):
                 with self.subTest(flag=flag, verb=verb[0]):
                     outcome = self.refuse(2, "bench", *flag.split(), *verb, "--scene", "cornell-box",
                                           says=[flag.split()[0].replace("-q", "--quiet"), f"`bench {verb[0]}`"])
-                    self.assertEqual(outcome.stdout, "")
+                    self.assertEqual(len(outcome.stdout.splitlines()), flag == "--json")
         self.refuse(2, "bench", "rays", "render", "--scene", "cornell-box", says=["render"])
 
     def test_errors_of_the_line_come_before_anything_is_measured_or_printed(self):
@@ -67,7 +67,7 @@ class Bench(CliTest):
                     stdout, stderr = program.communicate(timeout=300)
                     self.assertEqual(program.returncode, 75, stderr)
                     self.assertLess(time.monotonic() - start, 60)
-                    self.assertTrue(stderr.decode().endswith("pertev: interrupted\n"), stderr)
+                    self.assertRegex(stderr.decode(), r"pertev: interrupted( before .*)?\n$")  # the latter while it loads
                     self.assertEqual(os.listdir(scratch), [])
                     self.assertEqual(self.files(), [])
                     self.assertEqual(stdout, b"")

@@ -193,7 +193,11 @@ class WhatIsWritten(LabTest):
         self.assertEqual(program.returncode, 75, stderr)
         if not SANITIZED:
             self.assertLess(time.monotonic() - begin, 5)
-        report = json.loads(stdout.splitlines()[-1])
+        said = [json.loads(text) for text in stdout.splitlines()]
+        self.assertTrue(said[-1]["interrupted"], said[-1])
+        if "--thesis" in line:
+            self.assertEqual(said.pop()["event"], "thesis")
+        report = said[-1]
         self.assertEqual((report["event"], report["interrupted"]), ("lab", True))
         for of in report["combinations"]:
             self.assertTrue(of["runs"] or of["refused"], of)

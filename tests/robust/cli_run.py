@@ -39,6 +39,13 @@ class Outcome:
         lines = [json.loads(line, parse_constant=refuse_constant) for line in self.stdout.split("\n") if line]
         return lines if kind is None else [line for line in lines if line["event"] == kind]
 
+    def error(self):
+        """What it says went wrong: the JSON object that ends stdout, or all of stderr."""
+        if "--json" not in self.arguments:
+            return self.stderr
+        last = (self.events() or [{}])[-1]
+        return last["text"] if last.get("event") == "error" and last["status"] == self.status else ""
+
     def __str__(self):
         return f"pertev {' '.join(self.arguments)}\nstatus {self.status}\n{self.stdout}{self.stderr}"
 
@@ -53,7 +60,8 @@ class CliTest(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.folder = os.path.join(scratch.name, "work")
         os.mkdir(self.folder)
-        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(scratch.name, "cache"), CUDA_VISIBLE_DEVICES="")
+        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(scratch.name, "cache"), CUDA_VISIBLE_DEVICES="",
+                                TERM="xterm")
 
     def path(self, name):
         return os.path.join(self.folder, name)
@@ -77,19 +85,22 @@ class CliTest(unittest.TestCase):
         return outcome
 
     def refuse(self, status, *arguments, says=(), **options):
-        """Ends with this status, says each of `says` on stderr, and leaves the folder as it was."""
+        """Ends with this status, says each of `says` on stderr, with --json in an object, and leaves the folder as it
+        was."""
         before = self.files()
         outcome = self.run_pertev(*arguments, **options)
         self.assertEqual(outcome.status, status, outcome)
         for text in says:
-            self.assertIn(text, outcome.stderr, outcome)
-        self.assertNotIn("mistake of pertev's own", outcome.stderr, outcome)
-        self.assertNotEqual(outcome.stderr.strip(), "", outcome)
+            self.assertIn(text, outcome.error(), outcome)
+        self.assertNotIn("mistake of pertev's own", outcome.error(), outcome)
+        self.assertNotEqual(outcome.error().strip(), "", outcome)
+        if "--json" in outcome.arguments:
+            self.assertEqual(outcome.stderr, "", outcome)
         self.assertEqual(self.files(), before, outcome)
         return outcome
 
     def wait_while(self, program, is_listening):
-        """Until the running program begins to listen for Ctrl-C, or has heard one, or has ended."""
+        """Until the running program begins to hear Ctrl-C, at once after its start, or has heard one, or has ended."""
         while program.poll() is None:
             with open(f"/proc/{program.pid}/status", encoding="ascii") as file:
                 caught = int(re.search(r"SigCgt:\s*([0-9a-f]+)", file.read()).group(1), 16)

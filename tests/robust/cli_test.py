@@ -72,7 +72,9 @@ class WhatIsWritten(CliTest):
         self.assertEqual(self.info("small.jpg")["width"], 36)
         self.assertEqual(len(outcome.events("done")), 1)
         for name in ["large.hdr", "large.exr"]:
-            self.assertIn(name, outcome.stderr)
+            self.assertIn(name, outcome.error())
+        self.assertEqual([(of["path"], of["written"], of["error"] is None) for of in outcome.events("output")],
+                         [("large.hdr", False, False), ("small.jpg", True, True), ("large.exr", False, False)])
 
     def test_new_files_follow_the_users_mask_and_old_ones_keep_their_permissions(self):
         def mode(name):
@@ -155,8 +157,10 @@ class WhatIsSaid(CliTest):
     def test_json_lines_all_parse_and_stdout_has_nothing_else(self):
         outcome = self.succeed("render", "cornell-box", "-o", "x.exr", "--size", "32x32", "--spp", "3", "--json")
         kinds = [event["event"] for event in outcome.events()]
-        self.assertLessEqual(set(kinds), {"notice", "warning", "progress", "done"})
+        self.assertLessEqual(set(kinds), {"notice", "warning", "scene", "picture", "camera", "progress", "exposure", "output",
+                                          "done"})
         self.assertEqual(kinds[-1], "done")
+        self.assertIs(outcome.events()[-1]["interrupted"], False)
         self.assertEqual(outcome.stderr, "")
         self.assertEqual(outcome.events("progress")[-1]["samples"], 3)
         self.assertEqual(len(self.succeed("info", "x.exr", "--json").events()), 1)
@@ -250,16 +254,17 @@ class WhenItEnds(CliTest):
             stdout, stderr = program.communicate(timeout=300)
             self.assertEqual(program.returncode, 75, stderr)
             done = json.loads(stdout.splitlines()[-1])
-            self.assertEqual(done["event"], "done")
+            self.assertEqual((done["event"], done["interrupted"]), ("done", True))
             self.assertGreaterEqual(done["samples"], 2)
             part = self.info("part.exr")
-            self.assertEqual((part["hash"], part["pertev.samples"]), (done["hash"], done["samples"]))
+            self.assertEqual((part["hash"], part["pertev.spp"]), (done["hash"], done["samples"]))
             self.assertEqual(self.render(size="48x48", spp=done["samples"], output="whole.exr")["hash"], done["hash"])
             self.assertEqual(self.files(), ["part.exr", "part.png", "whole.exr"])
 
     def test_a_second_interrupt_kills_and_nothing_is_left_behind(self):
         program = self.start("-o", "x.png", "--size", "6000x6000", "--spp", "64", "--threads", "1")
-        self.wait_while(program, is_listening=False)
+        while b"; rendering " not in program.stderr.readline():
+            self.assertIsNone(program.poll())
         program.send_signal(signal.SIGINT)
         self.wait_while(program, is_listening=True)  # until the first is heard
         self.assertIsNone(program.poll(), "the first interrupt waits for the sample to be whole")
@@ -289,7 +294,7 @@ class WhatIsRendered(CliTest):
     def test_the_metadata_of_an_exr_tell_how_it_was_made(self):
         self.render("--seed", "7", "--max-depth", "3", spp=5, output="x.exr")
         made = self.info("x.exr")
-        self.assertEqual((made["pertev.samples"], made["pertev.seed"], made["pertev.max_depth"]), (5, "7", 3))
+        self.assertEqual((made["pertev.spp"], made["pertev.seed"], made["pertev.max_depth"]), (5, "7", 3))
         for name in ["version", "scene", "integrator", "sampler", "filter", "device", "rays", "render_seconds",
                      "load_seconds", "build_seconds", "invalid_samples"]:
             self.assertIn(f"pertev.{name}", made)

@@ -1,15 +1,17 @@
-// The exposure that brings a picture of unknown scale to a middle grey.
+// The exposure that makes a picture of unknown scale one to look at.
 
 #include <doctest/doctest.h>
 
 #include <cstddef>
 
 #include "image/auto_exposure.h"
-#include "math/portable_math.h"
+#include "image/tone_map_image.h"
 
 using namespace pertev;
 
 namespace {
+
+constexpr ToneMap kAll[] = {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral};
 
 /// 160 x 80 grey pixels, each as `value(x, y)` says.
 template <class Value>
@@ -21,26 +23,76 @@ Image picture(Value value) {
     return image;
 }
 
+float stops_of(const Image& image, ToneMap tone_map = ToneMap::Agx) { return auto_exposure_stops(image, tone_map); }
+
+/// Share of the pixels that come out white.
+double burnt_share(const Image& image, ToneMap tone_map, float stops) {
+    const Rgba8Image shown = tone_map_image(image, tone_map, stops);
+    std::size_t burnt = 0;
+    for (std::size_t i = 0; i < shown.pixels.size(); i += 4) {
+        burnt += shown.pixels[i] == 255 && shown.pixels[i + 1] == 255 && shown.pixels[i + 2] == 255;
+    }
+    return 4.0 * static_cast<double>(burnt) / static_cast<double>(shown.pixels.size());
+}
+
 } // namespace
 
 TEST_CASE("an even grey becomes middle grey, and twice the light takes one stop off") {
-    const float once = auto_exposure_stops(picture([](uint32_t, uint32_t) { return 0.36f; }));
-    const float twice = auto_exposure_stops(picture([](uint32_t, uint32_t) { return 0.72f; }));
-    CHECK(once == doctest::Approx(-1).epsilon(1e-5));
-    CHECK(twice == doctest::Approx(-2).epsilon(1e-5));
+    for (const ToneMap tone_map : kAll) {
+        CHECK(stops_of(picture([](uint32_t, uint32_t) { return 0.36f; }), tone_map) == -1.0f);
+        CHECK(stops_of(picture([](uint32_t, uint32_t) { return 0.72f; }), tone_map) == -2.0f);
+        CHECK(stops_of(picture([](uint32_t, uint32_t) { return 0.18f * 0x1p30f; }), tone_map) == -30.0f);
+    }
 }
 
 TEST_CASE("noise does not change the exposure") {
     const auto noisy = picture([](uint32_t x, uint32_t y) { return x % 4 == 1 && y % 4 == 2 ? 16 * 0.18f : 0.0f; });
-    CHECK(auto_exposure_stops(noisy) == doctest::Approx(0).epsilon(1e-4));
+    CHECK(stops_of(noisy) == 0.0f);
 }
 
 TEST_CASE("a dark room does not burn out the fifth of the picture that is lit") {
-    const float stops = auto_exposure_stops(picture([](uint32_t x, uint32_t) { return x < 32 ? 0.5f : 1e-4f; }));
-    CHECK(stops == doctest::Approx(1).epsilon(1e-5));
+    const Image room = picture([](uint32_t x, uint32_t) { return x < 32 ? 0.5f : 1e-4f; });
+    for (const ToneMap tone_map : kAll) {
+        const float stops = stops_of(room, tone_map);
+        const float shown = pertev::tone_map(grey(0.5f), tone_map, exposure_scale(stops)).g;
+        CHECK(shown <= 0.81f);
+        CHECK(shown > 0.78f);
+    }
+}
+
+TEST_CASE("of a few very bright pixels at most half a hundredth of the picture is burnt") {
+    for (const uint32_t columns : {1u, 3u}) { // 0.6 and 1.9 % of the picture, at 300 to 3000 times the rest
+        const Image image = picture(
+            [&](uint32_t x, uint32_t y) { return x < columns ? 60.0f * static_cast<float>(1 + y / 8) : 0.18f; });
+        for (const ToneMap tone_map : kAll) {
+            const float stops = stops_of(image, tone_map);
+            CHECK(burnt_share(image, tone_map, stops) <= 0.005);
+            CHECK(burnt_share(image, tone_map, stops + 0.5f) > 0.005); // and no darker than that
+        }
+    }
+    const Image sparks = picture([](uint32_t x, uint32_t y) { return x == 7 && y < 60 ? 1e6f : 0.18f; }); // 0.47 %
+    CHECK(stops_of(sparks) == 0.0f);
+}
+
+TEST_CASE("what has no weight does not count, and part of a pixel counts as a part") {
+    Image image{160, 80, 4, {}};
+    for (uint32_t i = 0; i < 160 * 80; ++i) {
+        const bool is_lamp = i % 160 >= 40, is_edge = i % 160 == 39; // half covered, its light is half as much
+        const float light = is_lamp ? 1000.0f : (is_edge ? 0.5f : 1.0f) * 0.72f;
+        image.pixels.insert(image.pixels.end(), {light, light, light, is_lamp ? 0.0f : (is_edge ? 0.5f : 1.0f)});
+    }
+    CHECK(stops_of(image) == -2.0f);
+}
+
+TEST_CASE("stops are hundredths, as a flag says them, and stay within their limits") {
+    for (const float light : {1e-30f, 0.0123f, 0.777f, 31.4f, 1e30f}) {
+        const float stops = stops_of(picture([&](uint32_t, uint32_t) { return light; }));
+        CHECK(stops == floor(100 * stops + 0.5f) / 100.0f);
+        CHECK(abs(stops) <= 60);
+    }
 }
 
 TEST_CASE("a picture without light, or without anything finite, is left as it is") {
-    CHECK(auto_exposure_stops(picture([](uint32_t, uint32_t) { return 0.0f; })) == 0.0f);
-    CHECK(auto_exposure_stops(picture([](uint32_t, uint32_t) { return kInfinity; })) == 0.0f);
+    CHECK(stops_of(picture([](uint32_t, uint32_t) { return 0.0f; })) == 0.0f);
+    CHECK(stops_of(picture([](uint32_t, uint32_t) { return kInfinity; })) == 0.0f);
 }

@@ -208,6 +208,10 @@ TEST_CASE("mtl: what a Phong material is converted to") {
     CHECK(glass.roughness == 0);
     CHECK(glass.base_color == Rgb{0.5f, 1, 1});
     CHECK(material_of("Kd 0 0 0\nTf 1 1 1\nNi 1.5\nd 0.1").kind == MaterialKind::Dielectric);
+    for (const std::string illum : {"4", "9"}) {
+        CHECK(material_of("Kd 0.01 0 0\nKs 1 1 1\nNi 1.5\nillum " + illum).kind == MaterialKind::Dielectric);
+        CHECK(material_of("Kd 0 0 0\nNi 1.5\nd 0.3\nillum " + illum).kind == MaterialKind::Dielectric);
+    }
 
     const Material pbr = material_of("Kd 1 0 0\nPr 0.3\nPm 0.9");
     CHECK(pbr.kind == MaterialKind::MetallicRoughness);
@@ -218,6 +222,13 @@ TEST_CASE("mtl: what a Phong material is converted to") {
     CHECK(clear.kind == MaterialKind::Diffuse);
     CHECK(clear.alpha_mode == AlphaMode::Blend);
     CHECK(clear.alpha == 0.25f);
+    for (const std::string illum : {"2", "4", "9"}) { // a half-transparent red sheet keeps its red
+        const Material sheet = material_of("Kd 1 0 0\nNi 1.5\nd 0.5\nillum " + illum);
+        CHECK(sheet.kind == MaterialKind::Diffuse);
+        CHECK(sheet.base_color == Rgb{1, 0, 0});
+        CHECK(sheet.alpha_mode == AlphaMode::Blend);
+        CHECK(sheet.alpha == 0.5f);
+    }
     CHECK(material_of("Kd 0 0 0\nKe 17 12 4").emission == Rgb{17, 12, 4});
 }
 

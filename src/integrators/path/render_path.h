@@ -1,7 +1,7 @@
 #pragma once
 
 // Path tracing: the one file that orders the stages. Its two bodies, a loop per pixel and a wavefront over queues, call
-// the same functions and give the same bytes (tests/consistency/path_bodies_test.cpp).
+// the same functions and give the same bytes (tests/consistency/one_picture_test.cpp).
 
 #include <cstdint>
 

@@ -1,0 +1,125 @@
+#include "apps/cli/describe_usage_error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/cli/parse_values.h"
+#include "apps/cli/suggest_name.h"
+
+namespace pertev {
+namespace {
+
+/// The app, its verb, the verb's own: as far as the line names them.
+std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
+    std::vector<const CLI::App*> verbs = {&app};
+    while (!verbs.back()->get_subcommands().empty()) verbs.push_back(verbs.back()->get_subcommands().front());
+    return verbs;
+}
+
+/// "--output", "-o", ...: what `verb` takes.
+std::vector<std::string> flags_of(const CLI::App& verb) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : verb.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    }
+    return names;
+}
+
+std::vector<std::string> names_below(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(verb->get_name());
+    }
+    return names;
+}
+
+std::string did_you_mean(const std::string& name) {
+    return name.empty() ? "" : fmt::format(" (did you mean {}?)", name);
+}
+
+/// "-.5,1,2" is none.
+bool is_flag(const std::string& word) {
+    return word.size() > 1 && word[0] == '-' && (word[1] == '-' || std::isalpha(static_cast<unsigned char>(word[1])));
+}
+
+/// A flag that the i-th of `verbs` does not have.
+std::string describe_flag(const std::string& word, const std::vector<const CLI::App*>& verbs, std::size_t i) {
+    const std::string flag = word.substr(0, word.find('='));
+    for (std::size_t later = i + 1; later < verbs.size(); ++later) {
+        const std::vector<std::string> flags = flags_of(*verbs[later]);
+        if (std::ranges::find(flags, flag) != flags.end()) {
+            return fmt::format("{0}: stands before {1}; flags of {1} stand behind that name", flag,
+                               verbs[later]->get_name());
+        }
+    }
+    return fmt::format("{}: no such flag{}", flag, did_you_mean(suggest_name(flag, flags_of(*verbs[i]))));
+}
+
+bool takes(const CLI::App& verb, const char* flag) { return verb.get_option_no_throw(flag) != nullptr; }
+
+/// Words that `verb` has no place for, with what they may have been.
+std::string describe_words(const std::vector<std::string>& words, const CLI::App& verb) {
+    std::string text = fmt::format("{}: not understood", fmt::join(words, ", "));
+    const std::string meant = suggest_name(words.front(), names_below(verb));
+    if (!meant.empty()) return text + did_you_mean(meant);
+    if (std::ranges::all_of(words, [](const std::string& word) { return number_in(word).has_value(); })) {
+        return text + "; numbers that belong together are joined by commas: 1,2,3";
+    }
+    if (takes(verb, "SCENE") && takes(verb, "--output")) {
+        return text + "; there is one SCENE, and each picture has a -o of its own";
+    }
+    return takes(verb, "--scene") ? text + "; scenes are named by --scene" : text;
+}
+
+/// What no verb of the line takes, in its order; empty where there is nothing. Words that are no flags are told only
+/// where there is no unknown flag: they may be values of that.
+std::string describe_strangers(const std::vector<const CLI::App*>& verbs) {
+    std::vector<std::string> flags, words;
+    const CLI::App* place = verbs.front(); // of the first word
+    for (std::size_t i = 0; i < verbs.size(); ++i) {
+        for (const std::string& word : verbs[i]->remaining()) {
+            if (is_flag(word)) {
+                flags.push_back(describe_flag(word, verbs, i));
+            } else {
+                if (words.empty()) place = verbs[i];
+                words.push_back(word);
+            }
+        }
+    }
+    if (verbs.size() == 1 && !words.empty()) return describe_words({words.front()}, *place); // a verb, and what is its
+    if (flags.empty() && !words.empty()) return describe_words(words, *place);
+    return fmt::format("{}", fmt::join(flags, "; "));
+}
+
+/// Says which flag is given more often than it is taken; empty where none is.
+std::string describe_repetition(const CLI::App& verb) {
+    for (const CLI::Option* flag : verb.get_options()) {
+        const int most = std::max(flag->get_items_expected_max(), 1);
+        if (flag->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw && int(flag->count()) > most) {
+            return fmt::format("{}: given {} times, taken once", flag->get_name(), flag->count());
+        }
+    }
+    return "";
+}
+
+} // namespace
+
+UsageError describe_usage_error(const CLI::App& app, const CLI::ParseError& error) {
+    const std::vector<const CLI::App*> verbs = verbs_of(app);
+    std::vector<std::string> path;
+    for (const CLI::App* verb : verbs) path.push_back(verb->get_name());
+    UsageError described = {describe_strangers(verbs), fmt::format("{} --help", fmt::join(path, " "))};
+    if (verbs.size() == 1) { // no verb there is has been named
+        described.text += fmt::format("{}a verb is required: {}", described.text.empty() ? "" : "; ",
+                                      fmt::join(names_below(app), ", "));
+    }
+    if (described.text.empty()) described.text = describe_repetition(*verbs.back());
+    if (described.text.empty()) described.text = error.what();
+    return described;
+}
+
+} // namespace pertev

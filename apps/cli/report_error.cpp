@@ -1,0 +1,51 @@
+#include "apps/cli/report_error.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "base/json_text.h"
+
+namespace pertev {
+namespace {
+
+const char* name_of(ErrorCode code) {
+    switch (code) {
+    case ErrorCode::BadInput:
+        return "bad_input";
+    case ErrorCode::OverLimit:
+        return "over_limit";
+    case ErrorCode::OutOfMemory:
+        return "out_of_memory";
+    case ErrorCode::DeviceFault:
+        return "device_fault";
+    case ErrorCode::FileWrite:
+        return "file_write";
+    case ErrorCode::Interrupted:
+        return "interrupted";
+    }
+    return "unknown";
+}
+
+/// False where the stream is full or gone.
+bool write(std::FILE* file, const std::string& text) {
+    return std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+}
+
+} // namespace
+
+std::string error_object(ErrorCode code, const std::string& text, const std::string& help) {
+    return fmt::format(R"({{"event":"error","code":"{}","status":{},"interrupted":{},"text":{}{}}})", name_of(code),
+                       exit_status(code), code == ErrorCode::Interrupted, json_string(text),
+                       help.empty() ? "" : fmt::format(R"(,"help":{})", json_string(help)));
+}
+
+int report_error(bool json, ErrorCode code, const std::string& text, const std::string& help) {
+    if (!json || !write(stdout, error_object(code, text, help) + '\n')) {
+        write(stderr,
+              fmt::format("pertev: {}\n{}", text, help.empty() ? "" : fmt::format("({} lists what there is)\n", help)));
+    }
+    return exit_status(code);
+}
+
+} // namespace pertev

@@ -1,0 +1,77 @@
+#include "integrators/meter_exposure.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "image/auto_exposure.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kFewestThatCount = 0.01; // share of the picture; with less there is nothing but lamps and sky
+
+/// The meter's settings: the picture's light paths and shape, all else fixed.
+RenderSettings meter_settings(const RenderSettings& picture) {
+    // Of the ratio in lowest terms, so that 1280x720 and 640x360 have one meter.
+    const uint32_t common = std::gcd(picture.width, picture.height);
+    const float width = static_cast<float>(picture.width / common),
+                height = static_cast<float>(picture.height / common);
+    const float scale = sqrt(static_cast<float>(kMeterPixels) / (width * height));
+    RenderSettings meter;
+    meter.width = static_cast<uint32_t>(to_int(scale * width + 0.5f, 1, kMeterPixels));
+    meter.height = static_cast<uint32_t>(to_int(scale * height + 0.5f, 1, kMeterPixels));
+    meter.samples = meter.pass_samples = kMeterSamples;
+    meter.filter = PixelFilter::Box;
+    meter.body = picture.body;
+    meter.path = picture.path;
+    meter.path.sampler = SamplerKind::Sobol;
+    meter.path.seed = 0;
+    return meter;
+}
+
+Image render_light(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
+                   uint32_t max_depth, bool with_sky) {
+    settings.path.max_depth = max_depth;
+    settings.transparent = !with_sky;
+    return render_picture(queue, prepared, camera, settings).picture;
+}
+
+Rgb light_of(const float* pixel) { return {pixel[0], pixel[1], pixel[2]}; }
+
+/// `light` without what comes straight from lamps, `emitted`, by the very same camera rays. Where lamps make up the
+/// better part of a pixel, it does not count. Both are RGBA without the sky.
+Image scattered_light(Image light, const Image& emitted) {
+    for (std::size_t i = 0; i < light.pixels.size(); i += 4) {
+        float* pixel = &light.pixels[i];
+        const Rgb lamps = light_of(&emitted.pixels[i]), rest = light_of(pixel) - lamps;
+        const bool counts = luminance(rest) >= luminance(lamps);
+        pixel[0] = counts ? max(rest.r, 0.0f) : 0.0f;
+        pixel[1] = counts ? max(rest.g, 0.0f) : 0.0f;
+        pixel[2] = counts ? max(rest.b, 0.0f) : 0.0f;
+        pixel[3] = counts ? pixel[3] : 0.0f;
+    }
+    return light;
+}
+
+/// Share of the picture that light is scattered from. It takes lit pixels: black ones tell nothing.
+double share_that_counts(const Image& scattered) {
+    double sum = 0;
+    for (std::size_t i = 0; i < scattered.pixels.size(); i += 4) {
+        if (!is_black(light_of(&scattered.pixels[i]))) sum += static_cast<double>(scattered.pixels[i + 3]);
+    }
+    return sum / (static_cast<double>(scattered.width) * scattered.height);
+}
+
+} // namespace
+
+float meter_exposure(Queue& queue, const PreparedScene& prepared, const Camera& camera, const RenderSettings& settings,
+                     ToneMap tone_map) {
+    const RenderSettings meter = meter_settings(settings);
+    const uint32_t depth = meter.path.max_depth;
+    const Image emitted = render_light(queue, prepared, camera, meter, 0, false);
+    const Image scattered = scattered_light(render_light(queue, prepared, camera, meter, depth, false), emitted);
+    if (share_that_counts(scattered) >= kFewestThatCount) return auto_exposure_stops(scattered, tone_map);
+    return auto_exposure_stops(render_light(queue, prepared, camera, meter, depth, !settings.transparent), tone_map);
+}
+
+} // namespace pertev

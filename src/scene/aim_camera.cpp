@@ -1,0 +1,21 @@
+#include "scene/aim_camera.h"
+
+#include "scene/cast_rays.h"
+
+namespace pertev {
+
+Target target_from(const Scene& scene, Vec3 eye) {
+    const Bounds3 box = bounds_of(scene);
+    const Vec3 centre = box.centre(), size = box.size();
+    // Nearer than this the direction would be one of rounding.
+    if (length(centre - eye) > 1e-4f * max_component(size)) return {centre, true};
+    return {size.x >= size.z ? Vec3{box.lo.x, centre.y, centre.z} : Vec3{centre.x, centre.y, box.lo.z}, false};
+}
+
+std::optional<float> distance_in_the_middle(const Scene& scene, const Camera& camera) {
+    const LookRay ray = {camera.world_from_camera.translation, normalize(-column(camera.world_from_camera, 2))};
+    const LookHit hit = cast_rays(scene, {&ray, 1}).front();
+    return hit.is_hit() ? std::optional(hit.distance) : std::nullopt;
+}
+
+} // namespace pertev

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""`--json`: whatever happens, standard output has one object a line, and the last one says how it ended."""
+
+import json
+import signal
+import subprocess
+
+from cli_run import FLOOR, PROGRAM, CliTest, main, write
+
+NAMES = {2: "bad_input", 3: "over_limit", 6: "file_write", 75: "interrupted"}
+
+
+class Errors(CliTest):
+    def fail_in_json(self, status, *arguments, **options):
+        """The object that ends it, with nothing said anywhere else."""
+        outcome = self.run_pertev(*arguments, **options)
+        self.assertEqual((outcome.status, outcome.stderr), (status, ""), outcome)
+        last = outcome.events()[-1]
+        self.assertEqual((last["event"], last["code"], last["status"], last["interrupted"]),
+                         ("error", NAMES[status], status, status == 75), outcome)
+        self.assertEqual(len(outcome.events("error")), 1, outcome)
+        self.assertEqual(self.run_pertev(*(a for a in arguments if a != "--json"), **options).status, status)
+        return last
+
+    def test_an_error_of_the_line_is_an_object_for_every_verb_and_without_one(self):
+        for verb in ["", "render", "info", "compare", "bench", "bench rays", "bench render", "lab", "lab --thesis"]:
+            for rest, says in [("--foo --json", "--foo"), ("--json --foo", "--foo"), ("--json --threads", "--threads")]:
+                with self.subTest(verb=verb, rest=rest):
+                    last = self.fail_in_json(2, *verb.split(), *rest.split())
+                    self.assertIn(says, last["text"])
+                    self.assertIn(("pertev " + verb.replace(" --thesis", "")).strip() + " --help", last["help"])
+        self.assertIn("render", self.fail_in_json(2, "--json")["text"])
+
+    def test_an_error_of_a_verb_is_an_object(self):
+        for line in ["render nowhere.obj -o x.png", "info nowhere.obj", "compare nowhere.exr nowhere.exr",
+                     "bench --scene nowhere.obj", "bench rays --scene nowhere.obj", "bench render --scene nowhere.obj",
+                     "lab nowhere.obj", "lab --thesis nowhere.obj"]:
+            with self.subTest(line=line):
+                self.assertIn("nowhere", self.fail_in_json(2, *line.split(), "--json")["text"])
+        self.fail_in_json(3, "render", "--json", "cornell-box", "-o", "x.png", "--size", "70000x70000")
+        self.fail_in_json(6, "render", "cornell-box", "-o", "nowhere/x.png", "--json", "-q")
+
+    def test_a_value_or_a_name_is_not_the_flag(self):
+        for arguments in [["info", "--", "--json"], ["render", "cornell-box", "-o", "x.png", "--camera=--json"]]:
+            outcome = self.refuse_in_words(*arguments)
+            self.assertEqual(outcome.stdout, "")
+            self.assertIn("pertev: ", outcome.stderr)
+
+    def refuse_in_words(self, *arguments):
+        outcome = self.run_pertev(*arguments)
+        self.assertEqual(outcome.status, 2, outcome)
+        return outcome
+
+    def test_an_error_that_the_standard_output_does_not_take_is_said_on_the_other(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=full)
+        self.assertEqual(outcome.status, 6, outcome)
+        self.assertIn("nowhere.obj", outcome.stderr)
+        self.assertIn("standard output", outcome.stderr)
+
+    def test_an_interrupt_while_the_scene_loads_ends_with_75_and_says_so(self):
+        n = 500
+        mesh = "".join(f"v {x} {(x * y) % 7} {y}\n" for y in range(n) for x in range(n))
+        mesh += "".join(f"f {x + n * y} {x + 1 + n * y} {x + n + n * y}\n" for y in range(n - 1) for x in range(1, n))
+        write(self.path("hills.obj"), mesh)
+        for verb in [["render", "hills.obj", "-o", "x.png", "--threads", "1"], ["info", "hills.obj"], ["lab", "hills.obj"]]:
+            for kind in [signal.SIGINT, signal.SIGTERM]:
+                for flags in [[], ["--json"], ["-q"]]:
+                    with self.subTest(verb=verb[0], signal=kind, flags=flags):
+                        program = subprocess.Popen([PROGRAM, *verb, *flags], cwd=self.folder, env=self.environment,
+                                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                        self.addCleanup(program.kill)
+                        self.wait_while(program, is_listening=False)
+                        program.send_signal(kind)
+                        stdout, stderr = program.communicate(timeout=300)
+                        self.assertEqual(program.returncode, 75, stderr)
+                        if flags == ["--json"]:
+                            last = json.loads(stdout.splitlines()[-1])
+                            self.assertEqual((last["code"], last["interrupted"]), ("interrupted", True))
+                            self.assertEqual(stderr, b"")
+                        else:
+                            self.assertTrue(stderr.decode().endswith("pertev: interrupted before there was anything to keep\n"))
+                            self.assertEqual(stdout, b"")
+                        self.assertEqual(self.files(), ["hills.obj"])
+
+    def test_an_interrupted_benchmark_says_so_in_its_last_object(self):
+        program = subprocess.Popen([PROGRAM, "bench", "rays", "--device", "cpu", "--json", "--runs", "10000", "--count",
+                                    "400000", "--scene", "cornell-box"], cwd=self.folder, env=self.environment,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        self.wait_while(program, is_listening=False)
+        program.send_signal(signal.SIGINT)
+        stdout, stderr = program.communicate(timeout=300)
+        self.assertEqual((program.returncode, stderr), (75, b""))
+        self.assertIs(json.loads(stdout.splitlines()[-1])["interrupted"], True)
+
+
+class Objects(CliTest):
+    def test_scene_picture_camera_exposure_and_outputs_have_objects_of_their_own(self):
+        write(self.path("floor.obj"), FLOOR)
+        view = ["--eye", "0.3,2.1,4.7", "--target", "0.1,0.2,0", "--fov", "33", "--aperture", "0.1"]
+        outcome = self.succeed("render", "floor.obj", *view, "-o", "a.png", "-o", "b.exr", "--size", "16x8", "--spp", "2",
+                               "--device", "cpu", "--tone-map", "agx", "--json")
+        kinds = [event["event"] for event in outcome.events() if event["event"] not in ["notice", "warning", "progress"]]
+        self.assertEqual(kinds, ["scene", "picture", "camera", "exposure", "output", "output", "done"])
+        scene, picture, camera, exposure, first, second, done = [event for event in outcome.events()
+                                                                 if event["event"] in kinds]
+        self.assertEqual([scene[key] for key in ["scene", "triangles", "instances"]], ["floor.obj", 2, 1])
+        self.assertEqual([picture[key] for key in ["width", "height", "spp"]], [16, 8, 2])
+        self.assertEqual(picture["device"], done["device"])
+        self.assertEqual((camera["eye"], camera["projection"], camera["fov"]), ("0.3,2.1,4.7", "perspective", 33))
+        told = self.info("b.exr")
+        self.assertEqual({"pertev." + key: value for key, value in camera.items() if key != "event"},
+                         {key: told[key] for key in told if key.startswith("pertev.") and key[7:] in camera})
+        self.assertEqual((exposure["auto"], exposure["tone_map"]), (True, "agx"))  # its light is made up
+        self.assertEqual([(of["path"], of["written"], of["error"]) for of in [first, second]],
+                         [("a.png", True, None), ("b.exr", True, None)])
+
+        again = self.render(*view, "--tone-map", "agx", "--exposure", exposure["stops"], scene="floor.obj", size="16x8", spp=2)
+        self.assertEqual(again["hash"], done["hash"])
+        self.assertEqual(self.info("picture.png")["hash"], self.info("a.png")["hash"])
+
+    def test_a_picture_without_tones_has_no_exposure(self):
+        outcome = self.succeed("render", "cornell-box", "-o", "b.exr", "--size", "8x8", "--spp", "1", "--json")
+        self.assertEqual(outcome.events("exposure"), [])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""What an EXR says beside its colours, as docs/formats.md has it: layers at edges and on the background, metadata."""
+
+import re
+
+from cli_run import FLOOR, CliTest, main, read_exr, write
+
+NONE = 4294967295
+DOWN = ["--eye", "0,3,0", "--target", "0,0,0", "--projection", "orthographic", "--view-height", "4", "--filter", "box",
+        "--environment", "1,1,1", "--aov", "albedo,normal,depth,position,ids"]  # pixels of 4/9 m: edges fall between
+BELOW = "v -9 -1 -9\nv 9 -1 -9\nv 9 -1 9\nv -9 -1 9\nf 8 7 6 5\n"
+
+# What a render tells of itself; all else in the metadata is a flag.
+RESULTS = {"version", "scene", "world_from_camera", "device", "hash", "invalid_samples", "load_seconds", "build_seconds",
+           "render_seconds", "rays"}
+
+
+class Layers(CliTest):
+    def pixels(self, scene, spp, *flags):
+        self.render(*DOWN, *flags, scene=scene, size="9x9", spp=spp, output="x.exr")
+        width, height, layers = read_exr(self.path("x.exr"))
+        return [{name: rows[y][x] for name, rows in layers.items()} for y in range(height) for x in range(width)]
+
+    def test_at_an_edge_normal_depth_and_position_are_of_what_was_hit_and_albedo_fades(self):
+        write(self.path("floor.obj"), FLOOR)
+        first = self.pixels("floor.obj", 1, "--transparent")
+        pixels = self.pixels("floor.obj", 64, "--transparent")
+        shares = [pixel["A"] for pixel in pixels]
+        self.assertGreater(len([share for share in shares if 0.1 < share < 0.9]), 8)
+        self.assertTrue(0 in shares and 1 in shares)
+        for pixel, of_first in zip(pixels, first):
+            share = pixel["A"]
+            self.assertAlmostEqual(pixel["albedo.R"], 0.5 * share, places=5)
+            wanted = {"normal.X": 0, "normal.Y": 1, "normal.Z": 0, "depth.Z": 3, "position.Y": 0}
+            for name, value in wanted.items():
+                self.assertAlmostEqual(pixel[name], value if share > 0 else 0, places=5)
+            self.assertLessEqual(max(abs(pixel["position.X"]), abs(pixel["position.Z"])), 1)
+            ids = [pixel["id." + name] for name in ["instance", "primitive", "material"]]
+            self.assertEqual(ids, [of_first["id." + name] for name in ["instance", "primitive", "material"]])
+            self.assertEqual(ids[0], 0 if of_first["A"] == 1 else NONE)
+            if share == 0:
+                self.assertEqual((ids, pixel["position.X"], pixel["position.Z"]), ([NONE] * 3, 0, 0))
+        # Sample 0 may have missed what others hit, and the other way round.
+        self.assertTrue(any(pixel["id.instance"] == NONE and pixel["A"] > 0 for pixel in pixels))
+        self.assertTrue(any(pixel["id.instance"] != NONE and pixel["A"] < 1 for pixel in pixels))
+
+    def test_two_surfaces_in_a_pixel_give_a_depth_and_a_place_between_them(self):
+        write(self.path("two.obj"), FLOOR + BELOW)
+        depths = []
+        for pixel in self.pixels("two.obj", 64):
+            depths.append(pixel["depth.Z"])
+            self.assertAlmostEqual(pixel["position.Y"], 3 - pixel["depth.Z"], places=4)
+            self.assertTrue(3 - 1e-5 <= pixel["depth.Z"] <= 4 + 1e-5)
+        self.assertGreater(len([depth for depth in depths if 3.1 < depth < 3.9]), 8)
+
+
+class Metadata(CliTest):
+    def test_names_are_those_of_flags(self):
+        write(self.path("floor.obj"), FLOOR)
+        flags = set(re.findall(r"(?<![\w-])--([a-z][a-z-]*)", self.succeed("render", "--help").stdout))
+        for more in [["--aperture", "0.1"], ["--projection", "orthographic"]]:
+            self.render("--eye", "0,2,4", "--target", "0,0,0", *more, scene="floor.obj", output="x.exr")
+            names = {name[7:] for name in self.info("x.exr") if name.startswith("pertev.")}
+            self.assertEqual({name for name in names - RESULTS if name.replace("_", "-") not in flags}, set())
+            self.assertLessEqual({"spp", "max_depth", "seed", "eye", "environment_scale"}, names)
+            self.assertNotIn("samples", names)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,196 @@
+"""PNG and JPEG as people keep them: exposed and tone-mapped without a flag; and a camera of which flags say only half."""
+
+import json
+import math
+import re
+import struct
+import zlib
+
+from cli_run import FLOOR, CliTest, gltf_with_cameras, main, read_exr, write
+
+# The floor, and a sheet upright behind its far edge.
+SHEET = FLOOR + "v -1 0 -1\nv 1 0 -1\nv 1 2 -1\nv -1 2 -1\nf 5 6 7 8\n"
+VIEW = ["--eye", "0,2,4", "--target", "0,0,0"]
+PLAIN = ["--tone-map", "srgb", "--exposure", "0"]
+
+
+def read_png(path):
+    """[(r, g, b) of each pixel], row by row, of an 8-bit RGB picture."""
+    with open(path, "rb") as file:
+        data = file.read()
+    packed, at = b"", 8
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        if kind == b"IHDR":
+            width, height, depth, colours = struct.unpack_from(">IIBB", data, at + 8)
+            assert (depth, colours) == (8, 2), "8-bit RGB"
+        packed += data[at + 8 : at + 8 + size] if kind == b"IDAT" else b""
+        at += size + 12
+    raw, pixels, above = zlib.decompress(packed), [], bytearray(3 * width)
+    for y in range(height):
+        start = y * (3 * width + 1)
+        kind, row = raw[start], bytearray(raw[start + 1 : start + 1 + 3 * width])
+        for i in range(3 * width):
+            left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+            guess = left + above[i] - corner
+            paeth = min((left, above[i], corner), key=lambda value: abs(guess - value))
+            row[i] = (row[i] + [0, left, above[i], (left + above[i]) // 2, paeth][kind]) & 255
+        pixels += [tuple(row[i : i + 3]) for i in range(0, 3 * width, 3)]
+        above = row
+    return pixels
+
+
+class HowPicturesAreShown(CliTest):
+    def show(self, *arguments, scene="cornell-box", size="16x16", spp=1, outputs=("x.png",)):
+        """Renders on the CPU; gives the notices that tell of an exposure."""
+        named = [word for output in outputs for word in ("-o", output)]
+        said = self.succeed("render", scene, *named, "--size", size, "--spp", spp, "--device", "cpu", "--json",
+                            *arguments)
+        return [event["text"] for event in said.events("notice") if "--tone-map" in event["text"]]
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def test_the_exposure_and_the_tone_map_are_an_object_of_the_json_lines(self):
+        def told(*arguments, output="x.png"):
+            return self.succeed("render", "cornell-box", "-o", output, "--size", "16x16", "--spp", 1, "--device", "cpu",
+                                "--json", *arguments).events("exposure")
+
+        found = told()
+        self.assertEqual([(one["auto"], one["tone_map"]) for one in found], [(True, "agx")])
+        given = told("--exposure", -1.5, "--tone-map", "aces")
+        self.assertEqual([(one["auto"], one["tone_map"], one["stops"]) for one in given], [(False, "aces", -1.5)])
+        self.assertEqual(told(output="x.exr"), [])
+
+    def flags_in(self, notice):
+        return re.search(r"\((--exposure \S+ --tone-map \S+) ", notice).group(1).split()
+
+    def test_the_flags_of_the_notice_make_the_very_same_file(self):
+        for name in ["x.png", "x.jpg"]:
+            for flags in [[], ["--tone-map", "srgb"], ["--exposure", "auto"]]:
+                with self.subTest(name=name, flags=flags):
+                    notices = self.show(*flags, outputs=[name])
+                    self.assertEqual(len(notices), 1)
+                    again = self.flags_in(notices[0])
+                    self.assertEqual(again[3], "srgb" if "srgb" in flags else "agx")
+                    self.assertNotEqual(float(again[1]), 0)
+                    found = self.read(name)
+                    self.assertEqual(self.show(*again, outputs=[name]), [])
+                    self.assertEqual(self.read(name), found)
+
+    def test_neither_samples_nor_noise_nor_seed_nor_size_move_the_exposure(self):
+        write(self.path("sheet.obj"), SHEET)
+        for scene, flags in [("cornell-box", []), ("sheet.obj", VIEW)]:
+            notices = {notice for spp, seed, size in [(1, 0, "16x9"), (64, 0, "16x9"), (2, 99, "32x18")]
+                       for notice in self.show(*flags, "--seed", seed, scene=scene, size=size, spp=spp)}
+            self.assertEqual(len(notices), 1, notices)
+
+    def test_ten_times_the_light_makes_the_same_picture(self):
+        write(self.path("sheet.obj"), SHEET)
+        stops = [float(self.flags_in(self.show(*VIEW, "--environment", light, scene="sheet.obj")[0])[1])
+                 for light in ["0.5,0.5,0.5", "5,5,5"]]
+        self.assertAlmostEqual(stops[0] - stops[1], math.log2(10), delta=0.011)
+
+    def test_plain_values_are_those_of_the_exr_and_an_exr_alone_is_not_metered(self):
+        write(self.path("floor.obj"), FLOOR)
+        away = ["--eye", "0,1,5", "--target", "0,1,9", "--environment", "0.5,0.25,0.125"]
+        self.assertEqual(self.show(*away, *PLAIN, scene="floor.obj"), [])
+        encoded = tuple(round(255 * (1.055 * light ** (1 / 2.4) - 0.055)) for light in [0.5, 0.25, 0.125])
+        self.assertEqual(set(read_png(self.path("x.png"))), {encoded})
+        self.assertEqual(self.show(*away, scene="floor.obj", outputs=["x.exr", "x.hdr"]), [])
+        _, _, layers = read_exr(self.path("x.exr"))
+        self.assertEqual([layers[channel][3][3] for channel in "RGB"], [0.5, 0.25, 0.125])
+
+    def test_an_exr_beside_a_png_is_linear_and_tells_how_the_png_was_shown(self):
+        exposure = self.flags_in(self.show(outputs=["x.exr", "x.png"])[0])[1]
+        told = self.info("x.exr")
+        self.assertEqual((told["pertev.tone_map"], round(told["pertev.exposure"], 2)), ("agx", float(exposure)))
+        beside = self.info("x.exr")["hash"]
+        self.show(outputs=["x.exr"])
+        self.assertEqual(self.info("x.exr")["hash"], beside)
+        self.assertNotIn("pertev.exposure", self.info("x.exr"))
+
+    def test_hardly_a_pixel_of_a_surface_is_burnt_and_the_box_is_neither_dark_nor_pale(self):
+        self.show(size="64x64", spp=64)
+        pixels = read_png(self.path("x.png"))
+        self.render("--max-depth", 0, size="64x64", spp=64, output="lamp.exr")
+        _, _, layers = read_exr(self.path("lamp.exr"))
+        emitted = [light for row in layers["G"] for light in row]
+        surfaces = [pixel for pixel, light in zip(pixels, emitted) if light == 0]
+        self.assertGreater(len(surfaces), 0.9 * len(pixels))
+        self.assertLess(sum(pixel == (255, 255, 255) for pixel in surfaces), 0.01 * len(pixels))
+        self.assertTrue(100 < sum(green for _, green, _ in surfaces) / len(surfaces) < 160)
+
+
+class WhatHalfACameraSees(CliTest):
+    def notices(self, *arguments, scene):
+        said = self.succeed("render", scene, "-o", "x.exr", "--size", "32x32", "--spp", 4, "--device", "cpu", "--json",
+                            "--aov", "position,depth,ids", *arguments)
+        _, _, self.layers = read_exr(self.path("x.exr"))
+        return [event["text"] for event in said.events("notice")], said.events("done")[0]["hash"]
+
+    def hash_again(self, flags, scene):
+        return self.notices(*flags, scene=scene)[1]
+
+    def test_an_eye_alone_looks_at_the_middle_of_the_scene_and_says_so(self):
+        write(self.path("sheet.obj"), SHEET)
+        write(self.path("two.gltf"), gltf_with_cameras())
+        for scene, middle in [("sheet.obj", (0, 1, 0)), ("two.gltf", (0, 0, 0))]:
+            for eye in [(3, 2.5, 4), (-2, 5, -3)]:
+                with self.subTest(scene=scene, eye=eye):
+                    given = "{},{},{}".format(*eye)
+                    notices, made = self.notices("--eye", given, scene=scene)
+                    told = [text for text in notices if "--eye" in text]
+                    self.assertEqual(len(told), 1, notices)  # and no camera is named that is not used
+                    flags = re.search(r"\((--eye \S+ --target \S+)\)", told[0]).group(1).split()
+                    self.assertEqual(flags[1], given)
+                    self.assertEqual(tuple(float(x) for x in flags[3].split(",")), middle)
+                    self.assertEqual(self.hash_again(flags, scene), made)
+                    told = self.info("x.exr")
+                    again = ["--eye", told["pertev.eye"], "--target", told["pertev.target"], "--up", told["pertev.up"]]
+                    self.assertEqual(self.hash_again(again, scene), made)
+
+    def test_lab_aims_an_eye_alone_too(self):
+        write(self.path("sheet.obj"), SHEET)
+        said = self.succeed("lab", "sheet.obj", "--eye", "3,2.5,4", "--structures", "binned", "--walks", "if-if", "--runs",
+                            "1", "--device", "cpu", "--size", "16x12", "--json")
+        self.assertEqual(len([event for event in said.events("notice") if "--target 0,1,0)" in event["text"]]), 1)
+
+    def test_a_target_alone_names_the_eye_that_looks_at_it(self):
+        write(self.path("sheet.obj"), SHEET)
+        notices, _ = self.notices("--target", "0,2,0", scene="sheet.obj")
+        told = [text for text in notices if "--target" in text]
+        self.assertEqual(len(told), 1, notices)
+        self.assertIn("--target 0,2,0", told[0])
+
+    def test_an_aperture_alone_focuses_on_what_is_in_the_middle_and_says_how_far_that_is(self):
+        cameras = json.loads(gltf_with_cameras())  # the first is 4 m before a triangle in the picture's middle
+        write(self.path("two.gltf"), json.dumps(cameras))
+        notices, made = self.notices("--aperture", "0.2", scene="two.gltf")
+        told = [text for text in notices if "--focus" in text]
+        self.assertEqual(len(told), 1, notices)
+        self.assertIn("4 m", told[0])
+        self.assertEqual(self.info("x.exr")["pertev.focus"], 4)
+        self.assertEqual(self.hash_again(["--aperture", "0.2", "--focus", "4"], "two.gltf"), made)
+        self.assertNotEqual(self.hash_again(["--aperture", "0.2", "--focus", "1"], "two.gltf"), made)
+        self.assertEqual(self.notices(scene="two.gltf")[0][-1].count("--focus"), 0)
+
+    def test_where_nothing_is_in_the_middle_the_focus_is_as_far_as_the_scenes_middle(self):
+        cameras = json.loads(gltf_with_cameras())
+        cameras["nodes"][1]["translation"] = [3, 0, 4]  # looks past the triangle
+        write(self.path("two.gltf"), json.dumps(cameras))
+        notices, _ = self.notices("--aperture", "0.2", scene="two.gltf")
+        self.assertEqual(len([text for text in notices if "(--focus 5)" in text]), 1, notices)
+
+    def test_an_eye_alone_with_an_aperture_focuses_on_the_surface_it_sees_and_a_target_given_is_in_focus(self):
+        write(self.path("sheet.obj"), SHEET)
+        notices, _ = self.notices("--eye", "0,1,5", "--aperture", "0.1", scene="sheet.obj")
+        self.assertEqual(len([text for text in notices if "(--focus 6)" in text]), 1, notices)
+        notices, _ = self.notices("--eye", "0,1,5", "--target", "0,1,2", "--aperture", "0.1", scene="sheet.obj")
+        self.assertEqual([text for text in notices if "--focus" in text], [])
+        self.assertEqual(self.info("x.exr")["pertev.focus"], 3)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""What the command line does for who misspells it, forgets a file, or reads a log: hints, and signs of life."""
+
+import os
+import pty
+import re
+import subprocess
+import threading
+
+from cli_run import FLOOR, PROGRAM, CliTest, main, write
+
+SMALL = ["--size", "8x8", "--spp", "1", "--device", "cpu"]
+
+
+class Flags(CliTest):
+    def long_flags(self, *verb):
+        text = self.succeed(*verb, "--help").stdout
+        return sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", re.sub(r" {3,}.*", "", text))))
+
+    def test_unknown_flags_are_listed_in_order_with_what_was_perhaps_meant(self):
+        self.refuse(2, "render", "cornell-box", "--sppp", "4", "-o", "x.png", "--qwertz", "--max_depth=3", "-Q", says=[
+            "pertev: --sppp: no such flag (did you mean --spp?); --qwertz: no such flag; --max_depth: no such flag "
+            "(did you mean --max-depth?); -Q: no such flag (did you mean -q?)\n"])
+        self.refuse(2, "info", "--zzz", "--aaa", says=["--zzz: no such flag; --aaa: no such flag\n"])
+
+    def test_an_unknown_flag_is_told_before_what_may_follow_from_it(self):
+        for line, meant in [("render cornell-box --ouptut x.png", "--output"), ("render cornell-box --out x.png", "--output"),
+                            ("render --sp 4 cornell-box -o x.png", "--spp"), ("lab --thesys", "--thesis"),
+                            ("compare x.png --block 2", "--blocks"), ("bench render --sceen x.obj", "--scene"),
+                            ("bench rays --cuont 3", "--count"), ("render cornell-box -o x.png --depth 3", "--max-depth"),
+                            ("render cornell-box -o x.png -spp 3", "--spp"), ("--verison", "--version"),
+                            ("render cornell-box -o x.png --Seed=3", "--seed")]:
+            with self.subTest(line=line):
+                outcome = self.refuse(2, *line.split(), says=[f"no such flag (did you mean {meant}?)"])
+                self.assertNotIn("required:", outcome.stderr.replace("a verb is required:", ""))
+
+    def test_every_flag_is_found_again_with_two_letters_swapped(self):
+        for verb in [["render"], ["lab"], ["bench", "rays"]]:
+            for flag in self.long_flags(*verb):
+                if len(flag) < 6:
+                    continue
+                swapped = flag[:4] + flag[5] + flag[4] + flag[6:]
+                if swapped != flag:
+                    self.refuse(2, *verb, swapped, says=[f"{swapped}: no such flag (did you mean {flag}?)"])
+
+    def test_a_word_too_many_is_told_with_what_it_may_have_been(self):
+        self.refuse(2, "rendr", "cornell-box", says=["rendr: not understood (did you mean render?)", "a verb is required"])
+        self.refuse(2, "rendr", "cornell-box", "-o", "x.png", says=["pertev: rendr: not understood (did you mean render?); a"])
+        self.refuse(2, "bench", "ray", says=["ray: not understood (did you mean rays?)"])
+        self.refuse(2, "render", "cornell-box", "-o", "a.png", "b.exr", says=["b.exr: not understood", "-o of its own"])
+        self.refuse(2, "info", "cornell-box", "x.png", says=["x.png: not understood\n"])
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eyes", "-.5,0,1", says=["--eyes", "--eye?)\n"])
+
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "1", "2", "3",
+                    says=["2, 3: not understood; numbers that belong together are joined by commas: 1,2,3\n"])
+        self.refuse(2, "bench", "cornell-box", says=["cornell-box: not understood; scenes are named by --scene\n"])
+
+    def test_an_empty_name_is_said_to_be(self):
+        for line, what in [(["render", "", "-o", "x.png"], "SCENE"), (["render", "cornell-box", "-o", ""], "--output"),
+                           (["info", ""], "FILE"), (["compare", "", "x.png"], "A"), (["compare", "x.png", ""], "B"),
+                           (["lab", ""], "SCENE")]:
+            self.refuse(2, *line, says=[f"pertev: {what}: the name is empty\n"])
+
+    def test_a_flag_before_its_verb_is_told_where_it_belongs(self):
+        self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp: stands before render"])
+        self.refuse(2, "--json", "info", "cornell-box", says=[])
+        self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: stands before bench"])
+
+    def test_a_list_of_outputs_is_told_how_pictures_are_asked_for(self):
+        outcome = self.succeed("render", "cornell-box", "-o", "a.png,b.exr", *SMALL)
+        self.assertIn("warning: -o a.png,b.exr: this is the name of one file; each picture has a -o of its own: -o a.png "
+                      "-o b.exr\n", outcome.stderr)
+        self.assertEqual(self.files(), ["a.png,b.exr"])
+        self.refuse(2, "render", "nowhere.obj", "-o", "a.png,b", says=["-o a.png,b: ", "-o a.png -o b\n"])
+        self.assertNotIn("warning", self.succeed("render", "cornell-box", "-o", "one,two.png", *SMALL).stderr)
+
+
+class Strictness(CliTest):
+    def test_strict_fails_before_rendering_where_a_texture_or_its_file_is_missing_or_broken(self):
+        square = FLOOR.replace("f 4 3 2 1", "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 4/4 3/3 2/2 1/1")
+        write(self.path("broken.png"), "no picture")
+        for name, material in [("gone", "newmtl m\nmap_Kd gone.png\n"), ("broken", "newmtl m\nmap_Kd broken.png\n"),
+                               ("plain", "newmtl m\nKd 1 0 0\n")]:
+            write(self.path(name + ".mtl"), material)
+            write(self.path(name + ".obj"), f"mtllib {name}.mtl\nusemtl m\n{square}")
+        write(self.path("nowhere.obj"), f"mtllib nowhere.mtl\nusemtl m\n{square}")
+        write(self.path("two.mtl"), "newmtl m\nmap_Kd gone.png\nmap_Ke broken.png\n")
+        write(self.path("two.obj"), f"mtllib two.mtl\nusemtl m\n{square}")
+        look = ["--eye", "0,2,4", "--target", "0,0,0", *SMALL]
+        for scene, missing in [("gone", "gone.png"), ("broken", "broken.png"), ("nowhere", "nowhere.mtl")]:
+            for flags in [["--strict"], ["--strict", "-q"], ["--strict", "--json"]]:
+                with self.subTest(scene=scene, flags=flags):
+                    outcome = self.refuse(2, "render", scene + ".obj", "-o", "x.png", *flags, *look,
+                                          says=["--strict: ", missing, "nothing is rendered"])
+                    self.assertNotIn("progress", outcome.stdout)
+        self.refuse(2, "render", "two.obj", "-o", "x.png", "--strict", *look, says=["gone.png", "and 1 warning like it"])
+        for scene in ["gone", "broken", "nowhere"]:
+            self.succeed("render", scene + ".obj", "-o", scene + ".png", *look)
+        self.succeed("render", "plain.obj", "-o", "plain.png", "--strict", *look)
+        self.assertRegex(self.succeed("render", "--help").stdout, r"(?s)--strict +fail where a texture .* is missing")
+
+    def test_strict_counts_a_gltf_files_pictures_too(self):
+        write(self.path("m.gltf"), """{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "images": [{"uri": "gone.png"}], "textures": [{"source": 0}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0],
+                           "max": [1, 1, 0]}, {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"byteLength": 36, "uri":
+                "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]}""")
+        self.succeed("render", "m.gltf", "-o", "x.png", *SMALL)
+        self.refuse(2, "render", "m.gltf", "-o", "y.png", "--strict", *SMALL, says=["gone.png"])
+
+
+class SignsOfLife(CliTest):
+    def start(self, *flags, **options):
+        program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "x.png", "--device", "cpu", "--threads", "1",
+                                    "--size", "32x32", "--spp", "8388607", *flags], cwd=self.folder,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   **{"stderr": subprocess.PIPE, "env": self.environment, **options})
+        self.addCleanup(program.kill)
+        return program
+
+    def on_a_terminal(self, *flags, **terms):
+        """What a terminal gets whose TERM is this, or is not set."""
+        leader, follower = pty.openpty()
+        environment = {name: value for name, value in self.environment.items() if name != "TERM"}
+        program = self.start(*flags, stderr=follower, env={**environment, **terms})
+        os.close(follower)
+        said = []
+
+        def listen():
+            try:
+                while chunk := os.read(leader, 65536):
+                    said.append(chunk)
+            except OSError:
+                pass  # how Linux tells that the other side is closed
+            os.close(leader)
+
+        listener = threading.Thread(target=listen)
+        listener.start()
+        return program, listener, said
+
+    def test_a_line_every_10_s_tells_what_is_done_where_no_bar_can_be_drawn(self):
+        enough = ["--time", "10.4"]
+        to_a_file = self.start(*enough)
+        quiet = self.start(*enough, "-q")
+        dumb, listener, said = self.on_a_terminal(*enough, TERM="dumb")
+        for program in [to_a_file, quiet]:
+            program.said = program.communicate(timeout=300)[1].decode()
+        dumb.communicate(timeout=300)
+        listener.join()
+        self.assertEqual(quiet.said, "")
+        for program, text in [(to_a_file, to_a_file.said), (dumb, b"".join(said).decode().replace("\r\n", "\n"))]:
+            self.assertEqual(program.returncode, 0, text)
+            beats = re.findall(r"(?m)^(\d+) s: (.*)$", text)
+            self.assertGreater(len(beats), 0, text)
+            self.assertEqual([int(seconds) // 10 for seconds, _ in beats], list(range(1, len(beats) + 1)), text)
+            self.assertRegex(beats[0][1], r"^\d+ %  \d+/8388607 spp  [\d.]+ Mrays/s  \d+ s left$")
+            self.assertNotRegex(text, r"[\x1b\r]")
+
+    def test_a_terminal_of_no_known_kind_gets_no_escapes(self):
+        for terms, draws in [({"TERM": "dumb"}, False), ({}, False), ({"TERM": "xterm"}, True)]:
+            program, listener, said = self.on_a_terminal("--time", "0.3", **terms)
+            program.communicate(timeout=300)
+            listener.join()
+            text = b"".join(said)
+            self.assertEqual((program.returncode, b"\x1b" in text, b"\r[" in text), (0, draws, draws), text)
+
+
+if __name__ == "__main__":
+    main()

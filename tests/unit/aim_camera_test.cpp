@@ -1,0 +1,47 @@
+// Where a camera looks and focuses when nothing says so.
+
+#include <doctest/doctest.h>
+
+#include "scene/aim_camera.h"
+
+using namespace pertev;
+
+namespace {
+
+/// Two upright squares, 2 m wide, at z = 0 and, moved and turned round by its instance, at z = -3.
+Scene make_two_sheets() {
+    Scene scene;
+    Mesh mesh;
+    mesh.positions = {{-1, 0, 0}, {1, 0, 0}, {1, 2, 0}, {-1, 2, 0}};
+    mesh.indices = {0, 1, 2, 0, 2, 3};
+    scene.meshes.push_back(std::move(mesh));
+    scene.materials.emplace_back();
+    scene.instances.push_back({"front", 0, 0, {}});
+    scene.instances.push_back({"back", 0, 0, compose(make_translation({0, 0, -3}), make_rotation(0, 1, 0, 0))});
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("an eye without a target looks at the middle of the scene, from its middle along it") {
+    const Scene scene = make_two_sheets();
+    const Target far = target_from(scene, {5, 6, 7});
+    CHECK(far.is_middle);
+    CHECK(far.position == Vec3{0, 1, -1.5f});
+    const Target near = target_from(scene, {0, 1, -1.5f});
+    CHECK(!near.is_middle);
+    CHECK(near.position == Vec3{0, 1, -3});
+}
+
+TEST_CASE("the distance in the middle of the picture is that of the nearest surface there") {
+    const Scene scene = make_two_sheets();
+    Camera camera;
+    camera.world_from_camera = look_at({0.3f, 1, 4}, {0.3f, 1, 0}, {0, 1, 0});
+    CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(4));
+    camera.projection = Projection::Orthographic;
+    CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(4));
+    camera.world_from_camera = look_at({0.3f, 1, -1}, {0.3f, 1, -3}, {0, 1, 0});
+    CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(2));
+    camera.world_from_camera = look_at({0.3f, 1, 4}, {0.3f, 1, 9}, {0, 1, 0});
+    CHECK(!distance_in_the_middle(scene, camera).has_value());
+}
