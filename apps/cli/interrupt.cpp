@@ -20,8 +20,8 @@ int g_last_line_goes_to = STDERR_FILENO;
 
 /// A second signal of either kind ends the process.
 void hear_no_second() {
-    std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
 }
 
 extern "C" void handle_interrupt(int) {
@@ -41,13 +41,13 @@ void end_at_interrupt(bool json) {
     const std::string text = "interrupted before there was anything to keep";
     g_last_line = json ? error_object(ErrorCode::Interrupted, text) + '\n' : "pertev: " + text + '\n';
     g_last_line_goes_to = json ? STDOUT_FILENO : STDERR_FILENO;
-    std::signal(SIGINT, end_process);
     std::signal(SIGTERM, end_process);
+    std::signal(SIGINT, end_process); // last: where it is heard, both are
 }
 
 void listen_for_interrupt() {
-    std::signal(SIGINT, handle_interrupt);
     std::signal(SIGTERM, handle_interrupt);
+    std::signal(SIGINT, handle_interrupt);
 }
 
 bool interrupted() { return g_interrupted != 0; }

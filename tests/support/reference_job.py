@@ -41,7 +41,8 @@ class ReferenceJob:
         print("+", *command, flush=True)
         done = subprocess.run(command, stdout=subprocess.PIPE, check=False)
         if done.returncode != 0:
-            sys.exit(f"the program ended with status {done.returncode}")
+            last = done.stdout.decode("utf-8", "replace").strip().rsplit("\n", 1)[-1]
+            sys.exit(f"the program ended with status {done.returncode}: {last}")
         for line in done.stdout.splitlines():
             values = json.loads(line)
             if values["event"] == event:
