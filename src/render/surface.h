@@ -7,6 +7,7 @@
 #include "render/accept_hit.h"
 #include "render/make_bsdf.h"
 #include "shading/shading_frame.h"
+#include "shading/shadow_terminator.h"
 
 namespace pertev {
 
@@ -21,15 +22,49 @@ struct Surface {
     TriangleId triangle;
     uint32_t material;
     bool is_unlit;
+    float tilt; // of the interpolated normal (shadow_terminator.h); 0 where the mesh has none
 
     /// Both directions before the triangle, or both behind it.
     HD bool same_side(Vec3 wo, Vec3 wi) const {
         return (dot(wo, geometric_normal) > 0) == (dot(wi, geometric_normal) > 0);
     }
     /// Whether the shading frame takes the pair for what the triangle says it is, reflection or transmission. Where
-    /// they disagree (near the horizon of an interpolated normal) no light is carried: it would leak through.
+    /// they disagree (near the horizon of a bent normal) no light is carried: it would leak through.
     HD bool is_consistent(Vec3 wo, Vec3 wi, Vec3 wo_local, Vec3 wi_local) const {
         return same_side(wo, wi) == (wo_local.z * wi_local.z > 0);
+    }
+
+    /// The BSDF as it scatters from this triangle: light along wi to wo (unit, world space). Not reciprocal:
+    /// docs/conventions.md has its adjoint.
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi) const {
+        const Vec3 wo_local = frame.to_local(wo), wi_local = frame.to_local(wi);
+        if (!is_consistent(wo, wi, wo_local, wi_local)) return {};
+        if (!(tilt > 0)) return bsdf.evaluate(wo_local, wi_local);
+        const RaisedDirection from = lower_direction(wi_local, tilt);
+        if (!(from.slope > 0)) return {};
+        const BsdfValue value = bsdf.evaluate(wo_local, from.direction);
+        return {(1.0f / from.slope) * value.f, value.pdf / from.slope};
+    }
+
+    /// A wi in world space with the density of evaluate(), or of a delta lobe; pdf 0: nothing.
+    HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
+        const Vec3 wo_local = frame.to_local(wo);
+        BsdfSample sample = bsdf.sample(wo_local, u_lobe, u);
+        if (!(sample.pdf > 0) || is_black(sample.weight)) return {};
+        if (tilt > 0 && !sample.is_delta) {
+            const RaisedDirection raised = raise_direction(sample.wi, tilt);
+            sample.wi = raised.direction;
+            sample.pdf = sample.pdf / raised.slope;
+        }
+        const Vec3 wi = normalize(frame.to_world(sample.wi));
+        const bool goes_on = is_consistent(wo, wi, wo_local, sample.wi);
+        sample.wi = wi;
+        if (goes_on) return sample;
+        // A mirror or smooth glass needs no soft horizon: its direction is the right one but here, where it is folded
+        // back at the triangle's plane, so that no light is lost.
+        if (!sample.is_delta || frame.normal == geometric_normal) return {};
+        sample.wi = wi - (2.0f * dot(wi, geometric_normal)) * geometric_normal;
+        return sample;
     }
 };
 
@@ -92,13 +127,28 @@ HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh
     return frame_with_tangent(normal, tangent);
 }
 
-/// The shading frame at the hit, seen from `wo` (unit).
+/// Sine of the angle between a vertex normal (mesh space, any length) and the geometric one.
+HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec3 geometric_normal) {
+    const Vec3 normal = transform_transposed(instance.local_from_world, local_normal);
+    return sine_between(normalize_or(normal, geometric_normal), geometric_normal);
+}
+
+/// The shading frame at the hit, seen from `wo` (unit). Writes `tilt` of the interpolated normal, before the normal
+/// map: a map's bumps have no neighbours whose horizon they would have to clear.
 HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
                               const MaterialView& material, const PlacedTriangle& triangle, const Hit& hit,
-                              Vec3 geometric_normal, Vec3 wo) {
+                              Vec3 geometric_normal, Vec3 wo, float& tilt) {
+    tilt = 0;
     if (mesh.normals == nullptr && !material.normal_texture.has_image()) return make_frame(geometric_normal);
     const Vec3 local = mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
     Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
+    if (mesh.normals != nullptr) {
+        const Vec3 corners = {corner_tilt(instance, mesh.normals[triangle.i.a], geometric_normal),
+                              corner_tilt(instance, mesh.normals[triangle.i.b], geometric_normal),
+                              corner_tilt(instance, mesh.normals[triangle.i.c], geometric_normal)};
+        tilt = terminator_tilt(sine_between(normal, geometric_normal),
+                               dot(Vec3{1.0f - hit.u - hit.v, hit.u, hit.v}, corners));
+    }
     if (material.normal_texture.has_image()) {
         const TextureRef& ref = material.normal_texture;
         const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, geometric_normal, ref.uv_set);
@@ -124,7 +174,8 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     surface.geometric_normal = front_normal(instance, mesh, triangle);
     surface.triangle = {hit.instance, hit.primitive};
     surface.material = instance.material;
-    surface.frame = shading_frame(scene, instance, mesh, material, triangle, hit, surface.geometric_normal, -direction);
+    surface.frame = shading_frame(scene, instance, mesh, material, triangle, hit, surface.geometric_normal, -direction,
+                                  surface.tilt);
     surface.albedo = base_color_at(scene, material, mesh, triangle.i, hit.u, hit.v);
     surface.is_unlit = material.kind == MaterialKind::Unlit;
     if (surface.is_unlit) {

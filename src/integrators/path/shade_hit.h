@@ -62,9 +62,7 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
                       sample_bits(settings.sampler, key, light_group(path), Pair::Last), light)) {
         return false;
     }
-    const Vec3 wo_local = surface.frame.to_local(wo), wi_local = surface.frame.to_local(light.wi);
-    if (!surface.is_consistent(wo, light.wi, wo_local, wi_local)) return false;
-    const BsdfValue scattered = surface.bsdf.evaluate(wo_local, wi_local);
+    const BsdfValue scattered = surface.evaluate(wo, light.wi);
     if (is_black(scattered.f)) return false;
     if (light.instance != kNoLight && scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
@@ -108,11 +106,9 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     const SampleKey key = {path.pixel, path.sample, settings.seed};
     const float lobe = sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe);
     const Vec2 u = sample_2d(settings.sampler, key, vertex_group(path, kGroupScatter));
-    const Vec3 wo_local = surface.frame.to_local(wo);
-    const BsdfSample sample = surface.bsdf.sample(wo_local, lobe, u);
-    if (!(sample.pdf > 0) || is_black(sample.weight)) return false;
-    const Vec3 wi = normalize(surface.frame.to_world(sample.wi));
-    if (!surface.is_consistent(wo, wi, wo_local, sample.wi)) return false;
+    const BsdfSample sample = surface.sample(wo, lobe, u);
+    if (!(sample.pdf > 0)) return false;
+    const Vec3 wi = sample.wi;
 
     path.throughput = path.throughput * sample.weight;
     path.bsdf_pdf = sample.is_delta ? 0.0f : sample.pdf;

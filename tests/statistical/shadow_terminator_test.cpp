@@ -1,0 +1,351 @@
+// Interpolated normals: surfaces scatter from their triangles what their BSDF says, no light is lost or cut off at the
+// triangles' horizons, none leaks through, and every way of finding light agrees (shading/shadow_terminator.h).
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "render/surface.h"
+#include "tests/statistical/bsdf_cases.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+/// A surface whose shading normal is +z and whose triangle is turned by asin(tilt) about y.
+Surface tilted_surface(const Bsdf& bsdf, float tilt) {
+    Surface surface = {};
+    surface.geometric_normal = {tilt, 0, std::sqrt(1.0f - tilt * tilt)};
+    surface.frame = make_frame({0, 0, 1});
+    surface.bsdf = bsdf;
+    surface.tilt = terminator_tilt(tilt, 0);
+    return surface;
+}
+
+constexpr float kTilts[] = {0.02f, 0.1f, 0.17f, 0.3f};
+
+Mesh smooth_sphere(int subdivisions) {
+    const TriangleMesh triangles = make_sphere(subdivisions, {0, 0, 0}, 1.0f);
+    Mesh mesh;
+    mesh.positions = triangles.positions;
+    mesh.indices = triangles.indices;
+    for (const Vec3 p : mesh.positions) mesh.normals.push_back(normalize(p));
+    return mesh;
+}
+
+/// 80 triangles for one subdivision, whose vertex normals are tilted by up to 20 degrees; 320 and 10 degrees for two.
+Scene sphere_scene(int subdivisions, const Material& material) {
+    Scene scene;
+    scene.meshes.push_back(smooth_sphere(subdivisions));
+    scene.materials.push_back(material);
+    scene.instances.push_back({"sphere", 0, 0, {}});
+    return scene;
+}
+
+Light point_light(Vec3 position, float intensity) {
+    return {.name = "lamp",
+            .kind = LightKind::Point,
+            .position = position,
+            .direction = {0, -1, 0},
+            .intensity = grey(intensity)};
+}
+
+Camera front_camera() {
+    Camera camera;
+    camera.projection = Projection::Orthographic;
+    camera.world_from_camera = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0});
+    camera.ortho_height = 2.1f;
+    return camera;
+}
+
+struct Brightness {
+    double all, rim; // mean over the pixels within the silhouette, and over those near it
+};
+
+Brightness furnace(const Scene& scene, LightStrategy strategy, uint32_t samples) {
+    constexpr uint32_t kSize = 32;
+    RenderSettings settings;
+    settings.width = settings.height = kSize;
+    settings.samples = static_cast<uint32_t>(effort(samples, 10 * samples));
+    settings.filter = PixelFilter::Box;
+    settings.path.max_depth = 400;
+    settings.path.strategy = strategy;
+    Queue queue = queue_asked_for();
+    const RenderResult result = test::render(queue, scene, front_camera(), settings);
+    CHECK(result.invalid_samples == 0);
+    double all = 0, rim = 0, all_count = 0, rim_count = 0;
+    for (uint32_t y = 0; y < kSize; ++y) {
+        for (uint32_t x = 0; x < kSize; ++x) {
+            const double r = std::hypot(x + 0.5 - kSize / 2.0, y + 0.5 - kSize / 2.0) * 2.1 / kSize;
+            if (r > 0.97) continue; // the polygon's outline lies between 0.93 and 1; the sky behind it is 1 as well
+            const auto value = static_cast<double>(result.picture.at(x, y)[1]);
+            all += value;
+            all_count += 1;
+            if (r < 0.85) continue;
+            rim += value;
+            rim_count += 1;
+        }
+    }
+    return {all / all_count, rim / rim_count};
+}
+
+/// The largest step from a pixel to the next across or down, over the brightest pixel, well within the outline.
+double largest_step(int subdivisions) {
+    constexpr uint32_t kSize = 160;
+    Scene scene = sphere_scene(subdivisions, {.name = "chalk", .base_color = grey(0.8f)});
+    scene.lights.push_back(point_light({60, 30, 15}, 1e4f));
+    RenderSettings settings;
+    settings.width = settings.height = kSize;
+    settings.samples = 16;
+    settings.filter = PixelFilter::Box;
+    settings.path.max_depth = 1;
+    Queue queue = queue_asked_for();
+    const RenderResult result = test::render(queue, scene, front_camera(), settings);
+    double step = 0, brightest = 0;
+    const auto inside = [](uint32_t x, uint32_t y) {
+        return std::hypot(x + 0.5 - kSize / 2.0, y + 0.5 - kSize / 2.0) * 2.1 / kSize < 0.85;
+    };
+    const auto value = [&](uint32_t x, uint32_t y) { return static_cast<double>(result.picture.at(x, y)[1]); };
+    for (uint32_t y = 0; y + 1 < kSize; ++y) {
+        for (uint32_t x = 0; x + 1 < kSize; ++x) {
+            if (!inside(x, y) || !inside(x + 1, y) || !inside(x, y + 1)) continue;
+            brightest = std::max(brightest, value(x, y));
+            step = std::max({step, std::abs(value(x + 1, y) - value(x, y)), std::abs(value(x, y + 1) - value(x, y))});
+        }
+    }
+    return step / brightest;
+}
+
+} // namespace
+
+TEST_CASE("raised directions clear the horizon, and lowering takes them back") {
+    for (const float tilt : {kLeastTilt, 0.02f, 0.1f, 1.0f / 6, 0.2f, kLargestTilt}) {
+        CAPTURE(tilt);
+        float before = 0;
+        for (int i = 0; i <= 1000; ++i) {
+            const float height = static_cast<float>(i) / 1000;
+            for (const float side : {1.0f, -1.0f}) {
+                const Vec3 w = direction_at(side * height, 0.3f);
+                const RaisedDirection up = raise_direction(w, tilt), down = lower_direction(up.direction, tilt);
+                CHECK(length(up.direction) == doctest::Approx(1).epsilon(1e-6));
+                CHECK(up.direction.z * side >= tilt * (1 - 1e-6f));
+                CHECK(up.slope >= 0.333f);
+                CHECK(up.slope <= 1);
+                if (height >= kTerminatorReach * tilt) CHECK(up.direction == w);
+                if (i == 0) continue;
+                CHECK(length(down.direction - w) < 2e-4f);
+                CHECK(down.slope == doctest::Approx(up.slope).epsilon(1e-3));
+                CHECK(up.direction.z * side > before); // nothing is folded
+                if (side < 0) before = -up.direction.z;
+            }
+        }
+        CHECK(lower_direction(direction_at(0.99f * tilt), tilt).slope == 0);
+    }
+    CHECK(terminator_tilt(kLargestTilt, 0) == kLargestTilt);
+    CHECK(terminator_tilt(0.4f, 0) == kLargestTilt);
+    CHECK(terminator_tilt(0.65f, 0) == doctest::Approx(0.1));
+    CHECK(terminator_tilt(0.8f, 0) == 0); // a cube's corner
+    CHECK(terminator_tilt(0.1f, 0.2f) == 0.2f);
+    CHECK(terminator_tilt(0.5f * kLeastTilt, 0) == 0);
+}
+
+TEST_CASE("a tilted surface samples its density, for every BSDF") {
+    const std::vector<BsdfCase> cases = rough_bsdf_cases();
+    constexpr float tilts[] = {0.1f, 0.3f};
+    const int tests = static_cast<int>(cases.size() * std::size(tilts));
+    for (const BsdfCase& c : cases) {
+        const bool fits = c.bsdf.alpha > 0.05f && c.bsdf.alpha < 1; // not too narrow for an even grid; 1 adds nothing
+        if (!fits && c.bsdf.kind != BsdfKind::Diffuse) continue;
+        for (const float tilt : tilts) {
+            CAPTURE(c.name);
+            CAPTURE(tilt);
+            const Surface surface = tilted_surface(c.bsdf, tilt);
+            const Vec3 wo = direction_at(0.6f);
+            double weight_error = 0;
+            const auto sample = [&](float lobe, Vec2 u) -> std::optional<Vec3> {
+                const BsdfSample s = surface.sample(wo, lobe, u);
+                if (!(s.pdf > 0)) return std::nullopt;
+                const BsdfValue value = surface.evaluate(wo, s.wi);
+                const double f = static_cast<double>(value.f.g);
+                weight_error = std::max(weight_error, std::abs(static_cast<double>(s.weight.g * s.pdf) - f) / f);
+                return s.wi;
+            };
+            const auto pdf = [&](Vec3 wi) { return static_cast<double>(surface.evaluate(wo, wi).pdf); };
+            const ChiSquareResult result = chi_square_of_directions(
+                sample, pdf, {.samples = static_cast<uint32_t>(effort(40'000, 400'000)), .cells_x = 12, .cells_y = 20});
+            CHECK_MESSAGE(result.passes(tests), result.describe());
+            CHECK(weight_error < 0.02);
+        }
+    }
+}
+
+TEST_CASE("raising loses no light: every sample of a BSDF leaves its triangle on the right side") {
+    std::vector<BsdfCase> cases = rough_bsdf_cases();
+    cases.push_back({"smooth glass", make_dielectric(1.5f, 0, grey(1))});
+    cases.push_back({"mirror", make_conductor(kGoldEta, kGoldK, 0)});
+    for (const BsdfCase& c : cases) {
+        for (const float tilt : kTilts) {
+            // From within glass at a height of -0.755 light is refracted to just above the shading horizon.
+            for (const float height : {0.5f, 0.9f, -0.5f, -0.755f, -0.9f}) {
+                CAPTURE(c.name);
+                CAPTURE(tilt);
+                CAPTURE(height);
+                const Surface surface = tilted_surface(c.bsdf, tilt);
+                const Vec3 wo = direction_at(height, height == -0.755f ? 0.0f : 0.45f);
+                double bare = 0, tilted = 0;
+                bool right_side = true;
+                for (uint32_t i = 0; i < 4000; ++i) {
+                    const SamplePoint p = even_point(i, 4000);
+                    const BsdfSample s = c.bsdf.sample(wo, p.lobe, p.u), t = surface.sample(wo, p.lobe, p.u);
+                    if (s.pdf > 0) bare += static_cast<double>(s.weight.g);
+                    if (!(t.pdf > 0)) continue;
+                    tilted += static_cast<double>(t.weight.g);
+                    right_side = right_side && surface.same_side(wo, t.wi) == !t.is_transmission;
+                }
+                CHECK(right_side);
+                CHECK(tilted == doctest::Approx(bare).epsilon(1e-3));
+            }
+        }
+    }
+}
+
+// So a particle's weight, value |wo . Ng| / |wi . Ng| (docs/conventions.md), is bounded. Without the raise it is not.
+TEST_CASE("the value over the triangle's own cosine stays bounded down to its horizon") {
+    for (const float tilt : kTilts) {
+        CAPTURE(tilt);
+        const Surface surface = tilted_surface(make_diffuse(grey(1)), tilt);
+        const Vec3 wo = direction_at(0.8f);
+        double largest = 0;
+        for (int i = 1; i < 2000; ++i) {
+            for (int j = 0; j < 64; ++j) {
+                const Vec3 wi = direction_at(static_cast<float>(i) / 2000, static_cast<float>(j) / 64);
+                const BsdfValue value = surface.evaluate(wo, wi);
+                if (!(value.pdf > 0)) continue;
+                const double cosine = static_cast<double>(dot(wi, surface.geometric_normal));
+                CHECK(cosine > 0);
+                largest = std::max(largest, static_cast<double>(value.f.g) * 3.14159265 / cosine);
+            }
+        }
+        CHECK(largest < 9);
+        // One function of (wo, wi): Lambert's does not depend on wo.
+        const Vec3 wi = direction_at(0.35f, 0.2f);
+        CHECK(surface.evaluate(direction_at(0.9f, 0.7f), wi).f.g == surface.evaluate(wo, wi).f.g);
+    }
+}
+
+TEST_CASE("coarse smooth spheres cannot be seen in a white furnace, nor their rims") {
+    Material chalk{.name = "chalk", .base_color = grey(1)};
+    Material glass{.name = "glass", .kind = MaterialKind::Dielectric, .base_color = grey(1), .roughness = 0};
+    Material frosted = glass;
+    frosted.roughness = 0.5f;
+    Material metal{.name = "metal",
+                   .kind = MaterialKind::MetallicRoughness,
+                   .base_color = grey(1),
+                   .metallic = 1,
+                   .roughness = 0.4f};
+    for (const Material& material : {chalk, glass, frosted, metal}) {
+        for (const int subdivisions : {1, 2}) {
+            CAPTURE(material.name);
+            CAPTURE(material.roughness);
+            CAPTURE(subdivisions);
+            Scene scene = sphere_scene(subdivisions, material);
+            scene.environment = Environment{};
+            for (const LightStrategy strategy : {LightStrategy::BsdfOnly, LightStrategy::Mis}) {
+                const Brightness seen = furnace(scene, strategy, material.roughness == 0.5f ? 512 : 32);
+                // Not lost at the surface: total reflection keeps some of the light within the coarsest smooth glass
+                // for thousands of bounces, for with interpolated normals its sides do not let out what they let in.
+                const bool traps = material.roughness == 0 && subdivisions == 1;
+                CHECK(seen.all == doctest::Approx(1).epsilon(0.01));
+                CHECK(seen.rim == doctest::Approx(1).epsilon(traps ? 0.03 : 0.01));
+            }
+        }
+    }
+}
+
+TEST_CASE("a coarse smooth sphere beside a lamp ends softly in the dark") {
+    const double of_80 = largest_step(1), of_320 = largest_step(2);
+    CHECK(of_80 < 0.12); // 0.21 and 0.10 where light is cut off at the triangles' horizons
+    CHECK(of_320 < 0.06);
+}
+
+TEST_CASE("no light leaks into a coarse smooth room") {
+    Material plastic{.name = "plastic", .kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f)};
+    Material mirror = plastic;
+    mirror.metallic = 1;
+    mirror.roughness = 0;
+    for (const Material& material : {Material{.name = "chalk", .base_color = grey(0.8f)}, plastic, mirror}) {
+        for (const int subdivisions : {0, 1}) { // 0: so coarse that not all is raised clear of the horizon
+            CAPTURE(material.name);
+            CAPTURE(subdivisions);
+            Scene scene = sphere_scene(subdivisions, material);
+            scene.environment = Environment{};
+            for (const Vec3 at : {Vec3{2, 0, 0}, Vec3{-1, 1.5f, 0.3f}}) scene.lights.push_back(point_light(at, 1000));
+            Camera camera;
+            camera.world_from_camera = look_at({0.3f, 0.2f, -0.3f}, {1, 0.4f, 0.1f}, {0, 1, 0});
+            camera.fov_y = 2.0f;
+            RenderSettings settings;
+            settings.width = settings.height = 48;
+            settings.samples = 16;
+            Queue queue = queue_asked_for();
+            const RenderResult result = test::render(queue, scene, camera, settings);
+            const auto& pixels = result.picture.pixels;
+            CHECK(*std::max_element(pixels.begin(), pixels.end()) == 0);
+        }
+    }
+}
+
+TEST_CASE("on coarse smooth meshes lights are found alike by every strategy") {
+    const Material metal{.name = "metal", .kind = MaterialKind::Conductor, .roughness = 0.6f};
+    const Material plastic{
+        .name = "plastic", .kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .roughness = 0.5f};
+    for (const Material& material : {Material{.name = "chalk", .base_color = grey(0.8f)}, metal, plastic}) {
+        CAPTURE(material.name);
+        Scene scene = sphere_scene(1, material);
+        Mesh quad; // beside the sphere, so that much of its light comes in low
+        quad.positions = {{1.5f, -2, -2}, {1.5f, 2, -2}, {1.5f, 2, 2}, {1.5f, -2, 2}};
+        quad.indices = {0, 2, 1, 0, 3, 2};
+        scene.meshes.push_back(quad);
+        scene.materials.push_back({.name = "lamp", .base_color = grey(0), .emission = {1, 1, 1}});
+        scene.instances.push_back({"lamp", 1, 1, {}});
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(scene, {}, messages);
+        Queue queue = queue_asked_for();
+        RenderSettings settings;
+        settings.width = settings.height = 16;
+        settings.samples = static_cast<uint32_t>(effort(128, 1024));
+        settings.path.sampler = SamplerKind::Independent;
+        settings.path.max_depth = 1;
+        constexpr int kRenders = 24;
+        double mean[3], variance[3];
+        for (const LightStrategy strategy : {LightStrategy::Mis, LightStrategy::NeeOnly, LightStrategy::BsdfOnly}) {
+            double sum = 0, squares = 0;
+            for (int k = 0; k < kRenders; ++k) {
+                settings.path.strategy = strategy;
+                settings.path.seed = static_cast<uint32_t>(1000 * static_cast<int>(strategy) + k);
+                const RenderResult result = render_picture(queue, prepared, front_camera(), settings);
+                double value = 0;
+                for (const float x : result.picture.pixels) value += static_cast<double>(x);
+                value /= static_cast<double>(result.picture.pixels.size());
+                sum += value;
+                squares += value * value;
+            }
+            const auto s = static_cast<std::size_t>(strategy);
+            mean[s] = sum / kRenders;
+            variance[s] = (squares / kRenders - mean[s] * mean[s]) / (kRenders - 1);
+        }
+        for (const std::size_t s : {std::size_t(1), std::size_t(2)}) {
+            const double error = std::sqrt(variance[0] + variance[s]);
+            CAPTURE(s);
+            CHECK(std::abs(mean[s] - mean[0]) < 4 * error);
+            CHECK(error < 0.008 * mean[0]);
+        }
+    }
+}
