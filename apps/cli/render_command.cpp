@@ -35,6 +35,13 @@ bool report_progress(const RenderProgress& now, double time_limit_s, Reporter& r
     return !interrupted();
 }
 
+void say_hidden_backs(double share, Messages& messages) {
+    if (!(share > 0.01)) return;
+    messages.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, as they are "
+                              "not double sided (--show-back-faces shows them)",
+                              100 * share));
+}
+
 int render(const RenderFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
@@ -63,6 +70,8 @@ int render(const RenderFlags& flags) {
         return report_progress(now, settings.time_limit_s, reporter);
     });
     reporter.end_progress();
+    say_hidden_backs(result.hidden_back_share, messages);
+    reporter.say_messages();
     const RenderRecord record = {.device = queue->device_name(),
                                  .is_cuda = queue->is_cuda(),
                                  .default_light = loaded.default_light,

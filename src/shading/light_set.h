@@ -6,11 +6,13 @@
 // needs (Veach 1997, section 9.2).
 //
 // Index order: emissive triangles (per instance in scene order, all its primitives in order), punctual lights, the
-// environment. Both faces of a triangle emit; those of unlit materials are no lights.
+// environment. A triangle emits from its front, or from both faces where its material says so (scene/material.h); those
+// of unlit materials are no lights.
 
 #include <cstdint>
 
 #include "base/host_device.h"
+#include "base/limits.h"
 #include "math/rgb.h"
 #include "math/sampling.h"
 #include "math/scalar.h"
@@ -27,10 +29,19 @@ namespace pertev {
 inline constexpr uint32_t kNoLight = 0xffffffffu;
 
 struct EmissiveTriangle {
-    Vec3 a, ab, ac;                                     // first vertex and the edges from it, metres, world space
-    Vec2 uv0, uv1, uv2;                                 // of the set that the emission texture reads
-    uint32_t instance = 0, primitive = 0, material = 0; // ids in the scene
+    Vec3 a, ab, ac;     // first vertex and the edges from it, metres, world space
+    Vec2 uv0, uv1, uv2; // of the set that the emission texture reads
+    uint32_t instance : 30 = 0;
+    uint32_t is_mirrored : 1 = 0; // cross(ab, ac) leads out of the back
+    uint32_t is_two_sided : 1 = 0;
+    uint32_t primitive = 0, material = 0; // like `instance`, ids in the scene
+
+    /// Whether light leaves it against `wi`, a direction towards it. `normal` is cross(ab, ac).
+    HD bool emits_against(Vec3 wi, Vec3 normal) const {
+        return is_two_sided != 0 || (dot(normal, wi) < 0) == (is_mirrored == 0);
+    }
 };
+static_assert(kMaxInstances <= 1u << 30, "EmissiveTriangle::instance has 30 bits");
 
 /// scene/light.h's Light without its name.
 struct PunctualLight {
@@ -40,7 +51,7 @@ struct PunctualLight {
     float cos_inner = 1, cos_outer = 0, range = 0;
 };
 
-/// What a material emits, both faces: emission times the texture.
+/// What a material emits: emission times the texture.
 struct SurfaceEmission {
     Rgb emission; // W/(sr m2); 0 for materials that are no lights
     TextureRef texture;
@@ -63,7 +74,7 @@ struct LightSample {
     Vec3 wi;               // unit, towards the light
     float distance = 0;    // metres; kInfinity for the environment and directional lights
     Vec3 light_point;      // metres; of triangles, point and spot lights
-    Vec3 light_normal;     // unit geometric normal of a triangle's front, or zero
+    Vec3 light_normal;     // unit geometric normal of a triangle, of either side, or zero
     Rgb radiance;          // what arrives along wi: W/(sr m2); delta lights: W/m2 on a surface that faces them
     float pdf = 0;         // 1/sr, probability of the light included; delta lights: that probability
     bool is_delta = false; // no other way of finding a direction can hit this light
@@ -112,6 +123,7 @@ HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, f
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
     const Vec3 wi = to_light / distance;
     const Vec3 normal = cross(triangle.ab, triangle.ac);
+    if (!triangle.emits_against(wi, normal)) return false; // its dark back
     const float pdf = pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
@@ -143,9 +155,10 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
-/// Draws a light by 32 random bits and a direction to it by `u` in [0, 1)^2. False where nothing arrives: no lights, a
-/// dark spot of a texture, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha:
-/// where the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
+/// Draws a light by 32 random bits and a direction to it by `u` in [0, 1)^2. False where nothing arrives: no lights,
+/// the dark back or a dark spot of a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the
+/// caller's, and so is alpha: where the triangle's material is not opaque, radiance times alpha at (instance,
+/// primitive, b1, b2) arrives.
 HD inline bool sample_light(const LightSetView& view, Vec3 from_point, uint32_t choice, Vec2 u, LightSample& sample) {
     if (view.choice.entries == nullptr) return false;
     const AliasSample light = sample_alias(view.choice, choice);
@@ -166,14 +179,16 @@ HD inline bool sample_light(const LightSetView& view, Vec3 from_point, uint32_t 
 }
 
 /// Density with which sample_light, at `from_point`, draws the direction to `hit_point` on triangle light `light`,
-/// 1/sr. The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn.
+/// 1/sr. The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn, as
+/// from behind a triangle that emits from its front alone.
 HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, Vec3 from_point, Vec3 hit_point) {
     const EmissiveTriangle& triangle = view.triangles[light];
     const Vec3 to_light = hit_point - from_point;
     const float distance_squared = length_squared(to_light);
     const Vec3 wi = to_light / sqrt(distance_squared);
-    const float pdf =
-        alias_pmf(view.choice, light) * triangle_pdf(cross(triangle.ab, triangle.ac), wi, distance_squared);
+    const Vec3 normal = cross(triangle.ab, triangle.ac);
+    if (!triangle.emits_against(wi, normal)) return 0;
+    const float pdf = alias_pmf(view.choice, light) * triangle_pdf(normal, wi, distance_squared);
     return is_finite(pdf) ? pdf : 0.0f;
 }
 
