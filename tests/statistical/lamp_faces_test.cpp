@@ -1,5 +1,5 @@
 // Light of lamps that shine from their fronts, from both faces, or not this way at all; found by next-event estimation,
-// by BSDF sampling and by both, held to the closed form.
+// by BSDF sampling and by both, with and without a clamp, held to the closed form.
 
 #include <algorithm>
 #include <cmath>
@@ -97,5 +97,67 @@ TEST_CASE("a lamp shines from its front or from both faces, however its light is
                 CHECK(look(scene, {}, false, 2).mean == doctest::Approx(shines_up ? shown : 0));
             }
         }
+    }
+}
+
+TEST_CASE("a clamp leaves light that was scattered once alone, however it is found") {
+    CHECK(floor_radiance() == doctest::Approx(7.74).epsilon(1e-3));
+    const Scene scene = lamp_over_floor(true, false, false);
+    for (const LightStrategy strategy : kStrategies) {
+        CAPTURE(static_cast<int>(strategy));
+        const Seen floor = look(scene, {.strategy = strategy, .clamp = 5});
+        CAPTURE(floor.mean);
+        CAPTURE(floor.error);
+        CHECK(std::abs(floor.mean - floor_radiance()) <= 4 * floor.error + 1e-3);
+        CHECK(floor.error < 0.1);
+    }
+}
+
+TEST_CASE("a clamp takes later light alike, however it is found, before it is weighted") {
+    PathState path;
+    path.throughput = {2, 4, 1};
+    path.bsdf_pdf = 3;
+    const auto found = [&](uint32_t depth, LightStrategy strategy, float light_pdf, float clamp) {
+        PathState here = path;
+        here.depth = depth;
+        add_emission({.strategy = strategy, .clamp = clamp}, here, grey(5), light_pdf);
+        return here.radiance;
+    };
+    const float weight = power_heuristic(3, 1);
+    for (const uint32_t depth : {0u, 1u}) CHECK(found(depth, LightStrategy::Mis, 0, 10) == Rgb{10, 20, 5});
+    for (const uint32_t depth : {2u, 7u}) {
+        CHECK(found(depth, LightStrategy::Mis, 0, 0) == Rgb{10, 20, 5});
+        CHECK(found(depth, LightStrategy::BsdfOnly, 1, 10) == Rgb{5, 10, 2.5f});
+        CHECK(found(depth, LightStrategy::Mis, 0, 10) == Rgb{5, 10, 2.5f});
+        CHECK(found(depth, LightStrategy::Mis, 1, 10).g == doctest::Approx(static_cast<double>(weight * 10)));
+        CHECK(found(depth, LightStrategy::Mis, 1, 19).g == doctest::Approx(static_cast<double>(weight * 19)));
+        CHECK(found(depth, LightStrategy::Mis, 1, 21).g == doctest::Approx(static_cast<double>(weight * 20)));
+    }
+
+    Scene scene = lamp_over_floor(true, false, false);
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = Queue::make_cpu();
+    const SceneOnDevice device(queue, prepared);
+    Hit hit{0.5f, 0.3f, 0.3f, 0, 0};
+    const Surface surface = make_surface(device.view(), hit, {0, -1, 0});
+    const auto asked = [&](uint32_t depth, LightStrategy strategy, float clamp) {
+        PathState here = path;
+        here.depth = depth;
+        ShadowRay shadow;
+        const PathSettings settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
+        REQUIRE(ask_for_light(device.view(), settings, here, surface, {0, 1, 0}, shadow));
+        return static_cast<double>(max_component(shadow.contribution));
+    };
+    CHECK(asked(0, LightStrategy::NeeOnly, 1) == asked(0, LightStrategy::NeeOnly, 0));
+    for (const uint32_t depth : {1u, 6u}) {
+        const double whole = asked(depth, LightStrategy::NeeOnly, 0);
+        const double share = asked(depth, LightStrategy::Mis, 0) / whole;
+        REQUIRE(share > 0.01);
+        REQUIRE(share < 0.99);
+        const float clamp = static_cast<float>(0.4 * whole), loose = static_cast<float>(1.01 * whole);
+        CHECK(asked(depth, LightStrategy::NeeOnly, clamp) == doctest::Approx(0.4 * whole));
+        CHECK(asked(depth, LightStrategy::Mis, clamp) == doctest::Approx(share * 0.4 * whole));
+        CHECK(asked(depth, LightStrategy::Mis, loose) == doctest::Approx(share * whole));
     }
 }
