@@ -75,12 +75,12 @@ int bench_noise(const NoiseFlags& flags) {
     check_scene_options(flags.render.scene);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.render.machine, messages);
-    const LoadedScene loaded = load_scene(flags.render.scene, messages);
-    const RenderSettings settings = render_settings(flags.render, loaded.scene);
+    const Scene scene = load_scene(flags.render.scene, messages);
+    const RenderSettings settings = render_settings(flags.render, scene);
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const Camera camera = choose_camera(flags.render.scene, loaded.scene, aspect, messages);
+    const Camera camera = choose_camera(flags.render.scene, scene, aspect, messages);
     throw_if_interrupted();
-    const PreparedScene prepared = prepare_scene(loaded.scene, {}, messages);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
     reporter.say_messages();
 
     RenderSettings warm_up = settings; // clocks, caches, the driver's first launch

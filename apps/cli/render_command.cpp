@@ -37,6 +37,13 @@ bool report_progress(const RenderProgress& now, double time_limit_s, Reporter& r
     return !interrupted();
 }
 
+void say_hidden_backs(double share, Messages& messages) {
+    if (!(share > 0.01)) return;
+    messages.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, as they are "
+                              "not double sided (--show-back-faces shows them)",
+                              100 * share));
+}
+
 /// --strict: throws Error(BadInput) that repeats the first warning of a texture or a file of materials that is missing.
 void refuse_missing(const Messages& messages) {
     const std::vector<Message>& all = messages.all();
@@ -98,6 +105,8 @@ int render(RenderFlags flags) {
     reporter.end_progress();
     const bool cut_short = interrupted() && result.samples < settings.samples;
     if (cut_short) reporter.say(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
+    say_hidden_backs(result.hidden_back_share, messages);
+    reporter.say_messages();
     reporter.set_work("writing");
     const RenderRecord record = {.device = queue->device_name(),
                                  .is_cuda = queue->is_cuda(),

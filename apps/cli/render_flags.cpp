@@ -140,7 +140,8 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->check(one_of(names_of(kSamplers)))
         ->capture_default_str()
         ->group(group);
-    verb.add_option("--clamp", flags.clamp, "largest contribution after the first scattering; biased,\noff by default")
+    verb.add_option("--clamp", flags.clamp,
+                    "largest contribution of light scattered twice or more;\nbiased, off by default")
         ->type_name("X")
         ->check(number_above_zero())
         ->group(group);

@@ -1,5 +1,8 @@
 #include "apps/cli/scene_options.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -181,6 +184,12 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("X")
         ->check(number_between(0, 1e12f))
         ->group(group);
+    group = "Faces";
+    verb.add_flag("--two-sided-lights", options.two_sided_lights, "lamps shine from both faces, whatever the file says")
+        ->group(group);
+    verb.add_flag("--show-back-faces", options.show_back_faces,
+                  "show the camera backs that a glTF file hides from it\n(doubleSided)")
+        ->group(group);
 }
 
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders) {
@@ -198,8 +207,25 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
     return read_scene(name, read, messages);
 }
 
+namespace {
+
+void show_back_faces(Scene& scene, Messages& messages) {
+    bool any_hidden = false;
+    for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
+    if (!any_hidden) messages.warn("--show-back-faces: no surface of the scene hides its back");
+}
+
+} // namespace
+
 Scene load_scene(const SceneOptions& options, Messages& messages) {
-    Scene scene = read_any_scene(options.scene, options.allowed_paths, messages);
+    ReadOptions read;
+    read.allowed_paths = options.allowed_paths;
+    read.two_sided_lights = options.two_sided_lights;
+    Scene scene = read_scene(options.scene, read, messages);
+    if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
+        messages.warn("--two-sided-lights: no surface of the scene gives light");
+    }
+    if (options.show_back_faces) show_back_faces(scene, messages);
     if (!options.environment.empty()) {
         scene.environment = environment_of(options, messages);
     }

@@ -28,11 +28,12 @@ struct SceneOptions {
     float view_height_m = 0;
     std::string environment; // file or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;
+    bool two_sided_lights = false, show_back_faces = false;
 };
 
-/// SCENE, its camera and its environment.
+/// SCENE, its camera, its environment and which faces count.
 void add_scene_options(CLI::App& verb, SceneOptions& options);
-/// The same without the environment and the lens, for verbs that look at geometry alone, through its middle.
+/// The same without the environment, the faces and the lens, for verbs that look at geometry alone, through its middle.
 void add_view_options(CLI::App& verb, SceneOptions& options);
 /// --allow-path alone.
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);

@@ -87,6 +87,8 @@ ExrMetadata metadata_of(const RenderFlags& flags, const RenderResult& result, co
                             {"pertev.filter_radius", record.filter_radius},
                             {"pertev.seed", fmt::format("{}", flags.seed)},
                             {"pertev.clamp", flags.clamp},
+                            {"pertev.two_sided_lights", static_cast<int32_t>(flags.scene.two_sided_lights)},
+                            {"pertev.show_back_faces", static_cast<int32_t>(flags.scene.show_back_faces)},
                             {"pertev.device", record.device},
                             {"pertev.hash", hash},
                             {"pertev.invalid_samples", static_cast<double>(result.invalid_samples)},

@@ -109,6 +109,18 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     return mesh;
 }
 
+/// Turns those triangles round whose vertex normals point behind them: the front of a lamp is where its winding says.
+void wind_after_normals(Mesh& mesh) {
+    if (mesh.normals.empty()) return;
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        uint32_t* corner = mesh.indices.data() + i;
+        const Vec3 a = mesh.positions[corner[0]];
+        const Vec3 across = cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a);
+        const Vec3 sum = mesh.normals[corner[0]] + mesh.normals[corner[1]] + mesh.normals[corner[2]];
+        if (dot(across, sum) < 0) std::swap(corner[1], corner[2]);
+    }
+}
+
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
                                           Messages& messages) {
     const std::string place = fmt::format("{}:{}", obj.string(), line.line);
@@ -183,8 +195,10 @@ Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions
 
     parallel_invoke([&] { loader.load_into(scene); },
                     [&] {
-                        parallel_for(data.groups.size(), 1,
-                                     [&](uint64_t i) { scene.meshes[i] = make_mesh(data.groups[i], data); });
+                        parallel_for(data.groups.size(), 1, [&](uint64_t i) {
+                            scene.meshes[i] = make_mesh(data.groups[i], data);
+                            if (scene.materials[i].is_emissive()) wind_after_normals(scene.meshes[i]);
+                        });
                     });
 
     for (Material& material : scene.materials) {

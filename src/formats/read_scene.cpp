@@ -13,6 +13,7 @@
 #include "formats/read_gltf.h"
 #include "formats/read_obj.h"
 #include "formats/read_ply.h"
+#include "scene/lamp_fronts.h"
 #include "scene/validate.h"
 
 namespace pertev {
@@ -21,13 +22,14 @@ namespace {
 struct Reader {
     std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Messages&);
+    bool tells_sides; // its files can say whether a surface emits from both faces
 };
 
 const std::array kReaders = {
-    Reader{".obj", read_obj},
-    Reader{".ply", read_ply},
-    Reader{".gltf", read_gltf},
-    Reader{".glb", read_gltf},
+    Reader{".obj", read_obj, false},
+    Reader{".ply", read_ply, false},
+    Reader{".gltf", read_gltf, true},
+    Reader{".glb", read_gltf, true},
 };
 
 /// Null for an extension that no reader has.
@@ -52,6 +54,11 @@ Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions&
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_file_or_builtin(path, options, messages);
     validate(scene, path.string(), messages);
+    if (options.two_sided_lights) {
+        for (Material& material : scene.materials) material.two_sided_emission = true;
+    } else if (const Reader* reader = find_reader(path); reader != nullptr && !reader->tells_sides) {
+        say_lamp_fronts(scene, path.string(), messages);
+    }
     return scene;
 }
 

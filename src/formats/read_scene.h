@@ -16,6 +16,7 @@ namespace pertev {
 struct ReadOptions {
     std::vector<std::filesystem::path> allowed_paths; // --allow-path
     bool geometry_only = false;                       // skip textures and materials: every surface grey
+    bool two_sided_lights = false;                    // surfaces emit from both faces, whatever the file says
 };
 
 /// The scene in a file, or the one that is part of the program under this name (formats/builtin_scenes.h). Throws

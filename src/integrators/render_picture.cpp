@@ -46,6 +46,7 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
     PathRenderer renderer(queue, scene.view(), camera, settings.filter, filter_radius_of(settings), path,
                           settings.width, settings.height, body, batch_of(settings));
     if (settings.stage_seconds != nullptr) renderer.time_stages(*settings.stage_seconds);
+    result.hidden_back_share = renderer.hidden_back_share();
     queue.wait();
     result.upload_seconds = watch.seconds();
 

@@ -43,6 +43,7 @@ struct RenderResult {
     std::vector<PixelIds> ids; // empty unless asked for
     uint32_t samples = 0;      // whole samples done; less than asked for when stopped or out of time
     uint64_t invalid_samples = 0;
+    double hidden_back_share = 0; // of the camera's rays: see PathRenderer
     RayCounts rays;
     double upload_seconds = 0, render_seconds = 0, first_pixel_seconds = 0; // first: until one sample of all pixels
     std::size_t device_peak_bytes = 0;

@@ -69,11 +69,14 @@ void SceneOnDevice::upload_instances(Queue& queue, const Scene& scene) {
 
     std::vector<InstanceView> instances;
     for (const Instance& instance : scene.instances) {
-        const bool has_alpha = scene.materials[instance.material].alpha_mode != AlphaMode::Opaque;
-        view_.any_alpha |= has_alpha ? 1 : 0;
+        const Material& material = scene.materials[instance.material];
+        const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
+        const uint16_t hides_back = material.double_sided ? 0 : 1;
+        view_.any_alpha |= has_alpha;
+        view_.any_hidden_back |= hides_back;
         instances.push_back({instance.world_from_local, inverse(instance.world_from_local), instance.mesh,
-                             instance.material, has_alpha ? 1u : 0u,
-                             determinant(instance.world_from_local) < 0 ? 1u : 0u});
+                             instance.material, has_alpha, hides_back,
+                             is_mirroring(instance.world_from_local) ? 1u : 0u});
     }
     view_.instances = keep(queue, std::span<const InstanceView>(instances), "instances");
 }

@@ -30,7 +30,8 @@ struct InstanceView {
     Transform local_from_world;
     uint32_t mesh;
     uint32_t material;
-    uint32_t has_alpha;   // 1 where a hit may be refused by its alpha
+    uint16_t has_alpha;   // 1 where a hit may be refused by its alpha
+    uint16_t hides_back;  // 1 where rays from the camera pass the back
     uint32_t is_mirrored; // 1 where world_from_local turns winding over
 };
 
@@ -42,7 +43,8 @@ struct SceneView {
     const TextureImageView* images;
     const float* linear_from_srgb; // [256]
     LightSetView lights;
-    uint32_t any_alpha; // 0 lets every hit skip the look at its instance
+    uint32_t any_alpha;       // 0 lets every hit skip the look at its instance
+    uint32_t any_hidden_back; // the same for hits of the camera's rays
 };
 
 /// The three vertex numbers of a triangle.

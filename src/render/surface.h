@@ -98,17 +98,22 @@ HD inline PlacedTriangle place_triangle(const InstanceView& instance, const Mesh
     return triangle;
 }
 
-/// Unit normal of the side that the winding (in the mesh's own space) or, where there are any, the vertex normals call
-/// the front.
-HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle) {
+/// Unit normal of the side that the winding, in the mesh's own space, calls the front: of sides that emit (see
+/// scene/material.h).
+HD inline Vec3 winding_normal(const InstanceView& instance, const PlacedTriangle& triangle) {
     const Vec3 ab = triangle.b - triangle.a, ac = triangle.c - triangle.a;
     const float size = max(max_component(abs(ab)), max_component(abs(ac)));
     const Vec3 across = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
     const float sign = instance.is_mirrored != 0 ? -1.0f : 1.0f;
-    const Vec3 normal = normalize_or((sign / size) * across, Vec3{0, 0, 1});
-    if (mesh.normals == nullptr) return normal;
+    return normalize_or((sign / size) * across, Vec3{0, 0, 1});
+}
+
+/// That normal, or its opposite where there are vertex normals that call the other side the front: of shading.
+HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle,
+                            Vec3 by_winding) {
+    if (mesh.normals == nullptr) return by_winding;
     const Vec3 sum = mesh.normals[triangle.i.a] + mesh.normals[triangle.i.b] + mesh.normals[triangle.i.c];
-    return dot(transform_transposed(instance.local_from_world, sum), normal) < 0 ? -normal : normal;
+    return dot(transform_transposed(instance.local_from_world, sum), by_winding) < 0 ? -by_winding : by_winding;
 }
 
 /// The frame before the normal map: interpolated normal, tangent given or from the texture coordinates.
@@ -171,7 +176,8 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     Surface surface;
     surface.position = triangle.position;
     surface.error = triangle.error;
-    surface.geometric_normal = front_normal(instance, mesh, triangle);
+    const Vec3 by_winding = winding_normal(instance, triangle);
+    surface.geometric_normal = front_normal(instance, mesh, triangle, by_winding);
     surface.triangle = {hit.instance, hit.primitive};
     surface.material = instance.material;
     surface.frame = shading_frame(scene, instance, mesh, material, triangle, hit, surface.geometric_normal, -direction,
@@ -180,7 +186,8 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     surface.is_unlit = material.kind == MaterialKind::Unlit;
     if (surface.is_unlit) {
         surface.emission = surface.albedo;
-    } else if (material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) {
+    } else if ((material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) &&
+               (material.two_sided_emission || dot(by_winding, direction) < 0)) {
         surface.emission =
             surface_emission(scene.lights, instance.material,
                              texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));

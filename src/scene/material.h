@@ -40,8 +40,13 @@ struct Material {
     float ior = 1.5f; // Dielectric and MetallicRoughness: inside over outside, >= 1
     Rgb eta = {0.2f, 0.92f, 1.1f}, k = {3.9f, 2.45f, 2.14f}; // Conductor; default gold
 
-    Rgb emission = {0, 0, 0}; // W/(sr m2), both faces; times the texture
+    Rgb emission = {0, 0, 0}; // W/(sr m2); times the texture
     TextureRef emission_texture;
+
+    // The front of a triangle is where its corners run counter-clockwise in the mesh's own space, whatever its vertex
+    // normals say; so a node that mirrors a mesh leaves it its front.
+    bool two_sided_emission = false; // else the front alone gives light; of unlit materials both faces are seen
+    bool double_sided = true;        // else rays from the camera pass the back; every other ray is stopped by it
 
     TextureRef normal_texture; // tangent space, x right, y up in texture space (OpenGL convention), linear
     float normal_scale = 1;

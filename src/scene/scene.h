@@ -42,6 +42,9 @@ struct Scene {
 /// JSON pointer of the node that an instance comes from; empty for none.
 std::string origin_of(const Instance& instance);
 
+/// Whether a transform turns the winding of triangles over.
+inline bool is_mirroring(const Transform& world_from_local) { return determinant(world_from_local) < 0; }
+
 /// World-space box of all instances.
 Bounds3 bounds_of(const Scene& scene);
 

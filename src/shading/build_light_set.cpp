@@ -42,7 +42,8 @@ double triangle_power(const LightSetData& data, const Pyramids& pyramids, const 
     const double area = 0.5 * static_cast<double>(length(normal));
     if (!(dot(normal, normal) > 0)) return 0; // no area, or too small to divide by
     const SurfaceEmission& surface = data.emissions[triangle.material];
-    const double untextured = 2 * kPiDouble * area * mean_of_channels(surface.emission);
+    const double faces = triangle.is_two_sided != 0 ? 2 : 1;
+    const double untextured = faces * kPiDouble * area * mean_of_channels(surface.emission);
     const TextureRef& ref = surface.texture;
     if (ref.image == kNoImage) return untextured;
     const BrightnessPyramid& pyramid = pyramids.at({ref.image, ref.is_srgb});
@@ -85,7 +86,9 @@ void add_triangles(const Scene& scene, LightSetData& data) {
         if (data.first_light[i] == kNoLight) continue;
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        const std::vector<Vec2>& uv = mesh.uv[scene.materials[instance.material].emission_texture.uv_set];
+        const Material& material = scene.materials[instance.material];
+        const std::vector<Vec2>& uv = mesh.uv[material.emission_texture.uv_set];
+        const bool is_mirrored = is_mirroring(instance.world_from_local);
         parallel_for(mesh.triangle_count(), 4096, [&](uint64_t primitive) {
             const uint32_t* index = mesh.indices.data() + 3 * primitive;
             const auto world = [&](uint32_t v) {
@@ -93,15 +96,18 @@ void add_triangles(const Scene& scene, LightSetData& data) {
             };
             const auto uv_at = [&](uint32_t v) { return uv.empty() ? Vec2{} : uv[v]; };
             const Vec3 a = world(index[0]);
-            data.triangles[data.first_light[i] + primitive] = {a,
-                                                               world(index[1]) - a,
-                                                               world(index[2]) - a,
-                                                               uv_at(index[0]),
-                                                               uv_at(index[1]),
-                                                               uv_at(index[2]),
-                                                               static_cast<uint32_t>(i),
-                                                               static_cast<uint32_t>(primitive),
-                                                               instance.material};
+            EmissiveTriangle& triangle = data.triangles[data.first_light[i] + primitive];
+            triangle.a = a;
+            triangle.ab = world(index[1]) - a;
+            triangle.ac = world(index[2]) - a;
+            triangle.uv0 = uv_at(index[0]);
+            triangle.uv1 = uv_at(index[1]);
+            triangle.uv2 = uv_at(index[2]);
+            triangle.instance = static_cast<uint32_t>(i) & (kMaxInstances - 1);
+            triangle.is_mirrored = is_mirrored ? 1 : 0;
+            triangle.is_two_sided = material.two_sided_emission ? 1 : 0;
+            triangle.primitive = static_cast<uint32_t>(primitive);
+            triangle.material = instance.material;
         });
     }
 }

@@ -1,9 +1,10 @@
 #pragma once
 
-// Gathers a scene's lights and the table that draws them by power. Powers, in W: a triangle 2 pi area mean emission;
-// a point light 4 pi intensity; a spot what its cone lets through; a directional light pi R^2 irradiance and the
-// environment 4 pi^2 R^2 mean radiance, R the radius of the scene. R says little about what matters inside a house, so
-// where there are both near and far lights, how they share the draws is said apart (render/balance_lights.h).
+// Gathers a scene's lights and the table that draws them by power. Powers, in W: a triangle pi area mean emission,
+// twice that where both of its faces emit; a point light 4 pi intensity; a spot what its cone lets through; a
+// directional light pi R^2 irradiance and the environment 4 pi^2 R^2 mean radiance, R the radius of the scene. R says
+// little about what matters inside a house, so where there are both near and far lights, how they share the draws is
+// said apart (render/balance_lights.h).
 
 #include <cstdint>
 #include <vector>

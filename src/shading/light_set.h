@@ -11,12 +11,14 @@
 //
 // Order of sources: emissive instances, punctual lights, the environment; instances, their triangles and punctual lights
 // lie along Hilbert's curve, so that even numbers draw what is evenly spread in space. A light's number is another
-// thing: emissive triangles by instance and primitive, then punctual lights in their order, then the environment. Both
-// faces of a triangle emit; those of unlit materials are no lights.
+// thing: emissive triangles by instance and primitive, then punctual lights in their order, then the environment. A
+// triangle emits from its front, or from both faces where its material says so (scene/material.h); those of unlit
+// materials are no lights.
 
 #include <cstdint>
 
 #include "base/host_device.h"
+#include "base/limits.h"
 #include "math/rgb.h"
 #include "math/sampling.h"
 #include "math/scalar.h"
@@ -33,10 +35,18 @@ namespace pertev {
 inline constexpr uint32_t kNoLight = 0xffffffffu;
 
 struct EmissiveTriangle {
-    Vec3 a, ab, ac;                                     // first vertex and the edges from it, metres, world space
-    Vec2 uv0, uv1, uv2;                                 // of the set that the emission texture reads
-    uint32_t instance = 0, primitive = 0, material = 0; // ids in the scene
-    float pmf = 0;                                      // probability that sample_light draws it
+    Vec3 a, ab, ac;     // first vertex and the edges from it, metres, world space
+    Vec2 uv0, uv1, uv2; // of the set that the emission texture reads
+    uint32_t instance : 30 = 0;
+    uint32_t is_mirrored : 1 = 0; // cross(ab, ac) leads out of the back
+    uint32_t is_two_sided : 1 = 0;
+    uint32_t primitive = 0, material = 0; // like `instance`, ids in the scene
+    float pmf = 0;                        // probability that sample_light draws it
+
+    /// Whether light leaves it against `wi`, a direction towards it. `normal` is cross(ab, ac).
+    HD bool emits_against(Vec3 wi, Vec3 normal) const {
+        return is_two_sided != 0 || (dot(normal, wi) < 0) == (is_mirrored == 0);
+    }
 };
 
 /// An emissive instance: its triangles and the table that draws one of them.
@@ -44,6 +54,7 @@ struct Emitter {
     uint32_t first_triangle = 0, triangle_count = 0;
     uint32_t first_start = 0, first_guide = 0, guide_bits = 0; // of the table in LightSetView::triangle_starts, _guides
 };
+static_assert(kMaxInstances <= 1u << 30, "EmissiveTriangle::instance has 30 bits");
 
 /// scene/light.h's Light without its name.
 struct PunctualLight {
@@ -53,7 +64,7 @@ struct PunctualLight {
     float cos_inner = 1, cos_outer = 0, range = 0;
 };
 
-/// What a material emits, both faces: emission times the texture.
+/// What a material emits: emission times the texture.
 struct SurfaceEmission {
     Rgb emission; // W/(sr m2); 0 for materials that are no lights
     TextureRef texture;
@@ -87,7 +98,7 @@ struct LightSample {
     Vec3 wi;               // unit, towards the light
     float distance = 0;    // metres; kInfinity for the environment and directional lights
     Vec3 light_point;      // metres; of triangles, point and spot lights
-    Vec3 light_normal;     // unit geometric normal of a triangle's front, or zero
+    Vec3 light_normal;     // unit geometric normal of a triangle, of either side, or zero
     Rgb radiance;          // what arrives along wi: W/(sr m2); delta lights: W/m2 on a surface that faces them
     float pdf = 0;         // 1/sr, probability of the light included; delta lights: that probability
     bool is_delta = false; // no other way of finding a direction can hit this light
@@ -136,6 +147,7 @@ HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, V
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
     const Vec3 wi = to_light / distance;
     const Vec3 normal = cross(triangle.ab, triangle.ac);
+    if (!triangle.emits_against(wi, normal)) return false; // its dark back
     const float pdf = triangle.pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
@@ -167,8 +179,8 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
-/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, a dark spot of a texture, outside
-/// a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the triangle's material is
+/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of a
+/// triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the triangle's material is
 /// not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
 HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBits u, LightSample& sample) {
     if (view.choice.starts == nullptr) return false;
@@ -195,13 +207,16 @@ HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBit
 }
 
 /// Density with which sample_light, at `from_point`, draws the direction to `hit_point` on triangle light `light`,
-/// 1/sr. The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn.
+/// 1/sr. The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn, as
+/// from behind a triangle that emits from its front alone.
 HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, Vec3 from_point, Vec3 hit_point) {
     const EmissiveTriangle& triangle = view.triangles[light];
     const Vec3 to_light = hit_point - from_point;
     const float distance_squared = length_squared(to_light);
     const Vec3 wi = to_light / sqrt(distance_squared);
-    const float pdf = triangle.pmf * triangle_pdf(cross(triangle.ab, triangle.ac), wi, distance_squared);
+    const Vec3 normal = cross(triangle.ab, triangle.ac);
+    if (!triangle.emits_against(wi, normal)) return 0;
+    const float pdf = triangle_pdf(normal, wi, distance_squared) * triangle.pmf;
     return is_finite(pdf) ? pdf : 0.0f;
 }
 

@@ -9,6 +9,7 @@ namespace pertev {
 struct MaterialView {
     MaterialKind kind;
     AlphaMode alpha_mode;
+    bool two_sided_emission;
     float alpha, alpha_cutoff;
     Rgb base_color, emission, eta, k;
     float metallic, roughness, ior, normal_scale;
@@ -18,6 +19,7 @@ struct MaterialView {
 inline MaterialView make_material_view(const Material& m) {
     return {.kind = m.kind,
             .alpha_mode = m.alpha_mode,
+            .two_sided_emission = m.two_sided_emission,
             .alpha = m.alpha,
             .alpha_cutoff = m.alpha_cutoff,
             .base_color = m.base_color,

@@ -24,7 +24,7 @@ RenderSettings small_settings() {
 
 constexpr LightStrategy kStrategies[] = {LightStrategy::Mis, LightStrategy::NeeOnly, LightStrategy::BsdfOnly};
 
-/// Hash of the picture, the layers and the ids.
+/// Hash of the picture, the layers, the ids and the share of hidden backs.
 Hash128 hash_of(const RenderResult& result) {
     Hasher hasher;
     hasher.add_value(picture_hash(result.picture).high);
@@ -33,6 +33,8 @@ Hash128 hash_of(const RenderResult& result) {
     for (const PixelIds& ids : result.ids) {
         for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
     }
+    CHECK(result.hidden_back_share > 0.001); // a sheet of the mixed scene
+    hasher.add_value(result.hidden_back_share);
     return hasher.result();
 }
 

@@ -3,8 +3,8 @@ matrix, two-sided diffuse materials, one-sided area lights, one perspective came
 picture is compared with one of another scene.
 
 Source: Mitsuba 3's plugin reference (rectangle, cube, diffuse, twosided, area, perspective).
-The one thing to know: an area light of Mitsuba emits from its front alone, an emissive triangle of ours from both
-faces. Each light therefore gets a black lid behind it, which closes with the light to a flat box.
+The one thing to know: an area light of Mitsuba emits from its front alone, as a glTF material that is not double sided
+does here.
 """
 
 import base64
@@ -12,8 +12,6 @@ import json
 import math
 import struct
 import xml.etree.ElementTree as ElementTree
-
-LID_HEIGHT = 1e-4  # metres behind the light; far over the rounding of a shadow ray's end, far under a pixel
 
 RECTANGLE = [[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]]
 CUBE = [[(-1, -1, -1), (-1, 1, -1), (1, 1, -1), (1, -1, -1)], [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],
@@ -46,15 +44,6 @@ def rgb_of(element, name):
     return [float(word) for word in rgb.get("value").replace(",", " ").split()]
 
 
-def lid_behind(quad, matrix):
-    """A black box of height LID_HEIGHT, open towards the rectangle `quad` that `matrix` has placed: behind it, as its
-    front is where the local +z goes."""
-    front = [row[2] for row in matrix[:3]]
-    shift = LID_HEIGHT / math.sqrt(math.fsum(c * c for c in front))
-    back = [tuple(c - shift * f for c, f in zip(corner, front)) for corner in quad]
-    return [back] + [[quad[i], quad[(i + 1) % 4], back[(i + 1) % 4], back[i]] for i in range(4)]
-
-
 class GltfScene:
     """A glTF document with one buffer, written quad by quad."""
 
@@ -80,7 +69,7 @@ class GltfScene:
 
     def add_material(self, reflectance, radiance=None):
         # A specular weight of 0 takes off the coat of glTF's base material and leaves Lambert's law.
-        material = {"doubleSided": True,
+        material = {"doubleSided": not radiance,
                     "pbrMetallicRoughness": {"baseColorFactor": [*reflectance, 1], "metallicFactor": 0},
                     "extensions": {"KHR_materials_specular": {"specularFactor": 0}}}
         if radiance:
@@ -149,7 +138,6 @@ def convert(source):
             raise ValueError(f"light {shape.get('id')} is not a black rectangle")
         radiance = rgb_of(only(shape, "emitter", "area"), "radiance")
         gltf.add_quads(shape.get("id"), quads, gltf.add_material(reflectance, radiance))
-        gltf.add_quads(shape.get("id") + " lid", lid_behind(quads[0], matrix), gltf.add_material([0, 0, 0]))
 
     camera, matrix, width, height = add_camera(scene, only(scene, "sensor", "perspective"))
     gltf.place({"name": "camera", "camera": gltf.add("cameras", camera), "matrix": matrix})

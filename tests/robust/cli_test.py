@@ -17,9 +17,10 @@ from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, main,
 
 FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
-              "--view-height --aperture --focus --environment --environment-rotation --environment-scale --size "
-              "--tone-map --exposure --transparent --aov --spp --time --integrator --max-depth --seed --sampler "
-              "--filter --filter-radius --clamp --device --threads --no-bvh-cache",
+              "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
+              "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time "
+              "--integrator --max-depth --seed --sampler --filter --filter-radius --clamp --device --threads "
+              "--no-bvh-cache",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --quiet -q --json",

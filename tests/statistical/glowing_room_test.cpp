@@ -21,7 +21,8 @@ Scene make_room(float albedo) {
     mesh.positions = sphere.positions;
     mesh.indices = sphere.indices;
     scene.meshes.push_back(mesh);
-    scene.materials.push_back({.name = "wall", .base_color = grey(albedo), .emission = {1, 1, 1}});
+    scene.materials.push_back(
+        {.name = "wall", .base_color = grey(albedo), .emission = {1, 1, 1}, .two_sided_emission = true});
     scene.instances.push_back({"room", 0, 0, {}});
     return scene;
 }

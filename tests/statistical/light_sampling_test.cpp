@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <vector>
 
 #include "math/random.h"
@@ -48,7 +46,7 @@ struct Lights {
     }
 };
 
-/// Square of side 2 in the plane y = 0 about the origin, 2 n^2 triangles, (u, v) from (0, 0) to (1, 1).
+/// Square of side 2 in the plane y = 0 about the origin, facing -y, 2 n^2 triangles, (u, v) from (0, 0) to (1, 1).
 Mesh make_square(uint32_t n) {
     Mesh mesh;
     for (uint32_t i = 0; i <= n; ++i) {
@@ -59,7 +57,7 @@ Mesh make_square(uint32_t n) {
             mesh.uv[0].push_back(uv);
             if (i == n || j == n) continue;
             const uint32_t a = i * (n + 1) + j, b = a + n + 1;
-            mesh.indices.insert(mesh.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+            mesh.indices.insert(mesh.indices.end(), {a, b, a + 1, b, b + 1, a + 1});
         }
     }
     return mesh;
@@ -128,7 +126,7 @@ void check_irradiance(const LightSetView& view, double exact, uint64_t draws = 1
     const Estimate got = irradiance(view, {0, 0, 0}, {0, 1, 0}, draws, 1);
     CAPTURE(got.mean);
     CAPTURE(got.error);
-    CHECK(std::abs(got.mean - exact) < 4 * got.error + 1e-5 * exact);
+    CHECK(std::abs(got.mean - exact) <= 4 * got.error + 1e-5 * exact);
 }
 
 /// Irradiance from a rectangle (half sides a, b) parallel to the surface, centred at height h above it.
@@ -164,12 +162,33 @@ TEST_CASE("lights: a square of few or many triangles, moved and stretched, gives
     }
 }
 
-TEST_CASE("lights: both faces of a triangle emit") {
+TEST_CASE("lights: a triangle emits from its front, which a mirroring node leaves it, or from both faces") {
+    const double full = rectangle_irradiance(1, 1, 1, 1);
+    for (const uint32_t bits : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u}) {
+        const bool is_turned = (bits & 1) != 0, is_mirrored = (bits & 2) != 0, is_two_sided = (bits & 4) != 0;
+        Scene scene;
+        Mesh square = make_square(2);
+        if (is_turned) std::ranges::reverse(square.indices);
+        const Transform mirror = make_scale({is_mirrored ? -1.0f : 1.0f, 1, 1});
+        add_emitter(scene, square, {1, 1, 1}, compose(make_translation({0, 1, 0}), mirror));
+        scene.materials[0].two_sided_emission = is_two_sided;
+        const Lights lights(scene);
+        const bool shines_down = is_two_sided || !is_turned, shines_up = is_two_sided || is_turned;
+        check_irradiance(lights.view, shines_down ? full : 0);
+        const Estimate above = irradiance(lights.view, {0, 2, 0}, {0, -1, 0}, 20'000, 2);
+        CHECK(std::abs(above.mean - (shines_up ? full : 0)) <= 4 * above.error);
+        CHECK((pdf_light_hit(lights.view, 0, {0, 0, 0}, {-0.5f, 1, -0.5f}) > 0) == shines_down);
+        CHECK((pdf_light_hit(lights.view, 0, {0, 2, 0}, {-0.5f, 1, -0.5f}) > 0) == shines_up);
+    }
+}
+
+TEST_CASE("lights: one face is drawn half as often as two") {
     Scene scene;
-    Mesh turned = make_square(2);
-    for (std::size_t i = 0; i < turned.indices.size(); i += 3) std::swap(turned.indices[i], turned.indices[i + 1]);
-    add_emitter(scene, turned, {1, 1, 1}, make_translation({0, 1, 0}));
-    check_irradiance(Lights(scene).view, rectangle_irradiance(1, 1, 1, 1));
+    for (const float height : {1.0f, 3.0f})
+        add_emitter(scene, make_square(1), {1, 1, 1}, make_translation({0, height, 0}));
+    scene.materials[1].two_sided_emission = true;
+    const Lights lights(scene);
+    CHECK(light_pmf(lights.view, 2) == doctest::Approx(2 * as_double(alias_pmf(lights.view.choice, 0))));
 }
 
 TEST_CASE("lights: a texture's emission is where the texture has it") {
@@ -340,6 +359,7 @@ TEST_CASE("lights: draws follow the density, over lights of eight decades of pow
             for (int k = 0; k < 3; ++k) mesh.positions.push_back(random.point(1, 2));
             mesh.indices = {0, 1, 2};
             add_emitter(scene, mesh, grey(std::pow(10.0f, random.within(-8, 0))), {});
+            scene.materials.back().two_sided_emission = true; // half of them have their backs to the origin
         }
         scene.environment = Environment{};
         const Lights lights(scene);

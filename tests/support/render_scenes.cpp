@@ -97,6 +97,8 @@ Scene make_mixed_scene() {
     const uint32_t blend =
         add(scene, {.name = "blend", .base_color = {0.9f, 0.9f, 0.3f}, .alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
 
+    const uint32_t turned = add(scene, {.name = "turned", .base_color = {0.2f, 0.8f, 0.2f}, .double_sided = false});
+
     place(scene, 1, floor, {0, 0, 0}, {5, 1, 5});
     place(scene, 0, red, {-2.2f, 1, -1}, {1, 1, 1});
     place(scene, 0, gold, {0, 0.9f, -1.5f}, {0.9f, 0.9f, 0.9f});
@@ -105,6 +107,7 @@ Scene make_mixed_scene() {
     place(scene, 1, lamp, {-0.5f, 4, -0.5f}, {0.6f, -1, 0.6f});
     stand(scene, 2, mask, {-1, 0.9f, 1}, 0.8f);
     stand(scene, 4, blend, {2.4f, 0.7f, 1.2f}, 0.5f);
+    stand(scene, 1, turned, {0.2f, 0.5f, 2}, -0.4f); // through the middle: its front then faces away from the camera
 
     scene.lights.push_back({.name = "point",
                             .kind = LightKind::Point,

@@ -10,7 +10,8 @@
 namespace pertev::test {
 
 /// A room open to a panorama: diffuse, metal, glass and glTF spheres (two of them instances of one mesh), a textured
-/// floor, a cut-out and a blended sheet, an emissive quad, a point, a spot and a directional light.
+/// floor, a cut-out and a blended sheet, one that hides its back from the camera, an emissive quad that faces down, a
+/// point, a spot and a directional light.
 Scene make_mixed_scene();
 /// A camera that sees all of it.
 Camera mixed_scene_camera();

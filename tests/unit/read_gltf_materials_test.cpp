@@ -65,6 +65,17 @@ TEST_CASE("a material that says nothing is a white, rough metal that lets nothin
     CHECK(read_material(R"({"extensions":{"KHR_materials_unlit":{}}})").kind == MaterialKind::Unlit);
 }
 
+TEST_CASE("doubleSided says whether a back is seen and whether it gives light; without it neither") {
+    for (const std::string text : {"{}", R"({"doubleSided":false})"}) {
+        const Material material = read_material(text);
+        CHECK_FALSE(material.double_sided);
+        CHECK_FALSE(material.two_sided_emission);
+    }
+    const Material both = read_material(R"({"doubleSided":true})");
+    CHECK(both.double_sided);
+    CHECK(both.two_sided_emission);
+}
+
 TEST_CASE("solid clear glass is a dielectric, and other transmission is left out with a warning") {
     const auto read = [](const std::string& transmission, const std::string& volume, bool is_glass, bool warns) {
         CAPTURE(transmission);

@@ -91,6 +91,28 @@ TEST_CASE("corners share a vertex only where position, texture coordinate and no
     CHECK(mesh.positions[5] == Vec3{1, 1, 0});
 }
 
+TEST_CASE(
+    "the front of a lamp is where its vertex normals point, else where its winding says; nothing else is turned") {
+    const auto read = [](const std::string& normals, const std::string& face, const std::string& emission) {
+        return load_text("mtllib a.mtl\n" + kTriangle + normals + "usemtl m\nf " + face + "\n", "newmtl m\n" + emission)
+            .scene;
+    };
+    const auto front_z = [](const Mesh& mesh) {
+        const auto corner = [&](std::size_t i) { return mesh.positions[mesh.indices[i]]; };
+        return cross(corner(1) - corner(0), corner(2) - corner(0)).z;
+    };
+    const std::string up = "vn 0 0 1\n", down = "vn 0 0 -1\n", with_normals = "1//1 2//1 3//1";
+    CHECK(front_z(read("", "1 2 3", "Ke 1 1 1\n").meshes[0]) > 0);
+    CHECK(front_z(read("", "3 2 1", "Ke 1 1 1\n").meshes[0]) < 0);
+    CHECK(front_z(read(up, with_normals, "Ke 1 1 1\n").meshes[0]) > 0);
+    CHECK(front_z(read(down, with_normals, "Ke 1 1 1\n").meshes[0]) < 0);
+    CHECK(front_z(read(down, "1 2//1 3", "Ke 1 1 1\n").meshes[0]) < 0); // some corners have one
+    CHECK(front_z(read(down, with_normals, "Kd 1 1 1\n").meshes[0]) > 0);
+    const Material lamp = read("", "1 2 3", "Ke 1 1 1\n").materials[0];
+    CHECK(lamp.double_sided);
+    CHECK_FALSE(lamp.two_sided_emission);
+}
+
 TEST_CASE("relative indices, comments, joined lines, CRLF and lone CR line ends are read") {
     const std::vector<uint32_t> expected = {0, 1, 2};
     for (const std::string end : {"\n", "\r\n", "\r"}) {

@@ -12,6 +12,7 @@ Material make_default_material() {
     material.base_color = {1, 1, 1};
     material.metallic = 1;
     material.roughness = 1;
+    material.double_sided = false;
     return material;
 }
 
@@ -56,6 +57,7 @@ Material Materials::read(const JsonValue& source) {
     const std::array<float, 3> emission = source.floats_or<3>("emissiveFactor", {0, 0, 0});
     material.emission = strength * Rgb{emission[0], emission[1], emission[2]};
     material.emission_texture = read_texture(source, "emissiveTexture", true);
+    material.double_sided = material.two_sided_emission = source.bool_or("doubleSided", false);
 
     material.normal_texture = read_texture(source, "normalTexture", false);
     if (const std::optional<JsonValue> normal = source.find("normalTexture")) {

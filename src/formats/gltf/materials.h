@@ -5,7 +5,7 @@
 // Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit. Of
 // KHR_materials_specular a weight of 0 on what is no metal: that takes the coat off and leaves Lambert's law. Of
 // KHR_materials_transmission and _volume solid clear glass.
-// Occlusion textures are not read: a path tracer computes what they approximate. Faces are always double sided.
+// Occlusion textures are not read: a path tracer computes what they approximate.
 
 #include <optional>
 #include <vector>

@@ -28,7 +28,7 @@ struct PathSettings {
     uint32_t roulette_depth = 3; // first vertex (counted from 1) at which Russian roulette may end the path
     PathLight light = PathLight::Path;
     LightStrategy strategy = LightStrategy::Mis;
-    float clamp = 0; // largest channel of one contribution after the first scattering, W/(sr m2); 0 = off
+    float clamp = 0; // largest channel of one contribution, W/(sr m2), of light scattered twice or more; 0 = off
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
     bool hide_background = false;  // a camera ray that hits nothing brings nothing: for pictures with alpha

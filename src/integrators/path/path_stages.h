@@ -12,9 +12,11 @@
 
 namespace pertev {
 
-HD inline Hit find_hit(const SceneView& scene, const PathState& path, uint32_t seed) {
+/// `from_camera`: the path's first ray.
+HD inline Hit find_hit(const SceneView& scene, const PathState& path, uint32_t seed, bool from_camera) {
     Hit hit;
-    const AcceptHit accept{scene, path.start, {}, path_key(path, seed, false)};
+    const AcceptHit accept{
+        scene, path.start, {}, path_key(path, seed, false), from_camera && scene.any_hidden_back != 0, path.direction};
     trace_closest(scene.bvh, Ray{path.origin, 0.0f, path.direction, kInfinity}, accept, hit);
     return hit;
 }
@@ -44,9 +46,10 @@ struct FindHits {
     PathQueueView paths;
     const uint32_t* active; // null: slot i
     HitQueueView hits;
+    bool from_camera; // the same for all of a launch: it takes no register
 
     HD void operator()(uint32_t i) const {
-        hits.store(i, find_hit(scene, paths.load(active != nullptr ? active[i] : i), seed));
+        hits.store(i, find_hit(scene, paths.load(active != nullptr ? active[i] : i), seed, from_camera));
     }
 };
 

@@ -6,6 +6,7 @@
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "device/launch.h"
+#include "integrators/path/count_hidden_backs.h"
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
@@ -53,6 +54,16 @@ void PathRenderer::render(uint32_t first, uint32_t count, Film& film) {
     }
 }
 
+double PathRenderer::hidden_back_share() {
+    if (scene_.any_hidden_back == 0) return 0;
+    Buffer<uint32_t> count(queue_, 1, "count of hidden backs");
+    count.zero();
+    launch(
+        queue_, "count_hidden_backs", CountHiddenBacks::kRays,
+        CountHiddenBacks{scene_, camera_.view, static_cast<float>(width_), static_cast<float>(height_), count.data()});
+    return static_cast<double>(count.download()[0]) / CountHiddenBacks::kRays;
+}
+
 void PathRenderer::render_loop(uint32_t first, uint32_t count, const FilmView& film) {
     std::atomic<uint64_t> bounces{0}, shadows{0};
     parallel_for_ranges(uint64_t(width_) * height_, 64, [&](uint64_t begin, uint64_t end) {
@@ -62,7 +73,7 @@ void PathRenderer::render_loop(uint32_t first, uint32_t count, const FilmView& f
             for (uint32_t sample = first; sample < first + count; ++sample) {
                 PathState path = generate_path(camera_, settings_, pixel, sample);
                 for (bool goes_on = true; goes_on;) {
-                    const Hit hit = find_hit(scene_, path, settings_.seed);
+                    const Hit hit = find_hit(scene_, path, settings_.seed, path.depth == 0);
                     const uint32_t key = path_key(path, settings_.seed, true);
                     ShadowRay shadow;
                     bool wants_shadow = false;
@@ -115,8 +126,9 @@ void PathRenderer::trace_batch(uint32_t batch, const FilmView& film) {
     for (uint32_t count = batch; count > 0;) {
         const SlotListView going_on = {active_[next].data(), counts_.data()};
         counts_.zero();
-        run("find_hits", count, FindHits{scene_, settings_.seed, paths, active, hits},
-            active == nullptr ? &StageSeconds::camera_hits : &StageSeconds::bounce_hits);
+        const bool from_camera = active == nullptr;
+        run("find_hits", count, FindHits{scene_, settings_.seed, paths, active, hits, from_camera},
+            from_camera ? &StageSeconds::camera_hits : &StageSeconds::bounce_hits);
         run("shade_hits", count,
             ShadeHits{scene_, settings_, film, paths, active, hits, going_on, shadows, counts_.data() + 1},
             &StageSeconds::shade);

@@ -42,6 +42,11 @@ public:
 
     const RayCounts& rays() const { return rays_; }
 
+    /// Share of the camera's rays, in [0, 1], that pass the back of a surface that is not double sided; of 4096 spread
+    /// over the picture, which no setting changes. Costs nothing where there is no such surface. Throws
+    /// Error(DeviceFault).
+    double hidden_back_share();
+
     /// From now on the wavefront's stages are timed, each on its own; slower than a render that is not looked at.
     void time_stages(StageSeconds& seconds) { seconds_ = &seconds; }
 

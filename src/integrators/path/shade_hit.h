@@ -32,11 +32,12 @@ HD inline bool counts(PathLight light, uint32_t rough) {
     return false;
 }
 
-/// Contribution after the user's clamp on everything that was scattered at least once before its last vertex.
-HD inline Rgb clamp_contribution(const PathSettings& settings, uint32_t depth, Rgb contribution) {
-    const float largest = max_component(contribution);
-    if (!(settings.clamp > 0) || depth == 0 || !(largest > settings.clamp)) return contribution;
-    return (settings.clamp / largest) * contribution;
+/// Contribution after the user's clamp, which spares light that was scattered at most once. It is for what a technique
+/// found before its weight: `contribution` has been weighted by `weight`, so the limit is as well.
+HD inline Rgb clamp_contribution(const PathSettings& settings, uint32_t scatterings, float weight, Rgb contribution) {
+    const float largest = max_component(contribution), limit = weight * settings.clamp;
+    if (!(settings.clamp > 0) || scatterings <= 1 || !(largest > limit)) return contribution;
+    return (limit / largest) * contribution;
 }
 
 /// Adds light that the path's own ray ran into. `light_pdf`: density with which next-event estimation at the previous
@@ -48,7 +49,7 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
         if (settings.strategy == LightStrategy::NeeOnly) return;
         if (settings.strategy == LightStrategy::Mis) weight = power_heuristic(path.bsdf_pdf, light_pdf);
     }
-    path.radiance += clamp_contribution(settings, path.depth, path.throughput * (weight * emission));
+    path.radiance += clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
 /// Draws one point of one light. True when `shadow` is to be traced.
@@ -73,7 +74,7 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
-    shadow.contribution = clamp_contribution(settings, path.depth,
+    shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
     shadow.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, light.wi);
     shadow.target = {light.instance, light.primitive};

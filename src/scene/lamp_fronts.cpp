@@ -1,0 +1,88 @@
+#include "scene/lamp_fronts.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/message_text.h"
+#include "scene/cast_rays.h"
+
+namespace pertev {
+namespace {
+
+constexpr std::size_t kMostNames = 5;
+constexpr std::size_t kMostLamps = 16, kMostTriangles = 4; // that are looked at: of a lamp, spread over its list
+constexpr uint64_t kMostSceneTriangles = 2'000'000;        // a tenth of a second for 128 rays on one core
+constexpr float kMuchMore = 20;                            // room behind for each metre before
+
+bool is_one_sided_lamp(const Material& material) {
+    return material.is_emissive() && material.kind != MaterialKind::Unlit && !material.two_sided_emission;
+}
+
+/// Two rays from the middle of each triangle that is looked at: straight out of its front, and out of its back.
+std::vector<LookRay> rays_from(const Scene& scene, const Instance& lamp) {
+    const Mesh& mesh = scene.meshes[lamp.mesh];
+    std::vector<LookRay> rays;
+    const std::size_t count = mesh.triangle_count(), looked_at = std::min(count, kMostTriangles);
+    for (std::size_t k = 0; k < looked_at; ++k) {
+        const uint32_t* index = mesh.indices.data() + 3 * (k * count / looked_at);
+        const auto corner = [&](int i) { return transform_point(lamp.world_from_local, mesh.positions[index[i]]); };
+        const Vec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
+        const float size = max(max_component(abs(ab)), max_component(abs(ac)));
+        const Vec3 across = cross((1.0f / size) * ab, (1.0f / size) * ac);
+        if (!(length(across) > 0)) continue;
+        const float sign = is_mirroring(lamp.world_from_local) ? -1.0f : 1.0f;
+        const Vec3 normal = (sign / length(across)) * across;
+        const Vec3 middle = a + (1.0f / 3) * (ab + ac), off = (1e-4f * size) * normal; // to leave the triangle itself
+        rays.insert(rays.end(), {{middle + off, normal}, {middle - off, -normal}});
+    }
+    return rays;
+}
+
+void warn_of_turned_lamps(const Scene& scene, const std::vector<const Instance*>& lamps, const std::string& file,
+                          Messages& messages) {
+    uint64_t triangles = 0;
+    for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
+    if (triangles > kMostSceneTriangles) return;
+    for (std::size_t i = 0; i < std::min(lamps.size(), kMostLamps); ++i) {
+        const std::vector<LookRay> rays = rays_from(scene, *lamps[i]);
+        if (rays.empty()) continue;
+        const std::vector<LookHit> hits = cast_rays(scene, rays);
+        std::size_t turned = 0;
+        float before = kInfinity, behind = kInfinity;
+        for (std::size_t k = 0; k < hits.size(); k += 2) {
+            const float off = 0.5f * length(rays[k].origin - rays[k + 1].origin);
+            const float front = off + hits[k].distance, back = off + hits[k + 1].distance;
+            if (!(kMuchMore * front < back)) continue;
+            ++turned;
+            before = min(before, front);
+            behind = min(behind, back);
+        }
+        if (2 * turned <= hits.size() / 2) continue; // most of those looked at
+        const std::string room = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "all the world";
+        messages.warn(fmt::format("{}: the lamp {} shines at a surface {:.3g} m before its front and has {} behind it: "
+                                  "turn its faces round, or say --two-sided-lights",
+                                  file, shortened(lamps[i]->name), before, room));
+    }
+}
+
+} // namespace
+
+void say_lamp_fronts(const Scene& scene, const std::string& file, Messages& messages) {
+    std::vector<const Instance*> lamps;
+    std::string names;
+    for (const Instance& instance : scene.instances) {
+        if (!is_one_sided_lamp(scene.materials[instance.material])) continue;
+        lamps.push_back(&instance);
+        if (lamps.size() <= kMostNames) names += (names.empty() ? "" : ", ") + shortened(instance.name);
+    }
+    if (lamps.empty()) return;
+    if (lamps.size() > kMostNames) names += fmt::format(" and {} more", lamps.size() - kMostNames);
+    messages.note(fmt::format("{}: {} with light on the front alone: {}; the front is where normals point or, without "
+                              "any, from where corners run counter-clockwise (--two-sided-lights: both faces)",
+                              file, counted(lamps.size(), "lamp"), names));
+    warn_of_turned_lamps(scene, lamps, file, messages);
+}
+
+} // namespace pertev
