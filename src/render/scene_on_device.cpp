@@ -19,9 +19,10 @@ SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) {
     const Scene& scene = *prepared.scene;
     upload_trees(queue, prepared);
     upload_meshes(queue, scene);
-    upload_instances(queue, scene);
+    upload_instances(queue, prepared);
     upload_images(queue, scene);
     upload_lights(queue, prepared.lights);
+    view_.centre = prepared.centre;
 }
 
 BvhView SceneOnDevice::upload(Queue& queue, const Bvh& bvh, const std::string& name) {
@@ -62,18 +63,21 @@ void SceneOnDevice::upload_meshes(Queue& queue, const Scene& scene) {
     view_.meshes = keep(queue, std::span<const MeshView>(views), "meshes");
 }
 
-void SceneOnDevice::upload_instances(Queue& queue, const Scene& scene) {
+void SceneOnDevice::upload_instances(Queue& queue, const PreparedScene& prepared) {
+    const Scene& scene = *prepared.scene;
     std::vector<MaterialView> materials;
     for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
     view_.materials = keep(queue, std::span<const MaterialView>(materials), "materials");
 
     std::vector<InstanceView> instances;
-    for (const Instance& instance : scene.instances) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Transform world_from_local = moved_to(instance.world_from_local, prepared.centre);
         const bool has_alpha = scene.materials[instance.material].alpha_mode != AlphaMode::Opaque;
         view_.any_alpha |= has_alpha ? 1 : 0;
-        instances.push_back({instance.world_from_local, inverse(instance.world_from_local), instance.mesh,
-                             instance.material, has_alpha ? 1u : 0u,
-                             determinant(instance.world_from_local) < 0 ? 1u : 0u});
+        instances.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material,
+                             has_alpha ? 1u : 0u, determinant(world_from_local) < 0 ? 1u : 0u,
+                             prepared.is_baked[i] ? 1u : 0u});
     }
     view_.instances = keep(queue, std::span<const InstanceView>(instances), "instances");
 }

@@ -32,6 +32,7 @@ struct InstanceView {
     uint32_t material;
     uint32_t has_alpha;   // 1 where a hit may be refused by its alpha
     uint32_t is_mirrored; // 1 where world_from_local turns winding over
+    uint32_t is_baked;    // 1 where the walk has its triangles in the world, 0 where it goes into its own space
 };
 
 struct SceneView {
@@ -43,6 +44,7 @@ struct SceneView {
     const float* linear_from_srgb; // [256]
     LightSetView lights;
     uint32_t any_alpha; // 0 lets every hit skip the look at its instance
+    Vec3 centre;        // of the moved world, in the file's coordinates, metres (render/place_meshes.h)
 };
 
 /// The three vertex numbers of a triangle.

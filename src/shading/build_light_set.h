@@ -28,8 +28,10 @@ struct LightSetData {
     }
 };
 
-/// `scene` has passed validate(). `linear_from_srgb` [256]. Throws Error(OverLimit) for more than kMaxLights.
-LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages);
+/// `scene` has passed validate(). `linear_from_srgb` [256]. `centre`: the origin of the world that the lights are
+/// placed in, in the scene's coordinates. Throws Error(OverLimit) for more than kMaxLights.
+LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages,
+                             Vec3 centre = {0, 0, 0});
 
 /// Triangles that give light, each placed one a light of its own.
 uint64_t count_emissive_triangles(const Scene& scene);
