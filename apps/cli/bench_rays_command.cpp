@@ -143,7 +143,8 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const Scene scene = read_geometry(name, messages);
     const double load_s = watch.seconds();
     throw_if_interrupted();
-    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const PreparedScene prepared = // the sets are in the file's coordinates
+        prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages);
     const SceneOnDevice on_device(queue, prepared);
     const SceneBvhView& trees = on_device.view().bvh;
     const FrameSize frame = record_frame(flags.count);

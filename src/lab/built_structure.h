@@ -32,7 +32,8 @@ using AnyTrees = std::variant<SceneTrees<BvhView>, SceneTrees<SkipBvhView>, Scen
 enum class TreeLayout { Triangles, Binary, Woop, Skip, Wide4, Wide8, Compressed, Kd, Octree };
 TreeLayout layout_of(const Combination& combination);
 
-/// A scene's triangles as builders take them: the baked ones, and those of each mesh that keeps a tree of its own.
+/// A scene's triangles as builders take them: the baked ones, and those of each mesh that keeps a tree of its own. In
+/// the file's coordinates, as the sets of rays are.
 struct LabTriangles {
     std::vector<BvhTriangle> baked;
     std::vector<std::vector<BvhTriangle>> meshes;

@@ -18,6 +18,15 @@ HD inline Vec3 transform_vector(const Transform& m, Vec3 v) { return {dot(m.row0
 HD inline Vec3 transform_point(const Transform& m, Vec3 p) { return transform_vector(m, p) + m.translation; }
 /// Transpose of the linear part times `n`: with m = local_from_world this carries a normal from local to world.
 HD inline Vec3 transform_transposed(const Transform& m, Vec3 n) { return n.x * m.row0 + n.y * m.row1 + n.z * m.row2; }
+/// The absolute values of the linear part times `v`: what bounds of rounding go through.
+HD inline Vec3 transform_sizes(const Transform& m, Vec3 v) {
+    return {dot(abs(m.row0), v), dot(abs(m.row1), v), dot(abs(m.row2), v)};
+}
+/// The same map into a world whose origin was moved to `centre`.
+HD inline Transform moved_to(Transform m, Vec3 centre) {
+    m.translation = m.translation - centre;
+    return m;
+}
 HD inline Vec3 column(const Transform& m, int k) {
     return {component(m.row0, k), component(m.row1, k), component(m.row2, k)};
 }

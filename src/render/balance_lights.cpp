@@ -12,13 +12,13 @@ namespace {
 constexpr uint32_t kPoints = 2048, kDrawsPerPoint = 32, kCandidates = 16;
 
 struct SurfacePoint {
-    Vec3 position, normal; // metres, world space; the normal unit, or zero for a triangle without area
+    Vec3 position, normal; // metres, moved world; the normal unit, or zero for a triangle without area
 };
 
 /// Triangles of all instances, counted through.
 class PlacedTriangles {
 public:
-    explicit PlacedTriangles(const Scene& scene) : scene_(scene) {
+    PlacedTriangles(const Scene& scene, Vec3 centre) : scene_(scene), centre_(centre) {
         for (const Instance& instance : scene.instances) {
             ends_.push_back(count() + scene.meshes[instance.mesh].triangle_count());
         }
@@ -33,12 +33,14 @@ public:
         const Instance& instance = scene_.instances[i];
         const Mesh& mesh = scene_.meshes[instance.mesh];
         const uint32_t* index = mesh.indices.data() + 3 * (number - (i == 0 ? 0 : ends_[i - 1]));
-        const auto world = [&](uint32_t v) { return transform_point(instance.world_from_local, mesh.positions[v]); };
+        const Transform world_from_local = moved_to(instance.world_from_local, centre_);
+        const auto world = [&](uint32_t v) { return transform_point(world_from_local, mesh.positions[v]); };
         return {world(index[0]), world(index[1]), world(index[2])};
     }
 
 private:
     const Scene& scene_;
+    Vec3 centre_;
     std::vector<uint64_t> ends_;
 };
 
@@ -102,7 +104,7 @@ SceneBvhView view_on_host(const PreparedScene& prepared, std::vector<BvhView>& m
 
 void balance_lights(PreparedScene& prepared, const float* linear_from_srgb) {
     LightSetData& data = prepared.lights;
-    const PlacedTriangles triangles(*prepared.scene);
+    const PlacedTriangles triangles(*prepared.scene, prepared.centre);
     if (!data.has_both_kinds() || triangles.count() == 0) return;
     const std::vector<TextureImageView> images = views_of_images(*prepared.scene);
     std::vector<BvhView> meshes;

@@ -22,8 +22,9 @@ struct CameraView {
     float focus_distance;          // metres
 };
 
-/// `fov_y` etc. of the camera with the picture's own shape: the height keeps its angle, the width follows.
-CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height);
+/// `fov_y` etc. of the camera with the picture's own shape: the height keeps its angle, the width follows. `centre`:
+/// the origin of the world that its rays go into, in the camera's coordinates.
+CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height, Vec3 centre = {0, 0, 0});
 
 /// Ray through `pixel`, starting on the lens at `lens` (unit square). Unit direction.
 HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {

@@ -17,7 +17,7 @@ enum AovBits : uint32_t {
     kAovAlbedo = 1,   // 3 channels: reflectance of the first surface
     kAovNormal = 2,   // 3: its shading normal, world space
     kAovDepth = 4,    // 1: distance along the camera's axis, metres
-    kAovPosition = 8, // 3: world space, metres
+    kAovPosition = 8, // 3: the file's coordinates, metres
     kAovIds = 16,     // no sums: ids of sample 0, see FilmView::ids
 };
 

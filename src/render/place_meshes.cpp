@@ -1,11 +1,15 @@
 #include "render/place_meshes.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
+#include "math/double_vec3.h"
 
 namespace pertev {
 namespace {
@@ -37,8 +41,24 @@ Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Insta
 
 } // namespace
 
-MeshPlacement place_meshes(const Scene& scene) {
+Vec3 world_centre(const Scene& scene) {
+    const Bounds3 box = bounds_of(scene);
+    if (box.is_empty()) return {};
+    const DoubleVec3 lo = to_double(box.lo), hi = to_double(box.hi);
+    const double side = std::max(hi.x - lo.x, std::max(hi.y - lo.y, hi.z - lo.z));
+    int exponent = 0; // side = fraction in [1/2, 1) times 2^exponent
+    const double fraction = std::frexp(side, &exponent);
+    const double grid = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+    // Halves go away from zero; adding 0 makes a zero positive.
+    const auto rounded = [&](double a, double b) {
+        return static_cast<float>(grid * std::round(0.5 * (a + b) / grid) + 0.0);
+    };
+    return {rounded(lo.x, hi.x), rounded(lo.y, hi.y), rounded(lo.z, hi.z)};
+}
+
+MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
     MeshPlacement placement;
+    placement.centre = centre;
     std::vector<uint32_t> uses(scene.meshes.size());
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
     uint64_t own_triangles = 0;
@@ -76,7 +96,7 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         if (!placement.is_baked[i]) continue;
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-        add_triangles(mesh, scene.instances[i].world_from_local, static_cast<uint32_t>(i),
+        add_triangles(mesh, moved_to(scene.instances[i].world_from_local, placement.centre), static_cast<uint32_t>(i),
                       std::span(triangles).subspan(first, mesh.triangle_count()));
         first += mesh.triangle_count();
     }
@@ -96,7 +116,8 @@ std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& pla
         if (placement.is_baked[i]) continue;
         const Instance& instance = scene.instances[i];
         const uint32_t tree = placement.tree_of_mesh[instance.mesh];
-        placed.push_back({instance.world_from_local, bounds[tree], tree, static_cast<uint32_t>(i)});
+        placed.push_back(
+            {moved_to(instance.world_from_local, placement.centre), bounds[tree], tree, static_cast<uint32_t>(i)});
     }
     return placed;
 }

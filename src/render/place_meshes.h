@@ -1,7 +1,8 @@
 #pragma once
 
 // Which meshes are baked into world space and which keep a tree of their own: decided here, once, for every structure
-// alike; and the triangles of both kinds, as builders take them.
+// alike; and the triangles of both kinds, as builders take them. Also where the origin of that world is: a picture's is
+// moved to the scene, since floats are fine only near 0.
 
 #include <cstdint>
 #include <span>
@@ -20,14 +21,23 @@ struct MeshPlacement {
     std::vector<uint32_t> tree_of_mesh; // number of the mesh's own tree, or kBakedMesh where no instance needs one
     uint32_t mesh_tree_count = 0;
     uint64_t copies = 0, copied_triangles = 0; // baked although their mesh is used more than once
+    Vec3 centre;                               // of the world that they are placed in, in the file's coordinates
 };
+
+/// Where the origin of a picture's world lies, in the file's coordinates (metres), at time 0: the middle of the box
+/// round all instances (scene/scene.h's bounds_of), each coordinate rounded to a multiple of g, the least power of two
+/// that is not under the box's longest side. So a scene stays where it is unless it lies more than about its size from
+/// the origin, and to move one that does costs hardly any bits: the difference of a coordinate from a multiple of g is
+/// exact but near 0. {0, 0, 0} without any triangle.
+Vec3 world_centre(const Scene& scene);
 
 /// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local
 /// space so skewed would cost the boxes of a top level more than the triangles cost memory. Throws Error(OverLimit)
 /// that names the instance with which such copies are out of all proportion to the scene's own triangles.
-MeshPlacement place_meshes(const Scene& scene);
+/// `centre`: the origin of the world they are placed in.
+MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0});
 
-/// The triangles of all baked instances, in world space. Throws Error(OverLimit) for more than one tree can hold.
+/// The triangles of all baked instances, in the moved world. Throws Error(OverLimit) for more than one tree can hold.
 std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement);
 /// The triangles of a mesh, in its own space.
 std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh);

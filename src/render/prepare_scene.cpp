@@ -35,7 +35,9 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     PreparedScene prepared;
     prepared.scene = &scene;
     warn_of_indices(scene, messages);
-    const MeshPlacement placement = place_meshes(scene);
+    if (!options.keep_coordinates) prepared.centre = world_centre(scene);
+    const MeshPlacement placement = place_meshes(scene, prepared.centre);
+    prepared.is_baked = placement.is_baked;
     if (placement.copied_triangles > kManyCopiedTriangles) {
         messages.warn(
             fmt::format("{} of shared meshes squeezed too much for a tree of their own: copied into world space, "
@@ -57,7 +59,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     for (const Bvh& bvh : prepared.mesh_bvhs) prepared.triangles += bvh.triangles.size();
     prepared.build_seconds = watch.seconds();
 
-    prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages);
+    prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages, prepared.centre);
     balance_lights(prepared, srgb_decode_table().data());
     return prepared;
 }

@@ -1,7 +1,8 @@
 #pragma once
 
-// From a validated Scene to what a render needs on the host: which meshes are baked into world space, the trees over
-// them (built, or loaded from the cache), the lights. The same for every device and every structure.
+// From a validated Scene to what a render needs on the host: where the origin of its world is (world_centre), which
+// meshes are baked into that world, the trees over them (built, or loaded from the cache), the lights. The same for
+// every device and every structure. The scene itself keeps the file's coordinates, and so do cameras.
 
 #include <filesystem>
 #include <optional>
@@ -18,16 +19,19 @@ namespace pertev {
 struct PrepareOptions {
     BvhBuildSettings bvh;
     std::optional<std::filesystem::path> bvh_cache; // folder of the on-disk cache; none = always build
+    bool keep_coordinates = false; // the world is the file's: for rays that are given in its coordinates
 };
 
 struct PreparedScene {
     const Scene* scene = nullptr; // outlives this
-    Bvh baked;                    // all baked instances, world space
+    Vec3 centre;                  // origin of the moved world, in the file's coordinates, metres
+    std::vector<bool> is_baked;   // of each instance
+    Bvh baked;                    // all baked instances, moved world
     std::vector<Bvh> mesh_bvhs;   // of the meshes that are not baked everywhere, local space
     TopLevelBvh top_level;        // over the instances that are not baked
-    LightSetData lights;
-    uint64_t triangles = 0;   // in all trees
-    double build_seconds = 0; // trees alone, built or read from the cache
+    LightSetData lights;          // moved world
+    uint64_t triangles = 0;       // in all trees
+    double build_seconds = 0;     // trees alone, built or read from the cache
 };
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);

@@ -1,7 +1,8 @@
 #pragma once
 
 // Where a ray that leaves a surface starts: far enough off the computed hit point that rounding cannot put it on the
-// other side, and no farther.
+// other side, and no farther. Off its own triangle along the normal; off the triangles that stand on its edges by
+// keeping away from these, which no move along the normal does.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8.6 (robust spawned ray origins).
 
@@ -16,6 +17,21 @@ HD inline float next_float(float x, float sign) {
     const uint32_t bits = bits_of(x);
     const bool away = (x > 0) == (sign > 0);
     return float_of(away ? bits + 1 : bits - 1);
+}
+
+/// Weights of a triangle's second and third vertex.
+struct PlaceOnTriangle {
+    float u, v;
+};
+
+/// The place (u, v), moved in where one of its three weights is under `least` (in [0, 1/4]). Each weight is then at
+/// least 2/3 of that, and as it was where none is under it.
+HD inline PlaceOnTriangle keep_off_edges(float u, float v, float least) {
+    const float w = 1.0f - u - v;
+    if (min(w, min(u, v)) >= least) return {u, v};
+    const float at_u = max(u, least), at_v = max(v, least);
+    const float scale = 1.0f / (max(w, least) + at_u + at_v); // 1 to 3/2
+    return {at_u * scale, at_v * scale};
 }
 
 /// `point`, known to within `error` (metres, per component, >= 0) of a plane with unit normal `normal`, moved to the

@@ -19,9 +19,10 @@ SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) {
     const Scene& scene = *prepared.scene;
     upload_trees(queue, prepared);
     upload_meshes(queue, scene);
-    upload_instances(queue, scene);
+    upload_instances(queue, prepared);
     upload_images(queue, scene);
     upload_lights(queue, prepared.lights);
+    view_.centre = prepared.centre;
 }
 
 BvhView SceneOnDevice::upload(Queue& queue, const Bvh& bvh, const std::string& name) {
@@ -62,21 +63,23 @@ void SceneOnDevice::upload_meshes(Queue& queue, const Scene& scene) {
     view_.meshes = keep(queue, std::span<const MeshView>(views), "meshes");
 }
 
-void SceneOnDevice::upload_instances(Queue& queue, const Scene& scene) {
+void SceneOnDevice::upload_instances(Queue& queue, const PreparedScene& prepared) {
+    const Scene& scene = *prepared.scene;
     std::vector<MaterialView> materials;
     for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
     view_.materials = keep(queue, std::span<const MaterialView>(materials), "materials");
 
     std::vector<InstanceView> instances;
-    for (const Instance& instance : scene.instances) {
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Transform world_from_local = moved_to(instance.world_from_local, prepared.centre);
         const Material& material = scene.materials[instance.material];
         const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
         const uint16_t hides_back = material.double_sided ? 0 : 1;
         view_.any_alpha |= has_alpha;
         view_.any_hidden_back |= hides_back;
-        instances.push_back({instance.world_from_local, inverse(instance.world_from_local), instance.mesh,
-                             instance.material, has_alpha, hides_back,
-                             is_mirroring(instance.world_from_local) ? 1u : 0u});
+        instances.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material, has_alpha,
+                             hides_back, is_mirroring(world_from_local) ? 1u : 0u, prepared.is_baked[i] ? 1u : 0u});
     }
     view_.instances = keep(queue, std::span<const InstanceView>(instances), "instances");
 }

@@ -21,7 +21,7 @@ private:
     BvhView upload(Queue& queue, const Bvh& bvh, const std::string& name);
     void upload_trees(Queue& queue, const PreparedScene& prepared);
     void upload_meshes(Queue& queue, const Scene& scene);
-    void upload_instances(Queue& queue, const Scene& scene);
+    void upload_instances(Queue& queue, const PreparedScene& prepared);
     void upload_images(Queue& queue, const Scene& scene);
     void upload_lights(Queue& queue, const LightSetData& lights);
 

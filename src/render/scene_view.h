@@ -33,6 +33,7 @@ struct InstanceView {
     uint16_t has_alpha;   // 1 where a hit may be refused by its alpha
     uint16_t hides_back;  // 1 where rays from the camera pass the back
     uint32_t is_mirrored; // 1 where world_from_local turns winding over
+    uint32_t is_baked;    // 1 where the walk has its triangles in the world, 0 where it goes into its own space
 };
 
 struct SceneView {
@@ -45,6 +46,7 @@ struct SceneView {
     LightSetView lights;
     uint32_t any_alpha;       // 0 lets every hit skip the look at its instance
     uint32_t any_hidden_back; // the same for hits of the camera's rays
+    Vec3 centre;              // of the moved world, in the file's coordinates, metres (render/place_meshes.h)
 };
 
 /// The three vertex numbers of a triangle.

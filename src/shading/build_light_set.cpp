@@ -66,7 +66,7 @@ double punctual_power(const PunctualLight& light, double radius) {
 
 bool is_light(const Material& material) { return material.is_emissive() && material.kind != MaterialKind::Unlit; }
 
-void add_triangles(const Scene& scene, LightSetData& data) {
+void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
     uint64_t count = 0;
     data.first_light.assign(scene.instances.size(), kNoLight);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -92,7 +92,7 @@ void add_triangles(const Scene& scene, LightSetData& data) {
         parallel_for(mesh.triangle_count(), 4096, [&](uint64_t primitive) {
             const uint32_t* index = mesh.indices.data() + 3 * primitive;
             const auto world = [&](uint32_t v) {
-                return transform_point(instance.world_from_local, mesh.positions[v]);
+                return transform_point(moved_to(instance.world_from_local, centre), mesh.positions[v]);
             };
             const auto uv_at = [&](uint32_t v) { return uv.empty() ? Vec2{} : uv[v]; };
             const Vec3 a = world(index[0]);
@@ -241,14 +241,14 @@ void store_probabilities(LightSetData& data) {
 
 } // namespace
 
-LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages) {
+LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages, Vec3 centre) {
     LightSetData data;
     for (const Material& material : scene.materials) {
         data.emissions.push_back({is_light(material) ? material.emission : Rgb{}, material.emission_texture});
     }
-    add_triangles(scene, data);
+    add_triangles(scene, centre, data);
     for (const Light& light : scene.lights) {
-        data.punctual.push_back({light.kind, light.position, light.direction, light.intensity, light.cos_inner,
+        data.punctual.push_back({light.kind, light.position - centre, light.direction, light.intensity, light.cos_inner,
                                  light.cos_outer, light.range});
     }
     data.has_environment = scene.environment.has_value();

@@ -35,8 +35,10 @@ struct LightSetData {
     }
 };
 
-/// `scene` has passed validate(). `linear_from_srgb` [256]. Throws Error(OverLimit) for more than kMaxLights.
-LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages);
+/// `scene` has passed validate(). `linear_from_srgb` [256]. `centre`: the origin of the world that the lights are
+/// placed in, in the scene's coordinates. Throws Error(OverLimit) for more than kMaxLights.
+LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages,
+                             Vec3 centre = {0, 0, 0});
 
 /// Makes the table that draws a source: by power within near and far ones, `far_share` (0, 1) of the draws for the far
 /// ones where there are both.

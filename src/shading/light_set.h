@@ -35,7 +35,7 @@ namespace pertev {
 inline constexpr uint32_t kNoLight = 0xffffffffu;
 
 struct EmissiveTriangle {
-    Vec3 a, ab, ac;     // first vertex and the edges from it, metres, world space
+    Vec3 a, ab, ac;     // first vertex and the edges from it, metres, moved world
     Vec2 uv0, uv1, uv2; // of the set that the emission texture reads
     uint32_t instance : 30 = 0;
     uint32_t is_mirrored : 1 = 0; // cross(ab, ac) leads out of the back

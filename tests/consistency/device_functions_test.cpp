@@ -56,7 +56,8 @@ std::vector<Ray> rays_into(const Bounds3& bounds, uint32_t count) {
 
 void check_same_hits(const Scene& scene, uint32_t count) {
     Messages messages;
-    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const PreparedScene prepared =
+        prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages);
     const std::vector<Ray> rays = rays_into(bounds_of(scene), count);
     std::vector<Hit> hits[2];
     std::vector<uint32_t> occluded[2];

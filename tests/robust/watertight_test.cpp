@@ -71,7 +71,7 @@ struct ClosedInstance {
 
     static PreparedScene prepare(const Scene& scene) {
         Messages messages;
-        return prepare_scene(scene, {}, messages);
+        return prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages);
     }
 
     /// Which of the rays do not hit it.

@@ -86,3 +86,21 @@ TEST_CASE("an exact point on an axis-aligned plane still moves, and only along t
     CHECK(offset_ray_origin({0, 1024, 0}, {0, 1e-12f, 0}, {0, 1, 0}, {0, 1, 0}).y == std::nextafter(1024.0f, 2e3f));
     CHECK(offset_ray_origin({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}) == Vec3{1, 2, 3}); // known exactly
 }
+
+TEST_CASE("a place near an edge is moved in, any other is kept to the bit") {
+    test::Random random(11);
+    for (int i = 0; i < 100'000; ++i) {
+        const float least = i % 50 == 0 ? 0.25f : std::ldexp(random.unit(), -2 - static_cast<int>(random.below(22)));
+        float u = random.unit(), v = random.unit();
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        if (i % 3 == 0) u = i % 2 == 0 ? 0.0f : least * random.unit();
+        if (i % 5 == 0) v = 1 - u; // the third weight is 0, or a unit off
+        const PlaceOnTriangle place = keep_off_edges(u, v, least);
+        const float w = 1 - place.u - place.v;
+        CHECK(min(w, min(place.u, place.v)) >= least / 1.5f - 0x1p-22f);
+        CHECK(abs(place.u - u) <= 2 * least + 0x1p-22f);
+        CHECK(abs(place.v - v) <= 2 * least + 0x1p-22f);
+        if (u >= least && v >= least && 1 - u - v >= least) CHECK((place.u == u && place.v == v));
+    }
+    CHECK(keep_off_edges(0, 0, 0.25f).u == doctest::Approx(1.0 / 6)); // from a corner: 1/4, 1/4 and 1, over 3/2
+}

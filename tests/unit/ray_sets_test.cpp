@@ -37,8 +37,9 @@ struct Traced {
     SceneOnDevice on_device;
 
     explicit Traced(Scene given, Queue of_device = Queue::make_cpu())
-        : scene(std::move(given)), prepared(prepare_scene(scene, {}, messages)), queue(std::move(of_device)),
-          on_device(queue, prepared) {}
+        : scene(std::move(given)),
+          prepared(prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages)),
+          queue(std::move(of_device)), on_device(queue, prepared) {}
 
     RaySetJob job(uint32_t width, uint32_t height) {
         return {scene, scene.cameras.front(), width, height, make_ray_tracer(queue, on_device.view().bvh)};

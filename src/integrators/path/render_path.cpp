@@ -16,7 +16,8 @@ PathRenderer::PathRenderer(Queue& queue, const SceneView& scene, const Camera& c
                            PathBody body, uint32_t batch)
     : queue_(queue), scene_(scene), settings_(settings), width_(width), height_(height), body_(body),
       filter_table_(queue, make_filter_table(filter), "pixel filter"),
-      camera_{make_camera_view(camera, width, height), {filter, filter_radius, filter_table_.data()}, width} {
+      camera_{
+          make_camera_view(camera, width, height, scene.centre), {filter, filter_radius, filter_table_.data()}, width} {
     settings_.camera_axis = normalize(transform_vector(camera.world_from_camera, {0, 0, -1}));
     if (body == PathBody::Loop) return;
     capacity_ = batch;

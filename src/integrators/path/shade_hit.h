@@ -134,7 +134,7 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
 
 /// Auxiliary channels of what a camera ray hit first.
 HD inline void add_first_hit(const FilmView& film, const PathState& path, const Hit& hit, const Surface& surface,
-                             Vec3 camera_axis) {
+                             Vec3 camera_axis, Vec3 centre) {
     add_channel(film, path.pixel, 3, 1.0f);
     uint32_t channel = kFilmColorChannels;
     if ((film.aovs & kAovAlbedo) != 0) {
@@ -150,7 +150,10 @@ HD inline void add_first_hit(const FilmView& film, const PathState& path, const 
         add_channel(film, path.pixel, channel, dot(surface.position - path.origin, camera_axis));
         channel += 1;
     }
-    if ((film.aovs & kAovPosition) != 0) add_channels(film, path.pixel, channel, surface.position);
+    if ((film.aovs & kAovPosition) != 0) { // in the file's coordinates: the film adds both without rounding
+        add_channels(film, path.pixel, channel, surface.position);
+        add_channels(film, path.pixel, channel, centre);
+    }
     if ((film.aovs & kAovIds) != 0 && path.sample == 0) {
         film.ids[path.pixel] = {hit.instance, hit.primitive, surface.material};
     }
@@ -173,7 +176,7 @@ HD inline bool shade_hit(const SceneView& scene, const PathSettings& settings, c
         return false;
     }
     const Surface surface = make_surface(scene, hit, path.direction);
-    if (path.depth == 0) add_first_hit(film, path, hit, surface, settings.camera_axis);
+    if (path.depth == 0) add_first_hit(film, path, hit, surface, settings.camera_axis, scene.centre);
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
         add_emission(settings, path, surface.emission,

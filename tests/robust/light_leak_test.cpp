@@ -1,0 +1,206 @@
+// A closed shape under a sky of radiance 1000 with the camera inside is black: a ray that starts on the wrong side of a
+// wall is a lit pixel. Boxes small and large, near the file's origin and far from it, turned and not, alone and beside
+// something far away, as vertices, as a node and as instances; and shapes with sharp edges and with uneven triangles.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "tests/support/meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+/// How the file places the shape.
+enum class Placing {
+    Vertices,  // its vertices are where it is
+    Node,      // moved there by the node's transform: baked
+    Instances, // the same, and a second one beside it: each keeps its own space
+    FarMesh,   // as vertices, and a second instance of them: far from the origin in their own space too
+};
+constexpr Placing kPlacings[] = {Placing::Vertices, Placing::Node, Placing::Instances, Placing::FarMesh};
+
+struct Place {
+    float size_m;
+    Vec3 at;
+    Transform turn; // about its middle
+    Placing placing = Placing::Vertices;
+    Vec3 other_at = {}; // of a second object of this shape; {0, 0, 0}: there is none
+};
+
+const Transform kTurns[] = {{}, make_rotation(0.48f, 0.6f, 0, 0.64f)};
+
+struct Shape {
+    std::vector<Vec3> positions; // about its middle, a size of 1 or so
+    std::vector<uint32_t> indices;
+};
+
+Shape cube() {
+    Shape shape;
+    for (int i = 0; i < 8; ++i) {
+        shape.positions.push_back({i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f});
+    }
+    shape.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                     2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    return shape;
+}
+
+/// A floor and a roof that meet at the edge x = y = -0.5 under an angle whose tangent is `slope`.
+Shape wedge(float slope) {
+    Shape shape;
+    for (const float z : {-0.5f, 0.5f}) {
+        for (const Vec3 p : {Vec3{-0.5f, -0.5f, z}, {0.5f, -0.5f, z}, {0.5f, slope - 0.5f, z}}) {
+            shape.positions.push_back(p);
+        }
+    }
+    shape.indices = {0, 2, 1, 3, 4, 5, 0, 1, 3, 1, 4, 3, 0, 3, 2, 2, 3, 5, 1, 2, 4, 2, 5, 4};
+    return shape;
+}
+
+Mesh mesh_of(const Shape& shape, const Transform& place) {
+    Mesh mesh;
+    for (const Vec3 p : shape.positions) mesh.positions.push_back(transform_point(place, p));
+    mesh.indices = shape.indices;
+    return mesh;
+}
+
+Transform transform_of(const Place& place) {
+    const Transform sized = make_scale({place.size_m, place.size_m, place.size_m});
+    return compose(make_translation(place.at), compose(place.turn, sized));
+}
+
+Scene scene_of(const Shape& shape, const Place& place) {
+    Scene scene;
+    scene.materials.push_back({.name = "grey", .base_color = grey(0.8f)});
+    const Transform m = transform_of(place);
+    const bool is_node = place.placing == Placing::Node || place.placing == Placing::Instances;
+    scene.meshes.push_back(mesh_of(shape, is_node ? Transform{} : m));
+    scene.instances.push_back({"closed", 0, 0, is_node ? m : Transform{}});
+    if (place.placing == Placing::Instances || place.placing == Placing::FarMesh) {
+        const Transform beside = make_translation({4 * place.size_m, 0, 0});
+        scene.instances.push_back({"beside", 0, 0, compose(beside, is_node ? m : Transform{})});
+    }
+    if (place.other_at != Vec3{}) {
+        scene.meshes.push_back(mesh_of(shape, {}));
+        scene.instances.push_back({"far away", 1, 0, make_translation(place.other_at)});
+    }
+    scene.environment = Environment{.image = {}, .scale = grey(1000)};
+    return scene;
+}
+
+/// A view from one point of the shape's own to another.
+struct View {
+    Vec3 from, to;
+    float fov_y;
+};
+
+uint64_t lit_pixels(const Scene& scene, const Place& place, const View& view, uint32_t side, uint32_t samples,
+                    uint32_t max_depth) {
+    const Transform m = transform_of(place);
+    Camera camera;
+    camera.world_from_camera =
+        look_at(transform_point(m, view.from), transform_point(m, view.to), normalize(Vec3{0.1f, 1, 0.05f}));
+    camera.fov_y = view.fov_y;
+    RenderSettings settings;
+    settings.width = settings.height = side;
+    settings.samples = samples;
+    settings.path.max_depth = max_depth;
+    Queue queue = queue_asked_for();
+    const Image picture = render(queue, scene, camera, settings).picture;
+    uint64_t lit = 0;
+    for (std::size_t i = 0; i < picture.pixels.size(); i += 3) lit += picture.pixels[i] > 0 ? 1 : 0;
+    return lit;
+}
+
+/// So narrow a view of an edge that one sample of thousands starts within rounding of it, where in a picture of the
+/// whole it is one of millions; but as wide as the file's own coordinates let a camera aim.
+float narrow(const Place& place) { return min(0.3f, max(2e-4f, 2e-6f * max_component(abs(place.at)) / place.size_m)); }
+
+/// The whole box, two edges and a corner.
+uint64_t lit_pixels_of_box(const Place& place) {
+    const Scene scene = scene_of(cube(), place);
+    const Vec3 eye = {0.11f, -0.07f, 0.13f};
+    const auto samples = static_cast<uint32_t>(effort(32, 256));
+    uint64_t lit = lit_pixels(scene, place, {eye, {0.5f, 0.5f, -0.5f}, 1.5f}, 32, samples, 16);
+    for (const Vec3 target : {Vec3{0.5f, 0.5f, -0.03f}, {-0.5f, 0.2f, 0.5f}, {0.5f, -0.5f, -0.5f}}) {
+        lit += lit_pixels(scene, place, {eye, target, narrow(place)}, 32, samples, 4);
+    }
+    return lit;
+}
+
+/// All placings and turns of it.
+template <class LitPixels>
+void check_black(Place place, const LitPixels& lit_pixels_there) {
+    CAPTURE(place.size_m);
+    CAPTURE(place.at.x);
+    for (const Placing placing : kPlacings) {
+        CAPTURE(static_cast<int>(placing));
+        for (const Transform& turn : kTurns) {
+            CAPTURE((turn == Transform{}));
+            place.placing = placing, place.turn = turn;
+            CHECK(lit_pixels_there(place) == 0);
+        }
+    }
+}
+
+} // namespace
+
+// Of the 4096 pixels of a box's four pictures 30 to 1000 were lit when origins were moved along the normal alone.
+
+TEST_CASE("no light leaks into a closed box, wherever it stands, however small") {
+    for (const auto& [size_m, at] : {std::pair{2.0f, Vec3{0, 0, 0}},
+                                     {2.0f, Vec3{1300, 0, 0}},
+                                     {2.0f, Vec3{-700, 300, 1000}},
+                                     {0.002f, Vec3{10, 0, 0}},
+                                     {0.002f, Vec3{5, -7, 6}},
+                                     {2e5f, Vec3{1e8f, 0, 0}}}) {
+        check_black({size_m, at, {}}, lit_pixels_of_box);
+    }
+}
+
+TEST_CASE("no light leaks into a box beside something far away") {
+    for (const auto& [size_m, at, other_at] : {std::tuple{2.0f, Vec3{1300, 0, 0}, Vec3{-1300, 0, 0}},
+                                               {2.0f, Vec3{0.3f, 0, 0}, Vec3{900, 10, 2600}},
+                                               {0.002f, Vec3{10, 0, 0}, Vec3{-10, 0, 0}}}) {
+        check_black({size_m, at, {}, Placing::Vertices, other_at}, lit_pixels_of_box);
+    }
+}
+
+TEST_CASE("pictures of whole boxes, small or far away, have no lit pixel") {
+    for (const auto& [size_m, at] : {std::pair{2.0f, Vec3{1300, 0, 0}}, {0.002f, Vec3{10, 0, 0}}}) {
+        for (const Transform& turn : kTurns) {
+            const Place place = {size_m, at, turn};
+            const View view = {{0.11f, -0.07f, 0.13f}, {0.5f, 0.5f, -0.5f}, 1.5f};
+            CHECK(lit_pixels(scene_of(cube(), place), place, view, 128, static_cast<uint32_t>(effort(2, 256)), 16) ==
+                  0);
+        }
+    }
+}
+
+TEST_CASE("no light leaks in at the sharp edge of a wedge") {
+    for (const float slope : {0.9f, 0.36f}) { // 42 and 20 degrees
+        CAPTURE(slope);
+        const Shape shape = wedge(slope);
+        check_black({2, {3, 4, 5}, {}}, [&](const Place& place) {
+            const Vec3 eye = {0.2f, 0.3f * slope - 0.5f, 0.13f};
+            const Scene scene = scene_of(shape, place);
+            return lit_pixels(scene, place, {eye, {-0.5f, -0.5f, 0.03f}, 1e-4f}, 32, 32, 4) +
+                   lit_pixels(scene, place, {eye, {-0.5f, -0.5f, 0.03f}, 1e-2f}, 32, 32, 4);
+        });
+    }
+}
+
+TEST_CASE("no light leaks into a bumpy tube of very uneven triangles") {
+    const TriangleMesh torus = make_torus(400, 200);
+    const Shape shape = {torus.positions, torus.indices};
+    check_black({1, {1300, 0, 0}, {}}, [&](const Place& place) {
+        return lit_pixels(scene_of(shape, place), place, {{1, 0, 0}, {1.3f, 0.2f, 0.5f}, 1.5f}, 64,
+                          static_cast<uint32_t>(effort(4, 64)), 6);
+    });
+}
