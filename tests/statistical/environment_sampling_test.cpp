@@ -14,6 +14,7 @@
 
 #include "shading/environment_light.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/lit_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 
@@ -26,11 +27,6 @@ constexpr double kPiDouble = 3.141592653589793;
 
 double as_double(float x) { return static_cast<double>(x); }
 double luminance_in_double(Rgb c) { return as_double(c.r) + as_double(c.g) + as_double(c.b); }
-
-SampleBits random_bits(Random& random) {
-    const uint32_t x = random.bits();
-    return {x, random.bits()};
-}
 
 /// Mean and standard error of `draw` over `count` draws.
 struct Estimate {

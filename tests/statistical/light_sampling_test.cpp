@@ -11,8 +11,8 @@
 
 #include "math/random.h"
 #include "math/sampler.h"
-#include "shading/build_light_set.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/lit_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 
@@ -24,57 +24,6 @@ namespace {
 constexpr double kPiDouble = 3.141592653589793;
 
 double as_double(float x) { return static_cast<double>(x); }
-
-/// Linear on purpose: the tests' textures then mean the same with and without is_srgb.
-std::array<float, 256> make_table() {
-    std::array<float, 256> table{};
-    for (std::size_t i = 0; i < 256; ++i) table[i] = static_cast<float>(i) * (1.0f / 255.0f);
-    return table;
-}
-const std::array<float, 256> kTable = make_table();
-
-/// A scene's light set and all that its view points to.
-struct Lights {
-    LightSetData data;
-    std::vector<TextureImageView> images;
-    LightSetView view;
-
-    explicit Lights(const Scene& scene) : images(views_of_images(scene)) {
-        Messages messages;
-        data = build_light_set(scene, kTable.data(), messages);
-        view = view_of(data, images.data(), kTable.data());
-    }
-};
-
-/// Square of side 2 in the plane y = 0 about the origin, facing -y, 2 n^2 triangles, (u, v) from (0, 0) to (1, 1).
-Mesh make_square(uint32_t n) {
-    Mesh mesh;
-    for (uint32_t i = 0; i <= n; ++i) {
-        for (uint32_t j = 0; j <= n; ++j) {
-            const Vec2 uv = {static_cast<float>(i) / static_cast<float>(n),
-                             static_cast<float>(j) / static_cast<float>(n)};
-            mesh.positions.push_back({2 * uv.x - 1, 0, 2 * uv.y - 1});
-            mesh.uv[0].push_back(uv);
-            if (i == n || j == n) continue;
-            const uint32_t a = i * (n + 1) + j, b = a + n + 1;
-            mesh.indices.insert(mesh.indices.end(), {a, b, a + 1, b, b + 1, a + 1});
-        }
-    }
-    return mesh;
-}
-
-uint32_t add_emitter(Scene& scene, const Mesh& mesh, Rgb emission, const Transform& world_from_local) {
-    Material material;
-    material.emission = emission;
-    scene.meshes.push_back(mesh);
-    scene.materials.push_back(material);
-    Instance instance;
-    instance.mesh = static_cast<uint32_t>(scene.meshes.size() - 1);
-    instance.material = static_cast<uint32_t>(scene.materials.size() - 1);
-    instance.world_from_local = world_from_local;
-    scene.instances.push_back(instance);
-    return static_cast<uint32_t>(scene.instances.size() - 1);
-}
 
 /// A checkered texture of n x n squares, black first, as the emission of the scene's last material.
 void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
@@ -93,11 +42,6 @@ void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
 struct Estimate {
     double mean = 0, error = 0;
 };
-
-SampleBits random_bits(Random& random) {
-    const uint32_t x = random.bits();
-    return {x, random.bits()};
-}
 
 /// Probability that sample_light draws a light, in the order of triangles, punctual lights, the environment.
 float light_pmf(const LightSetView& view, uint32_t light) {

@@ -10,9 +10,10 @@
 #include <functional>
 
 #include "integrators/path/path_state.h"
-#include "shading/build_light_set.h"
+#include "tests/support/lit_scenes.h"
 
 using namespace pertev;
+using namespace pertev::test;
 
 namespace {
 
@@ -42,39 +43,10 @@ double gain(const LightSetView& view) {
     return variance(SamplerKind::Independent) / variance(SamplerKind::Sobol);
 }
 
-/// A light set with all that its view points to.
-struct Lights {
-    LightSetData data;
-    LightSetView view;
-
-    explicit Lights(const Scene& scene) {
-        Messages messages;
-        data = build_light_set(scene, nullptr, messages); // no textures, so no table of sRGB
-        view = view_of(data, nullptr, nullptr);
-    }
-};
-
 /// A square lamp of side `side` about `centre` that faces down, cut into 2 n^2 triangles.
 void add_lamp(Scene& scene, Vec3 centre, float side, uint32_t n, float radiance) {
-    Mesh mesh;
-    for (uint32_t i = 0; i <= n; ++i) {
-        for (uint32_t j = 0; j <= n; ++j) {
-            const float x = static_cast<float>(i) / static_cast<float>(n) - 0.5f;
-            const float z = static_cast<float>(j) / static_cast<float>(n) - 0.5f;
-            mesh.positions.push_back(centre + Vec3{side * x, 0, side * z});
-            if (i == n || j == n) continue;
-            const uint32_t a = i * (n + 1) + j, b = a + n + 1;
-            mesh.indices.insert(mesh.indices.end(), {a, b, a + 1, b, b + 1, a + 1});
-        }
-    }
-    Material material;
-    material.emission = {radiance, radiance, radiance};
-    Instance instance;
-    instance.mesh = static_cast<uint32_t>(scene.meshes.size());
-    instance.material = static_cast<uint32_t>(scene.materials.size());
-    scene.meshes.push_back(mesh);
-    scene.materials.push_back(material);
-    scene.instances.push_back(instance);
+    add_emitter(scene, make_square(n), grey(radiance),
+                compose(make_translation(centre), make_scale({0.5f * side, 1, 0.5f * side})));
 }
 
 /// A smooth sky, brightest towards (1, 1, 0).
@@ -116,9 +88,10 @@ TEST_CASE("strata: a row of lamps of different power") {
 
 TEST_CASE("strata: a ball of light, and lamps in a square, whose places no single row could keep together") {
     Scene ball, square;
-    add_lamp(ball, {0, 0, 0}, 1, 24, 1);
-    for (Vec3& p : ball.meshes[0].positions) { // the square wrapped around a ball by height and angle
-        const double angle = 6.283185307179586 * (static_cast<double>(p.x) + 0.5), height = 1.9 * static_cast<double>(p.z);
+    add_lamp(ball, {0, 0, 0}, 2, 24, 1);
+    ball.materials[0].two_sided_emission = true; // whichever way the wrapping turns it
+    for (Vec3& p : ball.meshes[0].positions) { // the square of side 2 wrapped around a ball by height and angle
+        const double angle = 3.141592653589793 * (static_cast<double>(p.x) + 1), height = 0.95 * static_cast<double>(p.z);
         const double ring = std::sqrt(std::max(0.0, 1 - height * height));
         p = {static_cast<float>(ring * std::cos(angle)), static_cast<float>(3 + height),
              static_cast<float>(ring * std::sin(angle))};
