@@ -36,27 +36,12 @@ struct AcceptHit {
     const SceneView& scene;
     TriangleId start, target; // not hit by this ray
     uint32_t key;             // of the path and depth: the coin of blended surfaces
-    bool skips_backs = false; // those that are hidden from rays of the camera, as this is one
-    Vec3 direction = {};      // of such a ray, world space
 
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
         if (instance == start.instance && primitive == start.primitive) return false;
         if (instance == target.instance && primitive == target.primitive) return false;
-        if (skips_backs && meets_hidden_back(instance, primitive)) return false;
         if (scene.any_alpha == 0) return true;
         return passes_alpha(instance, primitive, u, v);
-    }
-
-    /// In the mesh's own space: the winding there tells the front, mirrored or not.
-    HD bool meets_hidden_back(uint32_t instance, uint32_t primitive) const {
-        const InstanceView& placed = scene.instances[instance];
-        if (placed.hides_back == 0) return false;
-        const MeshView& mesh = scene.meshes[placed.mesh];
-        const TriangleIndices i = triangle_indices(mesh, primitive);
-        const Vec3 a = mesh.positions[i.a], ab = mesh.positions[i.b] - a, ac = mesh.positions[i.c] - a;
-        const float size = max(max_component(abs(ab)), max_component(abs(ac)));
-        const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
-        return dot(normal, transform_vector(placed.local_from_world, direction)) > 0;
     }
 
     HD bool passes_alpha(uint32_t instance, uint32_t primitive, float u, float v) const {
@@ -66,6 +51,29 @@ struct AcceptHit {
         const float alpha = alpha_at(scene, material, scene.meshes[placed.mesh], primitive, u, v);
         if (material.alpha_mode == AlphaMode::Mask) return alpha >= material.alpha_cutoff;
         return unit_interval(hash_words(key, instance, primitive).x) < alpha;
+    }
+};
+
+/// The same of a ray of the camera in a scene where backs are hidden from those. A type of its own: the other rays' walk
+/// has no registers to spare for it.
+struct AcceptCameraHit {
+    AcceptHit accept;
+    Vec3 direction; // of the ray, world space
+
+    HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
+        return !meets_hidden_back(instance, primitive) && accept(instance, primitive, u, v);
+    }
+
+    /// In the mesh's own space: the winding there tells the front, mirrored or not.
+    HD bool meets_hidden_back(uint32_t instance, uint32_t primitive) const {
+        const InstanceView& placed = accept.scene.instances[instance];
+        if (placed.hides_back == 0) return false;
+        const MeshView& mesh = accept.scene.meshes[placed.mesh];
+        const TriangleIndices i = triangle_indices(mesh, primitive);
+        const Vec3 a = mesh.positions[i.a], ab = mesh.positions[i.b] - a, ac = mesh.positions[i.c] - a;
+        const float size = max(max_component(abs(ab)), max_component(abs(ac)));
+        const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+        return dot(normal, transform_vector(placed.local_from_world, direction)) > 0;
     }
 };
 

@@ -88,7 +88,9 @@ TEST_CASE(
     Queue queue = Queue::make_cpu();
     const SceneOnDevice device(queue, prepared);
     const auto meets = [&](uint32_t instance, Vec3 direction, bool from_camera) {
-        return AcceptHit{device.view(), {}, {}, 1, from_camera, direction}(instance, 0, 0.3f, 0.3f);
+        const AcceptHit accept{device.view(), {}, {}, 1};
+        return from_camera ? AcceptCameraHit{accept, direction}(instance, 0, 0.3f, 0.3f)
+                           : accept(instance, 0, 0.3f, 0.3f);
     };
     const Vec3 at_front = normalize(Vec3{0.3f, 0.2f, -1}), at_back = normalize(Vec3{0.3f, 0.2f, 1});
     for (const uint32_t instance : {plain, both, mirrored, tiny, sideways, round}) {

@@ -12,13 +12,21 @@
 
 namespace pertev {
 
-/// `from_camera`: the path's first ray.
-HD inline Hit find_hit(const SceneView& scene, const PathState& path, uint32_t seed, bool from_camera) {
+template <class Accept>
+HD inline Hit find_hit(const SceneView& scene, const PathState& path, const Accept& accept) {
     Hit hit;
-    const AcceptHit accept{
-        scene, path.start, {}, path_key(path, seed, false), from_camera && scene.any_hidden_back != 0, path.direction};
     trace_closest(scene.bvh, Ray{path.origin, 0.0f, path.direction, kInfinity}, accept, hit);
     return hit;
+}
+
+HD inline Hit find_hit(const SceneView& scene, const PathState& path, uint32_t seed) {
+    return find_hit(scene, path, AcceptHit{scene, path.start, {}, path_key(path, seed, false)});
+}
+
+/// Of a path's first ray, where scene.any_hidden_back is set.
+HD inline Hit find_camera_hit(const SceneView& scene, const PathState& path, uint32_t seed) {
+    const AcceptHit accept{scene, path.start, {}, path_key(path, seed, false)};
+    return find_hit(scene, path, AcceptCameraHit{accept, path.direction});
 }
 
 HD inline bool is_occluded(const SceneView& scene, Vec3 origin, Vec3 direction, float t_max, TriangleId start,
@@ -46,11 +54,19 @@ struct FindHits {
     PathQueueView paths;
     const uint32_t* active; // null: slot i
     HitQueueView hits;
-    bool from_camera; // the same for all of a launch: it takes no register
 
     HD void operator()(uint32_t i) const {
-        hits.store(i, find_hit(scene, paths.load(active != nullptr ? active[i] : i), seed, from_camera));
+        hits.store(i, find_hit(scene, paths.load(active != nullptr ? active[i] : i), seed));
     }
+};
+
+struct FindCameraHits {
+    SceneView scene;
+    uint32_t seed;
+    PathQueueView paths;
+    HitQueueView hits;
+
+    HD void operator()(uint32_t i) const { hits.store(i, find_camera_hit(scene, paths.load(i), seed)); }
 };
 
 struct ShadeHits {

@@ -74,7 +74,9 @@ void PathRenderer::render_loop(uint32_t first, uint32_t count, const FilmView& f
             for (uint32_t sample = first; sample < first + count; ++sample) {
                 PathState path = generate_path(camera_, settings_, pixel, sample);
                 for (bool goes_on = true; goes_on;) {
-                    const Hit hit = find_hit(scene_, path, settings_.seed, path.depth == 0);
+                    const bool looks = path.depth == 0 && scene_.any_hidden_back != 0;
+                    const Hit hit = looks ? find_camera_hit(scene_, path, settings_.seed)
+                                          : find_hit(scene_, path, settings_.seed);
                     const uint32_t key = path_key(path, settings_.seed, true);
                     ShadowRay shadow;
                     bool wants_shadow = false;
@@ -128,8 +130,13 @@ void PathRenderer::trace_batch(uint32_t batch, const FilmView& film) {
         const SlotListView going_on = {active_[next].data(), counts_.data()};
         counts_.zero();
         const bool from_camera = active == nullptr;
-        run("find_hits", count, FindHits{scene_, settings_.seed, paths, active, hits, from_camera},
-            from_camera ? &StageSeconds::camera_hits : &StageSeconds::bounce_hits);
+        if (from_camera && scene_.any_hidden_back != 0) {
+            run("find_camera_hits", count, FindCameraHits{scene_, settings_.seed, paths, hits},
+                &StageSeconds::camera_hits);
+        } else {
+            run("find_hits", count, FindHits{scene_, settings_.seed, paths, active, hits},
+                from_camera ? &StageSeconds::camera_hits : &StageSeconds::bounce_hits);
+        }
         run("shade_hits", count,
             ShadeHits{scene_, settings_, film, paths, active, hits, going_on, shadows, counts_.data() + 1},
             &StageSeconds::shade);
