@@ -1,7 +1,7 @@
 #pragma once
 
-// Where a point lies along Hilbert's curve through a cube: points that are near each other along the curve are near each
-// other in space, so an even split of the curve splits the points into compact parts.
+// Where a point lies along Hilbert's curve through a cube: points that are near each other along the curve are near
+// each other in space, so an even split of the curve splits the points into compact parts.
 //
 // Source: Skilling, "Programming the Hilbert curve", AIP Conference Proceedings 707, 2004.
 

@@ -54,8 +54,8 @@ struct AcceptHit {
     }
 };
 
-/// The same of a ray of the camera in a scene where backs are hidden from those. A type of its own: the other rays' walk
-/// has no registers to spare for it.
+/// The same of a ray of the camera in a scene where backs are hidden from those. A type of its own: the other rays'
+/// walk has no registers to spare for it.
 struct AcceptCameraHit {
     AcceptHit accept;
     Vec3 direction; // of the ray, world space

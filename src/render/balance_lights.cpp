@@ -96,7 +96,12 @@ KindMoments look_from(const SurfacePoint& point, uint32_t i, float offset, const
 SceneBvhView view_on_host(const PreparedScene& prepared, std::vector<BvhView>& meshes) {
     for (const Bvh& bvh : prepared.mesh_bvhs) meshes.push_back(view_of(bvh));
     const TopLevelBvh& top = prepared.top_level;
-    return {view_of(prepared.baked), top.nodes.data(), top.instances.data(), meshes.data(), top.root, top.reach,
+    return {view_of(prepared.baked),
+            top.nodes.data(),
+            top.instances.data(),
+            meshes.data(),
+            top.root,
+            top.reach,
             top.growth};
 }
 

@@ -70,6 +70,20 @@ struct Bsdf {
         return {};
     }
 
+    /// sample() looks at u_lobe.
+    HD bool draws_lobe() const {
+        switch (kind) {
+        case BsdfKind::Absorber:
+        case BsdfKind::Diffuse:
+            return false;
+        case BsdfKind::Conductor:
+        case BsdfKind::Dielectric:
+        case BsdfKind::MetallicRoughness:
+            break;
+        }
+        return true;
+    }
+
     /// eval() is black for every pair of directions: light sampling is of no use here.
     HD bool has_delta_only() const {
         switch (kind) {

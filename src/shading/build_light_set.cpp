@@ -74,8 +74,8 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
         if (!is_light(scene.materials[instance.material])) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
         const uint64_t triangles = scene.meshes[instance.mesh].triangle_count();
-        data.emitters.push_back({.first_triangle = static_cast<uint32_t>(count),
-                                 .triangle_count = static_cast<uint32_t>(triangles)});
+        data.emitters.push_back(
+            {.first_triangle = static_cast<uint32_t>(count), .triangle_count = static_cast<uint32_t>(triangles)});
         count += triangles;
         if (count + scene.lights.size() + 1 > kMaxLights) {
             throw Error(ErrorCode::OverLimit, "scene: more than 2^30 lights; an emissive triangle counts as one");
@@ -183,9 +183,8 @@ void order_emitters(LightSetData& data) {
 
 /// Puts punctual lights into the order of space, those without a place last.
 void order_punctual_lights(LightSetData& data) {
-    const auto first_far = std::ranges::stable_partition(data.punctual, [](const PunctualLight& light) {
-        return light.kind != LightKind::Directional;
-    });
+    const auto first_far = std::ranges::stable_partition(
+        data.punctual, [](const PunctualLight& light) { return light.kind != LightKind::Directional; });
     std::vector<Vec3> places;
     for (auto light = data.punctual.begin(); light != first_far.begin(); ++light) places.push_back(light->position);
     std::vector<PunctualLight> ordered;
@@ -207,9 +206,8 @@ std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& py
     data.triangle_guides.resize(guides);
 
     std::vector<double> triangle_powers(data.triangles.size()), powers(data.emitters.size());
-    parallel_for(data.triangles.size(), 1024, [&](uint64_t i) {
-        triangle_powers[i] = triangle_power(data, pyramids, data.triangles[i]);
-    });
+    parallel_for(data.triangles.size(), 1024,
+                 [&](uint64_t i) { triangle_powers[i] = triangle_power(data, pyramids, data.triangles[i]); });
     parallel_for(data.emitters.size(), 16, [&](uint64_t i) {
         const Emitter& emitter = data.emitters[i];
         std::vector<double> in_order(emitter.triangle_count);
@@ -218,8 +216,7 @@ std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& py
         }
         powers[i] = build_ordered_table(
             in_order, std::span(data.triangle_starts).subspan(emitter.first_start, emitter.triangle_count + 1),
-            std::span(data.triangle_guides)
-                .subspan(emitter.first_guide, (std::size_t(1) << emitter.guide_bits) + 1));
+            std::span(data.triangle_guides).subspan(emitter.first_guide, (std::size_t(1) << emitter.guide_bits) + 1));
     });
     return powers;
 }
@@ -271,7 +268,8 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
         add_source(punctual_power(light, radius), light.kind == LightKind::Directional);
     }
     if (data.has_environment) {
-        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment.mean_radiance), true);
+        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment.mean_radiance),
+                   true);
     }
     share_draws(data, 0.5);
     return data;

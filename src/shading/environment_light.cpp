@@ -143,11 +143,14 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
 }
 
 EnvironmentView view_of(const EnvironmentData& data) {
-    return {data.width,          data.height,
-            data.pixels.data(),  data.row_bounds.data(),
-            view_of(data.rows),  {data.columns.starts.data(), data.columns.guide.data(), data.width,
-                                  guide_bits_for(data.width)},
-            data.rotation_turns, data.is_constant,
+    return {data.width,
+            data.height,
+            data.pixels.data(),
+            data.row_bounds.data(),
+            view_of(data.rows),
+            {data.columns.starts.data(), data.columns.guide.data(), data.width, guide_bits_for(data.width)},
+            data.rotation_turns,
+            data.is_constant,
             data.constant};
 }
 

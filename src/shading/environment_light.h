@@ -3,11 +3,11 @@
 // Light from infinitely far away: radiance by direction, and directions drawn by it. Conventions of scene/light.h: the
 // middle column looks along -z, +x is a quarter of the image to its right, row 0 is +y.
 //
-// A texel is drawn by ordered tables (the row by y, its column by x), so that near pairs of numbers draw near directions,
-// then a direction uniformly in solid angle within it by what remains of the numbers. A
-// texel's weight is its solid angle times the root mean square, over the texel, of the bilinearly filtered image: of
-// all weights constant over texels the one with the least variance, and positive wherever the filter can reach light.
-// sin^2(theta / 2), theta from the nearer pole, is uniform in solid angle like cos(theta) but keeps its precision.
+// A texel is drawn by ordered tables (the row by y, its column by x), so that near pairs of numbers draw near
+// directions, then a direction uniformly in solid angle within it by what remains of the numbers. A texel's weight is
+// its solid angle times the root mean square, over the texel, of the bilinearly filtered image: of all weights constant
+// over texels the one with the least variance, and positive wherever the filter can reach light. sin^2(theta / 2),
+// theta from the nearer pole, is uniform in solid angle like cos(theta) but keeps its precision.
 
 #include <cstdint>
 #include <vector>
@@ -102,19 +102,24 @@ struct EnvironmentSample {
 /// A direction drawn by `u`. False, with nothing written, for a black environment.
 HD inline bool sample_environment(const EnvironmentView& view, SampleBits u, EnvironmentSample& sample) {
     if (view.rows.starts == nullptr) return false;
-    const uint32_t more = bits_behind(u);
-    OrderedDraw row = {0, 1u << 31, u.y >> 1, more}, texel = {0, 1u << 31, u.x >> 1, more};
+    uint32_t x = 0, y = 0;
+    Vec2 rest = {unit_interval(u.x), unit_interval(u.y)}; // of the texel, from its left and from its edge near a pole
+    float pmf = 1;
     if (!view.is_constant) {
-        row = draw_ordered(view.rows, u.y, more);
-        texel = draw_ordered(environment_columns(view, row.index), u.x, more);
+        const uint32_t more = bits_behind(u);
+        const OrderedDraw row = draw_ordered(view.rows, u.y, more);
+        const OrderedDraw texel = draw_ordered(environment_columns(view, row.index), u.x, more);
+        x = texel.index, y = row.index;
+        rest = {rest_of(texel), rest_of(row)};
+        pmf = ordered_pmf(row.owned) * ordered_pmf(texel.owned);
     }
-    const Vec2 bounds = environment_row_bounds(view, row.index);
-    const float pdf = environment_texel_pdf(view, ordered_pmf(row.owned) * ordered_pmf(texel.owned), bounds);
+    const Vec2 bounds = environment_row_bounds(view, y);
+    const float pdf = environment_texel_pdf(view, pmf, bounds);
 
-    const float s = lerp(bounds.x, bounds.y, rest_of(row)), c = 1.0f - s; // squares of sin, cos of theta / 2
-    const bool is_south = row.index > view.height - 1 - row.index;
+    const float s = lerp(bounds.x, bounds.y, rest.y), c = 1.0f - s; // squares of sin, cos of theta / 2
+    const bool is_south = y > view.height - 1 - y;
     const float sin_theta = 2.0f * safe_sqrt(s * c), cos_theta = is_south ? s - c : c - s;
-    const float column = static_cast<float>(texel.index) + rest_of(texel);
+    const float column = static_cast<float>(x) + rest.x;
     const float turns = column / static_cast<float>(view.width) - 0.5f - view.rotation_turns;
     float sin_longitude, cos_longitude;
     sin_cos_2pi(turns, sin_longitude, cos_longitude);

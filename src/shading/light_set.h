@@ -6,14 +6,14 @@
 // section 9.2).
 //
 // A pair of numbers draws all of it, and near pairs draw near places: x the source (an emissive instance, a punctual
-// light, the environment) and y the instance's triangle, both by ordered tables; what remains of x and y draws the place
-// on the triangle. In the environment y draws the row and what remains of x the column.
+// light, the environment) and y the instance's triangle, both by ordered tables; what remains of x and y draws the
+// place on the triangle. In the environment y draws the row and what remains of x the column.
 //
-// Order of sources: emissive instances, punctual lights, the environment; instances, their triangles and punctual lights
-// lie along Hilbert's curve, so that even numbers draw what is evenly spread in space. A light's number is another
-// thing: emissive triangles by instance and primitive, then punctual lights in their order, then the environment. A
-// triangle emits from its front, or from both faces where its material says so (scene/material.h); those of unlit
-// materials are no lights.
+// Order of sources: emissive instances, punctual lights, the environment; instances, their triangles and punctual
+// lights lie along Hilbert's curve, so that even numbers draw what is evenly spread in space. A light's number is
+// another thing: emissive triangles by instance and primitive, then punctual lights in their order, then the
+// environment. A triangle emits from its front, or from both faces where its material says so (scene/material.h); those
+// of unlit materials are no lights.
 
 #include <cstdint>
 
@@ -179,9 +179,9 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
-/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of a
-/// triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the triangle's material is
-/// not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
+/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of
+/// a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the
+/// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
 HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBits u, LightSample& sample) {
     if (view.choice.starts == nullptr) return false;
     const uint32_t more = bits_behind(u);

@@ -23,7 +23,8 @@ namespace pertev {
 
 struct OrderedTableView {
     const uint32_t* starts = nullptr; // [count + 1], from 0 to 2^31; none: nothing to draw from
-    const uint32_t* guide = nullptr;  // [2^guide_bits + 1] index that owns the first number of each slot; the last: of all
+    const uint32_t* guide =
+        nullptr; // [2^guide_bits + 1] index that owns the first number of each slot; the last: of all
     uint32_t count = 0;
     uint32_t guide_bits = 0; // at most 30
 };
@@ -78,9 +79,9 @@ HD inline uint32_t bits_behind(SampleBits u) { return hash_word(u.x + hash_word(
 /// Bits of the guide table that suits `count` in [1, 2^30] weights: a slot a weight.
 uint32_t guide_bits_for(std::size_t count);
 
-/// Fills `starts` [weights + 1] and `guide` [2^guide_bits_for(weights) + 1] and returns the sum of the weights. A weight
-/// that is not finite and positive counts as 0 and is never drawn; any other owns one number at least. Without any
-/// weight the sum is 0 and all starts are 0.
+/// Fills `starts` [weights + 1] and `guide` [2^guide_bits_for(weights) + 1] and returns the sum of the weights. A
+/// weight that is not finite and positive counts as 0 and is never drawn; any other owns one number at least. Without
+/// any weight the sum is 0 and all starts are 0.
 double build_ordered_table(std::span<const double> weights, std::span<uint32_t> starts, std::span<uint32_t> guide);
 
 /// A table of its own; empty when all weights are 0.

@@ -210,8 +210,7 @@ TEST_CASE("lights: triangles of a textured mesh are drawn as their texture shine
     for (uint32_t i = 0; i < lights.view.triangle_count; ++i) {
         const EmissiveTriangle& t = lights.view.triangles[i];
         const Vec2 centre = 0.25f * (t.uv0 + t.uv1) + 0.5f * t.uv2;
-        if (!is_black(surface_emission(lights.view, 0, centre)))
-            on_bright += as_double(light_pmf(lights.view, i));
+        if (!is_black(surface_emission(lights.view, 0, centre))) on_bright += as_double(light_pmf(lights.view, i));
     }
     CHECK(on_bright > 0.8); // some dark ones touch a bright square
 }

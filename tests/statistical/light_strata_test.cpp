@@ -90,8 +90,9 @@ TEST_CASE("strata: a ball of light, and lamps in a square, whose places no singl
     Scene ball, square;
     add_lamp(ball, {0, 0, 0}, 2, 24, 1);
     ball.materials[0].two_sided_emission = true; // whichever way the wrapping turns it
-    for (Vec3& p : ball.meshes[0].positions) { // the square of side 2 wrapped around a ball by height and angle
-        const double angle = 3.141592653589793 * (static_cast<double>(p.x) + 1), height = 0.95 * static_cast<double>(p.z);
+    for (Vec3& p : ball.meshes[0].positions) {   // the square of side 2 wrapped around a ball by height and angle
+        const double angle = 3.141592653589793 * (static_cast<double>(p.x) + 1),
+                     height = 0.95 * static_cast<double>(p.z);
         const double ring = std::sqrt(std::max(0.0, 1 - height * height));
         p = {static_cast<float>(ring * std::cos(angle)), static_cast<float>(3 + height),
              static_cast<float>(ring * std::sin(angle))};

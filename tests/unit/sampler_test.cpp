@@ -46,7 +46,8 @@ bool is_four_dimensional_net(uint32_t pixel, uint32_t group, uint32_t first, int
     std::vector<std::array<float, 4>> points;
     for (uint32_t i = 0; i < count; i++) {
         const SampleKey key = {pixel, first + i, 5};
-        const Vec2 a = sample_2d(SamplerKind::Sobol, key, group), b = sample_2d(SamplerKind::Sobol, key, group, Pair::Last);
+        const Vec2 a = sample_2d(SamplerKind::Sobol, key, group),
+                   b = sample_2d(SamplerKind::Sobol, key, group, Pair::Last);
         points.push_back({a.x, a.y, b.x, b.y});
     }
     for (int split = 0; split < (k + 1) * (k + 1) * (k + 1); split++) {

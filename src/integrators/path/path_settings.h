@@ -17,13 +17,13 @@ enum class PathLight : uint8_t { Path, Direct, Indirect };
 /// three converge to one picture (where lights can be hit at all); the single ones are for tests.
 enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 
-/// Probability with which a path goes on, by its throughput's largest channel: that itself, or its fourth root, which ends
-/// fewer paths and leaves those that go on with throughputs that differ less. The better default by time to equal error
-/// (docs/performance.md).
+/// Probability with which a path goes on, by its throughput's largest channel: that itself, or its fourth root, which
+/// ends fewer paths and leaves those that go on with throughputs that differ less. The better default by time to equal
+/// error (docs/performance.md).
 enum class Roulette : uint8_t { Throughput, FourthRoot };
 
 struct PathSettings {
-    uint32_t max_depth = 16;     // scattering vertices: 0 emission only, 1 direct light
+    uint32_t max_depth = 16; // scattering vertices: 0 emission only, 1 direct light
     Roulette roulette = Roulette::FourthRoot;
     uint32_t roulette_depth = 3; // first vertex (counted from 1) at which Russian roulette may end the path
     PathLight light = PathLight::Path;

@@ -75,8 +75,8 @@ void PathRenderer::render_loop(uint32_t first, uint32_t count, const FilmView& f
                 PathState path = generate_path(camera_, settings_, pixel, sample);
                 for (bool goes_on = true; goes_on;) {
                     const bool looks = path.depth == 0 && scene_.any_hidden_back != 0;
-                    const Hit hit = looks ? find_camera_hit(scene_, path, settings_.seed)
-                                          : find_hit(scene_, path, settings_.seed);
+                    const Hit hit =
+                        looks ? find_camera_hit(scene_, path, settings_.seed) : find_hit(scene_, path, settings_.seed);
                     const uint32_t key = path_key(path, settings_.seed, true);
                     ShadowRay shadow;
                     bool wants_shadow = false;

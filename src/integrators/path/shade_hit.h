@@ -59,8 +59,8 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = {path.pixel, path.sample, settings.seed};
     LightSample light;
-    if (!sample_light(scene.lights, surface.position,
-                      sample_bits(settings.sampler, key, light_group(path), Pair::Last), light)) {
+    if (!sample_light(scene.lights, surface.position, sample_bits(settings.sampler, key, light_group(path), Pair::Last),
+                      light)) {
         return false;
     }
     const BsdfValue scattered = surface.evaluate(wo, light.wi);
@@ -105,7 +105,9 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
 /// Draws where the path goes on. False when it ends here.
 HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo) {
     const SampleKey key = {path.pixel, path.sample, settings.seed};
-    const float lobe = sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe);
+    const float lobe = surface.bsdf.draws_lobe()
+                           ? sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe)
+                           : 0.5f;
     const Vec2 u = sample_2d(settings.sampler, key, vertex_group(path, kGroupScatter));
     const BsdfSample sample = surface.sample(wo, lobe, u);
     if (!(sample.pdf > 0)) return false;
