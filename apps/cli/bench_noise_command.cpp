@@ -7,6 +7,7 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
+#include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
 #include "base/limits.h"
 #include "image/metrics.h"
@@ -20,75 +21,118 @@ struct NoiseFlags {
     float keep_percent = 100;
 };
 
-struct NoiseFigures {
-    double error = 0, seconds = 0, mean = 0; // relMSE, of one picture; channels' mean
+/// The pictures of one sampler.
+struct Pictures {
+    VarianceOfPictures variance;
+    double seconds = 0; // of one
     uint64_t invalid_samples = 0;
-    double efficiency() const { return error > 0 && seconds > 0 ? 1 / (error * seconds) : 0; }
 };
 
-NoiseFigures measure(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
-                     SamplerKind sampler, const NoiseFlags& flags) {
-    NoiseFigures figures;
-    settings.path.sampler = sampler;
-    std::vector<Image> pictures;
-    for (uint32_t i = 0; i < flags.seeds; ++i) {
-        throw_if_interrupted();
-        settings.path.seed = flags.render.seed + i;
-        RenderResult result =
-            render_picture(queue, prepared, camera, settings, [](const RenderProgress&) { return !interrupted(); });
-        throw_if_interrupted();
-        figures.seconds += result.render_seconds / flags.seeds;
-        figures.invalid_samples += result.invalid_samples;
-        pictures.push_back(std::move(result.picture));
+struct NoiseFigures {
+    TrimmedVariance variance;
+    double seconds = 0; // a picture
+    double efficiency() const { return variance.rel_mse > 0 && seconds > 0 ? 1 / (variance.rel_mse * seconds) : 0; }
+};
+
+struct Comparison {
+    NoiseFigures sobol, independent; // over the same pixels
+    std::size_t pixels = 0;
+    uint64_t invalid_samples = 0;
+    double ratio() const {
+        return sobol.variance.rel_mse > 0 ? independent.variance.rel_mse / sobol.variance.rel_mse : 0;
     }
-    const TrimmedVariance variance =
-        relative_variance(pictures, static_cast<double>(flags.keep_percent) / 100);
-    figures.error = variance.rel_mse;
-    figures.mean = variance.mean;
-    return figures;
+};
+
+/// `done` pictures of both samplers are there already.
+Pictures render_pictures(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
+                         SamplerKind sampler, const NoiseFlags& flags, uint32_t done, Reporter& reporter) {
+    Pictures pictures;
+    settings.path.sampler = sampler;
+    const uint32_t of = 2 * flags.seeds;
+    for (uint32_t i = 0; i < flags.seeds; ++i) {
+        const auto report = [&](double share) {
+            reporter.progress((done + i + share) / of, fmt::format("picture {} of {}", done + i + 1, of));
+        };
+        throw_if_interrupted();
+        report(0);
+        settings.path.seed = flags.render.seed + i;
+        const RenderResult result = render_picture(queue, prepared, camera, settings, [&](const RenderProgress& now) {
+            report(static_cast<double>(now.samples_done) / now.samples);
+            return !interrupted();
+        });
+        throw_if_interrupted();
+        pictures.seconds += result.render_seconds / flags.seeds;
+        pictures.invalid_samples += result.invalid_samples;
+        pictures.variance.add(result.picture);
+    }
+    return pictures;
 }
 
-void print(const NoiseFlags& flags, const RenderSettings& settings, const Queue& queue, const NoiseFigures& sobol,
-           const NoiseFigures& independent, Reporter& reporter) {
+/// Both over the pixels that the low-discrepancy sampler is best at: figures of different pixels tell nothing of each
+/// other. The choice looks at its own pictures, so a small part of few seeds flatters it.
+Comparison compare(const Pictures& sobol, const Pictures& independent, double keep) {
+    const std::vector<std::size_t> pixels = sobol.variance.best_pixels(keep);
+    return {.sobol = {sobol.variance.over(pixels), sobol.seconds},
+            .independent = {independent.variance.over(pixels), independent.seconds},
+            .pixels = pixels.size(),
+            .invalid_samples = sobol.invalid_samples + independent.invalid_samples};
+}
+
+void print(const NoiseFlags& flags, const RenderSettings& settings, const Queue& queue, const Comparison& figures,
+           Reporter& reporter) {
     const std::string& scene = flags.render.scene.scene;
-    const double ratio = sobol.error > 0 ? independent.error / sobol.error : 0;
+    const NoiseFigures &sobol = figures.sobol, &independent = figures.independent;
     if (reporter.json()) {
         reporter.event(fmt::format(
-            R"({{"event":"noise","scene":{},"device":{},"width":{},"height":{},"samples":{},"seeds":{},"keep_percent":{:.4g},"rel_mse":{:.6e},"rel_mse_independent":{:.6e},"ratio":{:.4f},"seconds":{:.5f},"efficiency":{:.6g},"efficiency_independent":{:.6g},"mean":{:.6f},"mean_independent":{:.6f},"invalid_samples":{}}})",
+            R"({{"event":"noise","scene":{},"device":{},"width":{},"height":{},"samples":{},"seeds":{},"keep_percent":{},"pixels":{},"rel_mse":{},"rel_mse_independent":{},"ratio":{},"seconds":{:.5f},"seconds_independent":{:.5f},"efficiency":{},"efficiency_independent":{},"mean":{},"mean_independent":{},"invalid_samples":{}}})",
             json_string(scene), json_string(queue.device_name()), settings.width, settings.height, settings.samples,
-            flags.seeds, flags.keep_percent, sobol.error, independent.error, ratio, sobol.seconds, sobol.efficiency(),
-            independent.efficiency(), sobol.mean, independent.mean, sobol.invalid_samples + independent.invalid_samples));
+            flags.seeds, json_number(static_cast<double>(flags.keep_percent)), figures.pixels,
+            json_number(sobol.variance.rel_mse), json_number(independent.variance.rel_mse),
+            json_number(figures.ratio()), sobol.seconds, independent.seconds, json_number(sobol.efficiency()),
+            json_number(independent.efficiency()), json_number(sobol.variance.mean),
+            json_number(independent.variance.mean), figures.invalid_samples));
         return;
     }
-    reporter.answer(fmt::format(
-        "{} on {}: {}x{}, {} spp, {} seeds, {:.4g} % of the pixels\n"
-        "relMSE {:.3e}, independent samples {:.3e}: {:.2f} times less; mean {:.5f} and {:.5f}\n"
-        "{:.4f} s a picture, 1 / (relMSE x s) {:.4g}, independent samples {:.4g}\n",
-        scene, queue.device_name(), settings.width, settings.height, settings.samples, flags.seeds, flags.keep_percent,
-        sobol.error, independent.error, ratio, sobol.mean, independent.mean, sobol.seconds, sobol.efficiency(),
-        independent.efficiency()));
+    reporter.answer(fmt::format("{} on {}: {}x{}, {} spp, {} seeds, {:.4g} % of the pixels\n"
+                                "relMSE {:.3e}, independent samples {:.3e}: {:.2f} times less; mean {:.5f} and {:.5f}\n"
+                                "{:.4f} s a picture, 1 / (relMSE x s) {:.4g}, independent samples {:.4g}\n",
+                                scene, queue.device_name(), settings.width, settings.height, settings.samples,
+                                flags.seeds, flags.keep_percent, sobol.variance.rel_mse, independent.variance.rel_mse,
+                                figures.ratio(), sobol.variance.mean, independent.variance.mean, sobol.seconds,
+                                sobol.efficiency(), independent.efficiency()));
 }
 
 int bench_noise(const NoiseFlags& flags) {
     Reporter reporter(flags.render.report);
     Messages& messages = reporter.messages();
+    parse_size("--size", flags.render.size); // before anything is read
     check_scene_options(flags.render.scene);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.render.machine, messages);
+    reporter.say_messages();
+    reporter.set_work(fmt::format("loading {}", flags.render.scene.scene));
     const Scene scene = load_scene(flags.render.scene, messages);
     const RenderSettings settings = render_settings(flags.render, scene);
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const Camera camera = choose_camera(flags.render.scene, scene, aspect, messages);
     throw_if_interrupted();
+    reporter.set_work("building trees");
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     reporter.say_messages();
 
-    RenderSettings warm_up = settings; // clocks, caches, the driver's first launch
+    throw_if_interrupted();
+    reporter.set_work("warming up"); // clocks, caches, the driver's first launch
+    RenderSettings warm_up = settings;
     warm_up.samples = 1;
     render_picture(*queue, prepared, camera, warm_up);
-    const NoiseFigures sobol = measure(*queue, prepared, camera, settings, SamplerKind::Sobol, flags);
-    const NoiseFigures independent = measure(*queue, prepared, camera, settings, SamplerKind::Independent, flags);
-    print(flags, settings, *queue, sobol, independent, reporter);
+    const auto render = [&](SamplerKind sampler, uint32_t done) {
+        return render_pictures(*queue, prepared, camera, settings, sampler, flags, done, reporter);
+    };
+    const Pictures sobol = render(SamplerKind::Sobol, 0);
+    const Pictures independent = render(SamplerKind::Independent, flags.seeds);
+    reporter.end_progress();
+    print(flags, settings, *queue, compare(sobol, independent, static_cast<double>(flags.keep_percent) / 100),
+          reporter);
     return 0;
 }
 
@@ -105,7 +149,10 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
         ->type_name("N")
         ->check(whole_between(2, 1024))
         ->capture_default_str();
-    verb.add_option("--keep", flags->keep_percent, "of the pixels, those with the least variance")
+    verb.add_option(
+            "--keep", flags->keep_percent,
+            "of the pixels: those where the low-discrepancy sampler varies\nleast, for the figures of both samplers; a "
+            "small part of few\nseeds flatters it")
         ->type_name("PERCENT")
         ->check(number_above_zero(100))
         ->capture_default_str();

@@ -86,39 +86,56 @@ TrimmedError relative_error(const Image& picture, const Image& reference, double
     return result;
 }
 
-TrimmedVariance relative_variance(const std::vector<Image>& pictures, double keep) {
-    PERTEV_CHECK(pictures.size() >= 2);
-    for (const Image& picture : pictures) check_comparable(picture, pictures.front());
-    const std::size_t count = std::size_t(pictures[0].width) * pictures[0].height;
-    const double n = static_cast<double>(pictures.size());
-    std::vector<double> errors(count), means(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        double sum[3] = {}, squares[3] = {}; // of the differences from the first picture, which lose no digits
-        const Rgb first = pixel(pictures[0], i);
-        const float origin[3] = {first.r, first.g, first.b};
-        for (const Image& picture : pictures) {
-            const Rgb x = pixel(picture, i);
-            const float values[3] = {x.r, x.g, x.b};
-            for (int c = 0; c < 3; ++c) {
-                const double difference = double(values[c]) - double(origin[c]);
-                sum[c] += difference;
-                squares[c] += difference * difference;
-            }
-        }
-        for (int c = 0; c < 3; ++c) {
-            const double mean = double(origin[c]) + sum[c] / n;
-            const double variance = std::max(0.0, squares[c] - sum[c] * sum[c] / n) / (n - 1);
-            errors[i] += variance / (mean * mean + 0.01) / 3;
-            means[i] += mean / 3;
-        }
-        if (std::isnan(errors[i])) errors[i] = kInfinite;
+void VarianceOfPictures::add(const Image& picture) {
+    if (count_ == 0) {
+        check_comparable(picture, picture);
+        first_ = picture;
+        differences_.assign(std::size_t(picture.width) * picture.height * 3, 0);
+        squares_ = differences_;
     }
-    const std::vector<std::size_t> order = pixels_of_least_error(errors, keep);
+    check_comparable(picture, first_);
+    for (std::size_t i = 0; i < differences_.size() / 3; ++i) {
+        const Rgb x = pixel(picture, i), origin = pixel(first_, i);
+        const double differences[3] = {double(x.r) - double(origin.r), double(x.g) - double(origin.g),
+                                       double(x.b) - double(origin.b)};
+        for (int c = 0; c < 3; ++c) {
+            differences_[3 * i + c] += differences[c];
+            squares_[3 * i + c] += differences[c] * differences[c];
+        }
+    }
+    ++count_;
+}
+
+TrimmedVariance VarianceOfPictures::of_pixel(std::size_t i) const {
+    const double n = count_;
+    const Rgb first = pixel(first_, i);
+    const float origin[3] = {first.r, first.g, first.b};
     TrimmedVariance result;
-    result.pixels = order.size();
-    for (const std::size_t i : order) {
-        result.rel_mse += errors[i] / static_cast<double>(order.size());
-        result.mean += means[i] / static_cast<double>(order.size());
+    for (int c = 0; c < 3; ++c) {
+        const double sum = differences_[3 * i + c], squares = squares_[3 * i + c];
+        const double mean = double(origin[c]) + sum / n;
+        const double variance = std::max(0.0, squares - sum * sum / n) / (n - 1);
+        result.rel_mse += std::isfinite(squares) ? variance / (mean * mean + 0.01) / 3 : kInfinite;
+        result.mean += mean / 3;
+    }
+    return result;
+}
+
+std::vector<std::size_t> VarianceOfPictures::best_pixels(double keep) const {
+    PERTEV_CHECK(count_ >= 2);
+    std::vector<double> errors(differences_.size() / 3);
+    for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = of_pixel(i).rel_mse;
+    return pixels_of_least_error(errors, keep);
+}
+
+TrimmedVariance VarianceOfPictures::over(const std::vector<std::size_t>& pixels) const {
+    PERTEV_CHECK(count_ >= 2 && !pixels.empty());
+    TrimmedVariance result;
+    for (const std::size_t i : pixels) {
+        PERTEV_CHECK(i < differences_.size() / 3);
+        const TrimmedVariance one = of_pixel(i);
+        result.rel_mse += one.rel_mse / static_cast<double>(pixels.size());
+        result.mean += one.mean / static_cast<double>(pixels.size());
     }
     return result;
 }

@@ -3,6 +3,8 @@
 // How far a picture is from its reference, as numbers: what `pertev compare` prints and the tests hold bounds on.
 // FLIP is in image/flip.h. Sums are in double and in one fixed order.
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "image/image.h"
@@ -24,14 +26,29 @@ TrimmedError relative_error(const Image& picture, const Image& reference, double
 
 struct TrimmedVariance {
     double rel_mse = 0; // what relative_error would be on average if the true picture were known
-    double mean = 0;    // of all channels over the kept pixels
-    uint64_t pixels = 0;
+    double mean = 0;    // of all channels over the pixels
 };
 
-/// Variance of pictures that differ by chance alone, as relMSE of one of them: mean over the kept pixels and channels of
-/// s^2 / (m^2 + 0.01), s^2 the unbiased variance over the pictures, m their mean. `keep` as in relative_error. At least
-/// two pictures of one size. Throws Error(BadInput) when sizes differ.
-TrimmedVariance relative_variance(const std::vector<Image>& pictures, double keep = 1);
+/// Variance of pictures that differ by chance alone, as relMSE of one of them: s^2 / (m^2 + 0.01), s^2 the unbiased
+/// variance of a pixel's channel over the pictures, m its mean. Takes them one by one and keeps two sums a value, so
+/// that memory does not grow with their number.
+class VarianceOfPictures {
+public:
+    /// With 3 or 4 channels (alpha is left out). Throws Error(BadInput) where its size is not that of the first.
+    void add(const Image& picture);
+    /// The `keep` part (0, 1] of the pixels with the least variance, at least one, the best first. After two pictures.
+    std::vector<std::size_t> best_pixels(double keep) const;
+    /// Means over these pixels, and R, G, B. A pixel with a value that is not finite makes rel_mse infinite. After two
+    /// pictures.
+    TrimmedVariance over(const std::vector<std::size_t>& pixels) const;
+
+private:
+    TrimmedVariance of_pixel(std::size_t i) const;
+
+    Image first_;                               // origin of the differences, which lose no digits that way
+    std::vector<double> differences_, squares_; // sums, [pixel][R, G, B]
+    uint32_t count_ = 0;
+};
 
 /// Mean of (x - r)^2 over pixels and R, G, B. Infinite where a value is not finite. Throws as relative_error.
 double mean_squared_error(const Image& picture, const Image& reference);

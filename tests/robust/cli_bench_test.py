@@ -87,6 +87,75 @@ class Bench(CliTest):
         events = [json.loads(line)["event"] for line in b"".join([*said, rest]).splitlines()]
         self.assertLess(events.count("rays"), 45)
 
+    def test_noise_tells_the_variance_of_both_samplers_over_the_same_pixels(self):
+        line = ["bench", "noise", "cornell-box", "--device", "cpu", "--size", "32x32"]
+        small = [*line, "--spp", "4", "--seeds", "3"]
+        made = self.succeed(*small, "--json").events("noise")
+        self.assertEqual(len(made), 1)
+        all_pixels = made[0]
+        for key, value in {"scene": "cornell-box", "device": "CPU", "width": 32, "height": 32, "samples": 4, "seeds": 3,
+                           "keep_percent": 100, "pixels": 1024, "invalid_samples": 0}.items():
+            self.assertEqual(all_pixels[key], value, key)
+        for key in ["rel_mse", "rel_mse_independent", "mean", "mean_independent", "efficiency", "efficiency_independent"]:
+            self.assertGreater(all_pixels[key], 0, key)
+        self.assertAlmostEqual(all_pixels["ratio"], all_pixels["rel_mse_independent"] / all_pixels["rel_mse"], 4)
+        self.assertLess(all_pixels["rel_mse"], 1)
+        text = self.succeed(*small).stdout
+        self.assertRegex(text, r"^cornell-box on CPU: 32x32, 4 spp, 3 seeds, 100 % of the pixels\n"
+                               r"relMSE .*, independent samples .*: .* times less; mean .* and .*\n.* s a picture, .*\n$")
+        self.assertIn(f"relMSE {all_pixels['rel_mse']:.3e}, independent samples {all_pixels['rel_mse_independent']:.3e}",
+                      text)
+
+        half = self.succeed(*small, "--keep", "50", "--json").events("noise")[0]
+        self.assertEqual(half["pixels"], 512)
+        self.assertLess(half["rel_mse"], all_pixels["rel_mse"] / 4)
+        # Not that sampler's own best half, which varies as little as the other's: the two choices differ.
+        self.assertGreater(half["ratio"], 2 * all_pixels["ratio"])
+
+        # A smooth integrand and a number of samples that fills whole strata.
+        fine = self.succeed(*line, "--integrator", "direct", "--spp", "64", "--seeds", "4", "--json").events("noise")[0]
+        self.assertGreater(fine["ratio"], 1.5)
+        self.assertLess(abs(fine["mean"] / fine["mean_independent"] - 1), 0.05)
+
+    def test_noise_refuses_what_it_cannot_measure_before_it_reads(self):
+        for flags, says in [("--seeds 1", "--seeds"), ("--seeds 1025", "--seeds"), ("--keep 0", "--keep"),
+                            ("--keep 101", "--keep"), ("--size 0x0", "--size 0x0"), ("--spp 0", "--spp")]:
+            for json_flag in [[], ["--json"]]:
+                with self.subTest(flags=flags, json=json_flag):
+                    self.refuse(2, "bench", "noise", "nowhere.obj", "--device", "cpu", *flags.split(), *json_flag,
+                                says=[says])
+        self.assertNotEqual(self.run_pertev("bench", "noise", "nowhere.obj").status, 0)
+
+    def test_an_interrupt_ends_noise_with_75_and_an_object(self):
+        program = subprocess.Popen([PROGRAM, "bench", "noise", "cornell-box", "--device", "cpu", "--json", "--size",
+                                    "512x512", "--spp", "100000"], cwd=self.folder, env=self.environment,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        self.wait_while(program, is_listening=False)
+        time.sleep(0.5)  # it is measuring
+        program.send_signal(signal.SIGINT)
+        stdout, stderr = program.communicate(timeout=300)
+        self.assertEqual((program.returncode, stderr), (75, b""))
+        last = json.loads(stdout.splitlines()[-1])
+        self.assertEqual((last["event"], last["status"], last["interrupted"]), ("error", 75, True))
+
+    def test_the_seed_of_a_job_changes_its_picture_and_little_of_its_light(self):
+        # Five sides of a hall around the job's camera, which stands at (-110, 18, -2) and looks along +x; the roof is open.
+        corners = [f"v {x} {y} {z}\n" for x in (-120, 70) for y in (-2, 60) for z in (-20, 20)]
+        sides = ["1 2 4 3", "1 5 6 2", "1 3 7 5", "2 6 8 4", "5 7 8 6"]
+        write(self.path("hall.obj"), "".join(corners) + "".join(f"f {side}\n" for side in sides))
+        job = ["bench", "render", "--job", "S5", "--scene", "hall.obj", "--size", "16x16", "--spp", "16", "--device", "cpu",
+               "--json"]
+        plain, zero, one, again = (self.succeed(*job, *seed).events("job")[0]
+                                   for seed in [[], ["--seed", "0"], ["--seed", "1"], ["--seed", "1"]])
+        self.assertEqual(plain["hash"], zero["hash"])
+        self.assertNotEqual(zero["hash"], one["hash"])
+        self.assertEqual(one["hash"], again["hash"])
+        self.assertLess(abs(one["mean"] / zero["mean"] - 1), 0.1)
+        self.assertLess(one["mean"], 0.9)  # it sees the hall
+        for seed in ["-1", "4294967296", "x"]:
+            self.refuse(2, *job, "--seed", seed, says=["--seed"])
+
 
 if __name__ == "__main__":
     main()
