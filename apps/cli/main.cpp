@@ -11,7 +11,9 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <new>
+#include <string>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -41,14 +43,24 @@ void turn_signals_into_errors() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
+/// What CLI11 takes for a no as a flag's value, in any case.
+bool is_no(std::string_view value) {
+    std::string small(value);
+    std::ranges::transform(small, small.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    constexpr std::string_view kNo[] = {"false", "off", "no", "disable", "0", "f", "n", "-"};
+    return std::ranges::find(kNo, small) != std::end(kNo);
+}
+
 /// Whether errors are wanted as JSON: also where the line is wrong, so that no verb has read it.
 bool wants_json(int argc, char** argv) {
+    bool json = false; // by the last that says so, as the verb reads it
     for (int i = 1; i < argc; ++i) {
         const std::string_view word = argv[i];
-        if (word == "--") return false; // what follows is no flag
-        if (word == "--json" || word.starts_with("--json=")) return true;
+        if (word == "--") break; // what follows is no flag
+        if (word == "--json") json = true;
+        if (word.starts_with("--json=")) json = !is_no(word.substr(std::string_view("--json=").size()));
     }
-    return false;
+    return json;
 }
 
 /// Parses the command line, which runs its verb.

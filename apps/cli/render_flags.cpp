@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <limits>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -156,7 +157,11 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
 }
 
 void check_render_flags(const RenderFlags& flags, Messages& messages) {
-    if (!flags.exposure.empty() && flags.exposure != "auto") parse_number("--exposure", flags.exposure);
+    if (!flags.exposure.empty() && flags.exposure != "auto" && !number_in(flags.exposure)) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--exposure {}: expected auto, or stops: a number of size {} at most", flags.exposure,
+                                std::numeric_limits<float>::max()));
+    }
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
     for (const std::string& output : flags.outputs) {

@@ -188,7 +188,7 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
     verb.add_flag("--two-sided-lights", options.two_sided_lights, "lamps shine from both faces, whatever the file says")
         ->group(group);
     verb.add_flag("--show-back-faces", options.show_back_faces,
-                  "show the camera backs that a glTF file hides from it\n(doubleSided)")
+                  "let the camera see backs that a glTF file hides\n(doubleSided: false)")
         ->group(group);
 }
 

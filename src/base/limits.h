@@ -10,7 +10,7 @@ namespace pertev {
 inline constexpr float kMaxCoordinate = 0x1p40f;           // |x| of any vertex, camera or light position, metres
 inline constexpr uint32_t kMaxTrianglesPerMesh = 1u << 30; // primitive ids are 32 bit
 inline constexpr uint32_t kMaxInstances = 1u << 30;        // instance ids are 32 bit
-inline constexpr uint32_t kMaxLights = 1u << 30;           // each is drawn by one of 2^32 numbers, so 3/4 go by power
+inline constexpr uint32_t kMaxLights = 1u << 30;           // each is drawn by one of 2^31 numbers, so 1/2 go by power
 inline constexpr uint32_t kMaxImageSide = 1u << 16;        // pixels along one side of any image
 inline constexpr uint64_t kMaxImagePixels = uint64_t(1) << 30;   // pixels of one image
 inline constexpr uint64_t kFreeImageBytes = uint64_t(384) << 20; // decoded; a panorama of 8192 x 4096 in float

@@ -134,8 +134,10 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
         bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
     bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
     const LightSetData& lights = prepared.lights;
-    bytes += bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.triangle_order) +
-             bytes_of(lights.triangle_starts) + bytes_of(lights.triangle_guides) + bytes_of(lights.environment.pixels);
+    bytes += bytes_of(lights.emitters) + bytes_of(lights.punctual) + bytes_of(lights.emissions) +
+             bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.triangle_order) +
+             bytes_of(lights.triangle_starts) + bytes_of(lights.triangle_guides) + bytes_of(lights.environment.pixels) +
+             bytes_of(lights.environment.row_bounds);
     for (const OrderedTable* table : {&lights.choice, &lights.environment.rows, &lights.environment.columns}) {
         bytes += bytes_of(table->starts) + bytes_of(table->guide);
     }

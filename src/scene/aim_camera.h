@@ -18,8 +18,8 @@ struct Target {
 Target target_from(const Scene& scene, Vec3 eye);
 
 /// Distance along the camera's axis to what stands in the middle of its picture, metres; none where that is the
-/// background. Any surface stands in the way, holes and what is half transparent too. The scene has been through
-/// validate().
+/// background. Any surface stands in the way, holes and what is half transparent too, but for backs that the camera
+/// looks through (Material::double_sided). The scene has been through validate().
 std::optional<float> distance_in_the_middle(const Scene& scene, const Camera& camera);
 
 } // namespace pertev

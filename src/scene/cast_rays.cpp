@@ -38,7 +38,7 @@ bool meets(const Bounds3& box, const LocalRay& ray) {
 
 /// Branchless, so that the compiler makes one loop of vector instructions of it. Of two sides at one distance the front
 /// counts, so that the order in which threads come by does not.
-void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, RayPack& rays) {
+void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, bool has_back, RayPack& rays) {
     for (std::size_t k = 0; k < RayPack::kWidth; ++k) {
         const Vec3 direction = {rays.dx[k], rays.dy[k], rays.dz[k]};
         const Vec3 p = cross(direction, ac);
@@ -46,7 +46,7 @@ void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, RayPack& rays) {
         const Vec3 s = Vec3{rays.ox[k], rays.oy[k], rays.oz[k]} - a, q = cross(s, ab);
         const float u = dot(s, p) * inv, v = dot(direction, q) * inv, t = dot(ac, q) * inv;
         const bool is_first = (t < rays.distance[k]) | ((t == rays.distance[k]) & (det > 0));
-        const bool is_nearer = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & is_first;
+        const bool is_nearer = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & is_first & (has_back | (det > 0));
         rays.distance[k] = is_nearer ? t : rays.distance[k];
         rays.facing[k] = is_nearer ? det : rays.facing[k];
     }
@@ -65,7 +65,7 @@ std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
     return packs;
 }
 
-void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, std::vector<LookHit>& hits) {
+void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& rays, std::vector<LookHit>& hits) {
     const std::vector<RayPack> start = pack(rays);
     std::mutex merging;
     parallel_for_ranges(mesh.triangle_count(), kGrain, [&](uint64_t begin, uint64_t end) {
@@ -73,7 +73,7 @@ void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, std::vect
         for (uint64_t i = 3 * begin; i < 3 * end; i += 3) {
             const Vec3 a = mesh.positions[mesh.indices[i]];
             const Vec3 ab = mesh.positions[mesh.indices[i + 1]] - a, ac = mesh.positions[mesh.indices[i + 2]] - a;
-            for (RayPack& of_eight : packs) meet_triangle(a, ab, ac, of_eight);
+            for (RayPack& of_eight : packs) meet_triangle(a, ab, ac, has_back, of_eight);
         }
         const std::lock_guard lock(merging);
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -90,7 +90,7 @@ void cast_at_mesh(const Mesh& mesh, const std::vector<LocalRay>& rays, std::vect
 
 } // namespace
 
-std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays) {
+std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs) {
     std::vector<LookHit> hits(rays.size());
     std::vector<Bounds3> bounds;
     for (const Mesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh));
@@ -104,7 +104,8 @@ std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays
             if (meets(bounds[instance.mesh], ray)) local.push_back(ray);
         }
         if (local.empty()) continue;
-        cast_at_mesh(scene.meshes[instance.mesh], local, hits);
+        const bool has_back = backs == Backs::All || scene.materials[instance.material].double_sided;
+        cast_at_mesh(scene.meshes[instance.mesh], has_back, local, hits);
     }
     return hits;
 }

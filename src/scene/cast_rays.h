@@ -21,8 +21,11 @@ struct LookHit {
     bool is_hit() const { return distance < kInfinity; }
 };
 
+/// Which backs rays meet: all, or those alone that the camera sees (Material::double_sided).
+enum class Backs { All, Shown };
+
 /// The nearest hit of each ray; the front where a front and a back lie at one distance. Time: rays times triangles of
 /// all instances whose box some ray meets. The scene has been through validate().
-std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays);
+std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs = Backs::All);
 
 } // namespace pertev

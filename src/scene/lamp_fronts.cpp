@@ -40,27 +40,36 @@ std::vector<LookRay> rays_from(const Scene& scene, const Instance& lamp) {
     return rays;
 }
 
+/// How far `box` reaches along the unit `direction` from `from`, metres; 0 where less than half of it lies there.
+float reach_of(const Bounds3& box, Vec3 from, Vec3 direction) {
+    const float middle = dot(direction, box.centre() - from);
+    return middle > 0 ? middle + 0.5f * dot(abs(direction), box.size()) : 0;
+}
+
 void warn_of_turned_lamps(const Scene& scene, const std::vector<const Instance*>& lamps, const std::string& file,
                           Messages& messages) {
     uint64_t triangles = 0;
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
     if (triangles > kMostSceneTriangles) return;
+    const Bounds3 box = bounds_of(scene);
     for (std::size_t i = 0; i < std::min(lamps.size(), kMostLamps); ++i) {
         const std::vector<LookRay> rays = rays_from(scene, *lamps[i]);
         if (rays.empty()) continue;
         const std::vector<LookHit> hits = cast_rays(scene, rays);
         std::size_t turned = 0;
-        float before = kInfinity, behind = kInfinity;
+        float before = kInfinity, behind = kInfinity; // behind: of those that have a surface there
         for (std::size_t k = 0; k < hits.size(); k += 2) {
             const float off = 0.5f * length(rays[k].origin - rays[k + 1].origin);
             const float front = off + hits[k].distance, back = off + hits[k + 1].distance;
-            if (!(kMuchMore * front < back)) continue;
+            // Nothing behind may be the sky over a lamp that shines down as it should: what counts is the scene's room.
+            const float room = back < kInfinity ? back : reach_of(box, rays[k + 1].origin, rays[k + 1].direction);
+            if (!(kMuchMore * front < room)) continue;
             ++turned;
             before = min(before, front);
             behind = min(behind, back);
         }
         if (2 * turned <= hits.size() / 2) continue; // most of those looked at
-        const std::string room = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "all the world";
+        const std::string room = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
         messages.warn(fmt::format("{}: the lamp {} shines at a surface {:.3g} m before its front and has {} behind it: "
                                   "turn its faces round, or say --two-sided-lights",
                                   file, shortened(lamps[i]->name), before, room));

@@ -10,7 +10,8 @@
 
 namespace pertev {
 
-/// A notice that names the lamps, and a warning for each that has a wall right before its front and room behind it.
+/// A notice that names the lamps, and a warning for each that has a wall right before its front and room behind it: up
+/// to the next surface or, without any, most of the scene's box.
 /// Nothing where no lamp is one-sided. `file` begins the messages. The scene has been through validate().
 void say_lamp_fronts(const Scene& scene, const std::string& file, Messages& messages);
 

@@ -47,6 +47,7 @@ class FacesTest(CliTest):
     def test_lamps_of_an_obj_are_named_with_the_flag_that_lights_their_backs(self):
         said = self.said("lamp.obj")
         self.assertRegex(said, r"note: lamp\.obj: 1 lamp with light on the front alone: bulb; .*--two-sided-lights")
+        self.assertNotIn("turn its faces round", said)
         self.assertNotIn("bulb", self.said("lamp.obj", "--two-sided-lights"))
         self.assertNotIn("on the front alone", self.said("cornell-box"))
 

@@ -33,6 +33,11 @@ class WhatIsRefused(CliTest):
         for verb in ["render", "info", "bench", "bench rays", "bench render", "compare"]:
             self.refuse(2, *verb.split(), "--foo", says=[f"(pertev {verb} --help"])
 
+    def test_an_exposure_that_is_no_number_is_answered_by_auto_too(self):
+        for exposure in ["AUTO", "bright"]:
+            self.refuse(2, "render", "cornell-box", "-o", "x.png", "--exposure", exposure,
+                        says=[f"--exposure {exposure}: expected auto, or stops"])
+
     def test_a_number_that_is_too_large_is_answered_by_the_largest(self):
         for flag, limit in [("--time 1e300", "3.4028235e+38"), ("--clamp 1e300", "3.4028235e+38"),
                             ("--exposure 1e300", "3.4028235e+38"), ("--eye 1e300,0,0", "3.4028235e+38"),

@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 import zlib
@@ -116,6 +117,24 @@ class CliTest(unittest.TestCase):
 
     def info(self, name):
         return self.succeed("info", name, "--json").events("info")[0]
+
+
+def listen_to(leader):
+    """Reads what a terminal gets (the leader of a pty, which it closes) until all have left it: a thread to join, and the
+    pieces that it found so far."""
+    said = []
+
+    def listen():
+        try:
+            while chunk := os.read(leader, 65536):
+                said.append(chunk)
+        except OSError:
+            pass  # how Linux tells that the other side is closed
+        os.close(leader)
+
+    listener = threading.Thread(target=listen)
+    listener.start()
+    return listener, said
 
 
 def write(path, text):

@@ -10,10 +10,9 @@ import resource
 import signal
 import statistics
 import subprocess
-import threading
 import time
 
-from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, main, read_exr, write
+from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, listen_to, main, read_exr, write
 
 FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
@@ -217,21 +216,10 @@ class WhatIsSaid(CliTest):
 
     def stderr_on_a_terminal(self, arguments):
         leader, follower = pty.openpty()
-        said = []
-
-        def listen():
-            try:
-                while chunk := os.read(leader, 65536):
-                    said.append(chunk)
-            except OSError:
-                pass  # how Linux tells that the other side is closed
-
-        listener = threading.Thread(target=listen)
-        listener.start()
+        listener, said = listen_to(leader)
         outcome = self.run_pertev(*arguments, stderr=follower)
         os.close(follower)
         listener.join()
-        os.close(leader)
         self.assertEqual(outcome.status, 0, outcome)
         return b"".join(said).decode()
 

@@ -5,9 +5,8 @@ import os
 import pty
 import re
 import subprocess
-import threading
 
-from cli_run import FLOOR, PROGRAM, CliTest, main, write
+from cli_run import FLOOR, PROGRAM, CliTest, listen_to, main, write
 
 SMALL = ["--size", "8x8", "--spp", "1", "--device", "cpu"]
 
@@ -64,6 +63,16 @@ class Flags(CliTest):
     def test_a_flag_before_its_verb_is_told_where_it_belongs(self):
         self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp: stands before render"])
         self.refuse(2, "--json", "info", "cornell-box", says=[])
+
+    def test_json_that_is_switched_off_gives_errors_as_text(self):
+        for off in [["--json=false"], ["--json=No"], ["--json=0"], ["--json", "--json=off"]]:
+            for line in [["info", "gone.obj"], ["render", "--qwertz"]]:
+                outcome = self.run_pertev(*line, *off)
+                self.assertEqual((outcome.status, outcome.stdout), (2, ""), outcome)
+                self.assertRegex(outcome.stderr, "^pertev: ")
+        for on in [["--json"], ["--json=true"], ["--json=false", "--json"]]:
+            outcome = self.run_pertev("info", "gone.obj", *on)
+            self.assertEqual((outcome.stderr, outcome.events("error")[0]["status"]), ("", 2), outcome)
         self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: stands before bench"])
 
     def test_a_list_of_outputs_is_told_how_pictures_are_asked_for(self):
@@ -128,19 +137,7 @@ class SignsOfLife(CliTest):
         environment = {name: value for name, value in self.environment.items() if name != "TERM"}
         program = self.start(*flags, stderr=follower, env={**environment, **terms})
         os.close(follower)
-        said = []
-
-        def listen():
-            try:
-                while chunk := os.read(leader, 65536):
-                    said.append(chunk)
-            except OSError:
-                pass  # how Linux tells that the other side is closed
-            os.close(leader)
-
-        listener = threading.Thread(target=listen)
-        listener.start()
-        return program, listener, said
+        return program, *listen_to(leader)
 
     def test_a_line_every_10_s_tells_what_is_done_where_no_bar_can_be_drawn(self):
         enough = ["--time", "10.4"]

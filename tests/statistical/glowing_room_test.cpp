@@ -87,12 +87,16 @@ TEST_CASE("a depth limit of n leaves the first n scatterings, none of them lost 
 
 TEST_CASE("Russian roulette takes no light away and adds none") {
     for (const LightStrategy strategy : kStrategies) {
-        CAPTURE(static_cast<int>(strategy));
-        PathSettings path;
-        path.max_depth = 60;
-        path.roulette_depth = 1;
-        path.strategy = strategy;
-        check_radiance((1 - std::pow(0.7, 61)) / (1 - 0.7), 0.7f, path);
+        for (const Roulette roulette : {Roulette::Throughput, Roulette::FourthRoot}) {
+            CAPTURE(static_cast<int>(strategy));
+            CAPTURE(static_cast<int>(roulette));
+            PathSettings path;
+            path.max_depth = 60;
+            path.roulette = roulette;
+            path.roulette_depth = 1;
+            path.strategy = strategy;
+            check_radiance((1 - std::pow(0.7, 61)) / (1 - 0.7), 0.7f, path);
+        }
     }
 }
 

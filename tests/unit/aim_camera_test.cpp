@@ -45,3 +45,20 @@ TEST_CASE("the distance in the middle of the picture is that of the nearest surf
     camera.world_from_camera = look_at({0.3f, 1, 4}, {0.3f, 1, 9}, {0, 1, 0});
     CHECK(!distance_in_the_middle(scene, camera).has_value());
 }
+
+TEST_CASE("backs that the camera looks through do not stand in the middle of the picture") {
+    Scene scene = make_two_sheets();
+    scene.instances[1].world_from_local = make_translation({0, 0, -3}); // both face +z
+    Camera camera;
+    camera.world_from_camera = look_at({0.3f, 1, -5}, {0.3f, 1, 0}, {0, 1, 0});
+    CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(2));
+    scene.materials[0].double_sided = false;
+    CHECK(!distance_in_the_middle(scene, camera).has_value());
+    scene.instances[0].world_from_local = make_rotation(0, 1, 0, 0); // the far one turns its front
+    CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(5));
+    scene.instances[1].world_from_local = compose(make_translation({0, 0, -3}), make_scale({-1, 1, 1})); // still a back
+    CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(5));
+    scene.materials.emplace_back(); // of its own, that shows its back
+    scene.instances[1].material = 1;
+    CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(2));
+}

@@ -62,6 +62,27 @@ TEST_CASE("a lamp whose front faces a wall, with room behind it, is a warning th
         CHECK_FALSE(says(fine, true, "behind it"));
     }
     CHECK(says(read(room(0.01f, kDown)), true, "0.01 m before its front"));
-    CHECK(says(read(room(2.01f, kDown)), true, "has all the world behind it"));
     CHECK(read(room(1.99f, kUp), true).all().empty());
+}
+
+TEST_CASE("a lamp over an open floor is no warning") {
+    const std::string floor = "mtllib a.mtl\nv -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\nusemtl wall\nf 4 3 2 1\n";
+    for (const char* height : {"2", "0.1"}) {
+        const std::string y = height;
+        const std::string lamp = "v -.5 " + y + " -.5\nv .5 " + y + " -.5\nv .5 " + y + " .5\nv -.5 " + y + " .5\n";
+        for (const char* face : {"5 6 7 8", "8 7 6 5"}) { // down, and up to the sky
+            CAPTURE(y);
+            CHECK_FALSE(says(read(floor + lamp + "usemtl bulb\nf " + face + "\n"), true, "behind it"));
+        }
+    }
+    CHECK_FALSE(says(read(room(2.01f, kDown)), true, "behind it")); // on the roof, with nothing above
+}
+
+TEST_CASE("a lamp whose front faces a wall, with most of the scene behind it but no surface, is a warning too") {
+    const std::string no_floor = "mtllib a.mtl\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nv -1 0 1\nv 1 0 1\n"
+                                 "v -.2 1.99 -.2\nv .2 1.99 -.2\nv .2 1.99 .2\nv -.2 1.99 .2\n"
+                                 "usemtl wall\nf 1 2 3 4\nf 4 3 6 5\nusemtl bulb\nf ";
+    const std::string warning = "shines at a surface 0.01 m before its front and has most of the scene behind it";
+    CHECK(says(read(no_floor + "10 9 8 7\n"), true, warning));
+    CHECK_FALSE(says(read(no_floor + "7 8 9 10\n"), true, "behind it"));
 }
