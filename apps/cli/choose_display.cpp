@@ -1,12 +1,9 @@
 #include "apps/cli/choose_display.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "apps/cli/parse_values.h"
 #include "image/tone_map_image.h"
-#include "image/write_image.h"
 #include "integrators/meter_exposure.h"
 
 namespace pertev {
@@ -14,17 +11,12 @@ namespace {
 
 constexpr const char* kDefaultToneMap = "agx";
 
-bool is_tone_mapped(const std::string& output) {
-    const ImageFormat format = image_format_for(output);
-    return format == ImageFormat::Png || format == ImageFormat::Jpeg;
-}
-
 } // namespace
 
 Display choose_display(const RenderFlags& flags, Queue& queue, const PreparedScene& prepared, const Camera& camera,
                        const RenderSettings& settings, Reporter& reporter) {
     const std::string name = flags.tone_map.empty() ? kDefaultToneMap : flags.tone_map;
-    Display display{*tone_map_named(name), 0, std::ranges::any_of(flags.outputs, is_tone_mapped)};
+    Display display{*tone_map_named(name), 0, writes_tone_mapped(flags)};
     if (!display.is_used) return display;
     const bool is_given = !flags.exposure.empty() && flags.exposure != "auto";
     const float stops = is_given ? parse_number("--exposure", flags.exposure)

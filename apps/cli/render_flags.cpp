@@ -156,6 +156,8 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     add_report_flags(verb, flags.report);
 }
 
+bool writes_tone_mapped(const RenderFlags& flags) { return writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg}); }
+
 void check_render_flags(const RenderFlags& flags, Messages& messages) {
     if (!flags.exposure.empty() && flags.exposure != "auto" && !number_in(flags.exposure)) {
         throw Error(ErrorCode::BadInput,
@@ -179,8 +181,7 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
             messages.warn(output + ": --transparent: this format has no alpha; the background becomes black");
         }
     }
-    if ((!flags.exposure.empty() || !flags.tone_map.empty()) &&
-        !writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg})) {
+    if ((!flags.exposure.empty() || !flags.tone_map.empty()) && !writes_tone_mapped(flags)) {
         throw Error(ErrorCode::BadInput, fmt::format("--{}: light is mapped to tones in PNG and JPEG alone; add -o "
                                                      "NAME.png or .jpg",
                                                      flags.exposure.empty() ? "tone-map" : "exposure"));

@@ -35,6 +35,9 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags);
 /// --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
 
+/// Whether a picture is asked for that light is mapped to tones for: PNG or JPEG.
+bool writes_tone_mapped(const RenderFlags& flags);
+
 /// What can be told before the scene is read. Throws Error, above all for an output that could not be written.
 void check_render_flags(const RenderFlags& flags, Messages& messages);
 

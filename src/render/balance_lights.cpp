@@ -70,7 +70,7 @@ struct KindMoments {
 };
 
 KindMoments look_from(const SurfacePoint& point, uint32_t i, float offset, const LightSetView& lights,
-                      const SceneBvhView& bvh, double far_share) {
+                      const SceneBvhView& bvh) {
     KindMoments moments;
     const auto accept_all = [](uint32_t, uint32_t, float, float) { return true; };
     for (uint32_t k = 0; k < kDrawsPerPoint; ++k) {
@@ -85,7 +85,7 @@ KindMoments look_from(const SurfacePoint& point, uint32_t i, float offset, const
         const float reach = is_far ? kInfinity : sample.distance - offset;
         if (trace_any(bvh, Ray{origin, 0.0f, sample.wi, reach}, accept_all)) continue;
         // The probability of the kind is taken out: what is left is the estimate of that kind alone.
-        const double share = is_far ? far_share : 1 - far_share;
+        constexpr double share = kEvenShare;
         const double value = static_cast<double>(cosine * luminance(sample.radiance) / sample.pdf) * share;
         (is_far ? moments.far_mean : moments.near_mean) += value / (share * kDrawsPerPoint);
         (is_far ? moments.far_square : moments.near_square) += value * value / (share * kDrawsPerPoint);
@@ -114,7 +114,6 @@ void balance_lights(PreparedScene& prepared, const float* linear_from_srgb) {
     const std::vector<TextureImageView> images = views_of_images(*prepared.scene);
     std::vector<BvhView> meshes;
     const SceneBvhView bvh = view_on_host(prepared, meshes);
-    share_draws(data, 0.5);
     const LightSetView lights = view_of(data, images.data(), linear_from_srgb);
     const float offset = 0x1p-16f * max_component(bounds_of(*prepared.scene).size());
 
@@ -123,7 +122,7 @@ void balance_lights(PreparedScene& prepared, const float* linear_from_srgb) {
         const auto number = static_cast<uint32_t>(i);
         const SurfacePoint point = draw_point(triangles, number);
         if (dot(point.normal, point.normal) > 0) {
-            moments[i] = look_from(point, number, offset, lights, bvh, 0.5);
+            moments[i] = look_from(point, number, offset, lights, bvh);
         }
     });
     // Relative variance with a share q of far draws: sum over points of (near / (1 - q) + far / q) / mean^2.
@@ -137,7 +136,7 @@ void balance_lights(PreparedScene& prepared, const float* linear_from_srgb) {
         far_sum += weight * m.far_square;
     }
     const double near = std::sqrt(near_sum), far = std::sqrt(far_sum);
-    const double share = near + far > 0 ? far / (near + far) : 0.5;
+    const double share = near + far > 0 ? far / (near + far) : kEvenShare;
     share_draws(data, std::clamp(share, kLeastShare, 1 - kLeastShare));
 }
 

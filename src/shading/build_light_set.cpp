@@ -271,7 +271,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
         add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment.mean_radiance),
                    true);
     }
-    share_draws(data, 0.5);
+    share_draws(data, kEvenShare);
     return data;
 }
 

@@ -35,6 +35,9 @@ struct LightSetData {
     }
 };
 
+/// What far lights get of the draws before anybody has looked at what arrives; near ones get as much.
+inline constexpr double kEvenShare = 0.5;
+
 /// `scene` has passed validate(). `linear_from_srgb` [256]. `centre`: the origin of the world that the lights are
 /// placed in, in the scene's coordinates. Throws Error(OverLimit) for more than kMaxLights.
 LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages,
