@@ -207,8 +207,7 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
                      .light = choice(kIntegrators, flags.integrator),
                      .clamp = flags.clamp,
                      .sampler = choice(kSamplers, flags.sampler),
-                     .seed = flags.seed,
-                     .camera_axis = {}};
+                     .seed = flags.seed};
     return settings;
 }
 

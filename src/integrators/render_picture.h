@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "integrators/path/render_path.h"
+#include "integrators/make_integrator.h"
 #include "render/prepare_scene.h"
 
 namespace pertev {
@@ -43,7 +43,7 @@ struct RenderResult {
     std::vector<PixelIds> ids; // empty unless asked for
     uint32_t samples = 0;      // whole samples done; less than asked for when stopped or out of time
     uint64_t invalid_samples = 0;
-    double hidden_back_share = 0; // of the camera's rays: see PathRenderer
+    double hidden_back_share = 0; // of the camera's rays: see render/hidden_back_share.h
     RayCounts rays;
     double upload_seconds = 0, render_seconds = 0, first_pixel_seconds = 0; // first: until one sample of all pixels
     std::size_t device_peak_bytes = 0;

@@ -4,26 +4,16 @@
 
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
-#include "render/camera_view.h"
-#include "render/pixel_filter.h"
+#include "render/camera_rays.h"
 
 namespace pertev {
 
-struct PathCamera {
-    CameraView view;
-    PixelFilterView filter;
-    uint32_t width; // pixels
-};
-
-HD inline PathState generate_path(const PathCamera& camera, const PathSettings& settings, uint32_t pixel,
+HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, uint32_t pixel,
                                   uint32_t sample) {
     const SampleKey key = {pixel, sample, settings.seed};
-    const Vec2 offset = sample_filter(camera.filter, sample_2d(settings.sampler, key, kGroupCamera));
-    const Vec2 lens = camera.view.aperture_radius > 0 ? sample_2d(settings.sampler, key, kGroupLens) : Vec2{};
-    const uint32_t row = pixel / camera.width;
-    const Vec2 place = {static_cast<float>(pixel % camera.width) + 0.5f + offset.x,
-                        static_cast<float>(row) + 0.5f + offset.y};
-    const Ray ray = make_camera_ray(camera.view, place, lens);
+    const Vec2 in_filter = sample_2d(settings.sampler, key, kGroupCamera);
+    const Vec2 on_lens = camera.has_lens() ? sample_2d(settings.sampler, key, kGroupLens) : Vec2{};
+    const Ray ray = camera.ray(pixel, in_filter, on_lens);
     PathState path;
     path.origin = ray.origin;
     path.direction = ray.direction;

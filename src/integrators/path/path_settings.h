@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "math/sampler.h"
-#include "math/vec3.h"
 
 namespace pertev {
 
@@ -31,8 +30,6 @@ struct PathSettings {
     float clamp = 0; // largest channel of one contribution, W/(sr m2), of light scattered twice or more; 0 = off
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
-    bool hide_background = false;  // a camera ray that hits nothing brings nothing: for pictures with alpha
-    Vec3 camera_axis = {0, 0, -1}; // unit, world space; PathRenderer sets it: depth is measured along it
 };
 
 } // namespace pertev

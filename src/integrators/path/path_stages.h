@@ -1,7 +1,7 @@
 #pragma once
 
-// The stages of a wavefront of paths, in the order in which render_path.cpp launches them. Each does for one index what
-// the CPU's loop does in one line, through the same functions.
+// The stages of a wavefront of paths, in the order in which path_integrator.cpp launches them. Each does for one index
+// what the CPU's loop does in one line, through the same functions.
 
 #include "integrators/path/generate_path.h"
 #include "integrators/path/path_queues.h"
@@ -35,15 +35,14 @@ HD inline bool is_occluded(const SceneView& scene, Vec3 origin, Vec3 direction, 
 }
 
 struct GeneratePaths {
-    PathCamera camera;
+    CameraRays camera;
     PathSettings settings;
-    uint32_t height;
     uint32_t first_pixel, pixels; // of the batch, in tiled order
     uint32_t first_sample;
     PathQueueView paths;
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = tiled_pixel(first_pixel + i % pixels, camera.width, height);
+        const uint32_t pixel = tiled_pixel(first_pixel + i % pixels, camera.width, camera.height);
         paths.store(i, generate_path(camera, settings, pixel, first_sample + i / pixels));
     }
 };
@@ -70,7 +69,7 @@ struct FindCameraHits {
 };
 
 struct ShadeHits {
-    SceneView scene;
+    PictureView picture;
     PathSettings settings;
     FilmView film;
     PathQueueView paths;
@@ -88,7 +87,7 @@ struct ShadeHits {
         const TriangleId here = {hit.instance, hit.primitive};
         ShadowRay shadow;
         bool wants_shadow = false;
-        const bool goes_on = shade_hit(scene, settings, film, path, hit, shadow, wants_shadow);
+        const bool goes_on = shade_hit(picture, settings, film, path, hit, shadow, wants_shadow);
         if (goes_on) {
             paths.store(slot, path);
             next.push(slot);

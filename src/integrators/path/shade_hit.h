@@ -9,6 +9,7 @@
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
 #include "render/film_view.h"
+#include "render/picture_view.h"
 #include "render/ray_origin.h"
 #include "render/surface.h"
 
@@ -163,14 +164,15 @@ HD inline void add_first_hit(const FilmView& film, const PathState& path, const 
 
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
-HD inline bool shade_hit(const SceneView& scene, const PathSettings& settings, const FilmView& film, PathState& path,
-                         const Hit& hit, ShadowRay& shadow, bool& wants_shadow) {
+HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
+                         PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow) {
+    const SceneView& scene = picture.scene;
     wants_shadow = false;
     if (hit.instance == kNoHit) {
         if (path.depth == 0 && (film.aovs & kAovIds) != 0 && path.sample == 0) {
             film.ids[path.pixel] = {kNoHit, kNoHit, kNoHit};
         }
-        const bool is_hidden = settings.hide_background && path.depth == 0;
+        const bool is_hidden = picture.hide_background && path.depth == 0;
         if (scene.lights.has_environment() && !is_hidden) {
             add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction),
                          path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f);
@@ -178,7 +180,7 @@ HD inline bool shade_hit(const SceneView& scene, const PathSettings& settings, c
         return false;
     }
     const Surface surface = make_surface(scene, hit, path.direction);
-    if (path.depth == 0) add_first_hit(film, path, hit, surface, settings.camera_axis, scene.centre);
+    if (path.depth == 0) add_first_hit(film, path, hit, surface, picture.camera.axis, scene.centre);
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
         add_emission(settings, path, surface.emission,

@@ -1,0 +1,40 @@
+#pragma once
+
+// The seam between an algorithm of light transport and what lives around it: sessions, the command line, viewers. Each
+// algorithm has a folder of its own and includes no other; integrators/make_integrator.h knows them all.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "render/film.h"
+#include "render/picture_view.h"
+
+namespace pertev {
+
+/// Rays traced, by kind.
+struct RayCounts {
+    uint64_t camera = 0, bounce = 0, shadow = 0;
+    uint64_t total() const { return camera + bounce + shadow; }
+};
+
+class Integrator {
+public:
+    virtual ~Integrator() = default;
+
+    /// From now on samples are of this picture. Memory is taken for `samples` of each pixel, as far as they go into one
+    /// piece of work; more may be asked for. What is held already is kept: another camera takes no memory. Throws
+    /// Error(OutOfMemory).
+    virtual void begin(const PictureView& picture, uint32_t samples) = 0;
+
+    /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
+    /// that is done. A sample is a function of the picture, the settings and its number alone, so work may be split any
+    /// way. Throws Error(DeviceFault).
+    virtual void render(uint32_t first, uint32_t count, Film& film) = 0;
+
+    /// Since begin().
+    virtual RayCounts rays() const = 0;
+    /// Of the device's memory, held now.
+    virtual std::size_t bytes() const = 0;
+};
+
+} // namespace pertev

@@ -1,0 +1,21 @@
+#include "integrators/make_integrator.h"
+
+namespace pertev {
+
+std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
+    switch (settings.kind) {
+    case IntegratorKind::Path:
+        break;
+    }
+    return std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
+}
+
+std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda) {
+    switch (settings.kind) {
+    case IntegratorKind::Path:
+        break;
+    }
+    return PathIntegrator::predicted_bytes(pixels * samples, on_cuda, settings.body, settings.batch);
+}
+
+} // namespace pertev

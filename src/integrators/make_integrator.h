@@ -1,0 +1,28 @@
+#pragma once
+
+// Every integrator there is, and the settings of each: the only file that knows them all.
+
+#include <cstdint>
+#include <memory>
+
+#include "integrators/integrator.h"
+#include "integrators/path/path_integrator.h"
+
+namespace pertev {
+
+enum class IntegratorKind : uint8_t { Path };
+
+struct IntegratorSettings {
+    IntegratorKind kind = IntegratorKind::Path;
+    PathSettings path;
+    PathBody body = PathBody::Loop;
+    uint32_t batch = 1u << 22; // most paths in flight of a wavefront; more cost memory
+};
+
+/// `queue` outlives it.
+std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings);
+
+/// Bytes of the device's memory that it takes for `samples` of each of `pixels`.
+std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda);
+
+} // namespace pertev

@@ -1,0 +1,37 @@
+#pragma once
+
+// The camera's rays of a picture: where in a pixel and on the lens a sample lies is drawn from the pixel filter and the
+// lens; every integrator begins with them.
+
+#include <cstdint>
+
+#include "render/camera_view.h"
+#include "render/pixel_filter.h"
+
+namespace pertev {
+
+struct CameraRays {
+    CameraView view;
+    PixelFilterView filter;
+    Vec3 axis;              // unit, world space: depth is measured along it
+    uint32_t width, height; // pixels
+
+    /// The ray of the sample that lies at `in_filter` and `on_lens`, unit squares. Unit direction.
+    HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens) const {
+        const Vec2 offset = sample_filter(filter, in_filter);
+        const uint32_t row = pixel / width;
+        const Vec2 place = {static_cast<float>(pixel % width) + 0.5f + offset.x,
+                            static_cast<float>(row) + 0.5f + offset.y};
+        return make_camera_ray(view, place, on_lens);
+    }
+    HD bool has_lens() const { return view.aperture_radius > 0; }
+};
+
+/// `centre`: the origin of the scene's world, in the camera's coordinates.
+inline CameraRays make_camera_rays(const Camera& camera, const PixelFilterView& filter, uint32_t width, uint32_t height,
+                                   Vec3 centre) {
+    return {make_camera_view(camera, width, height, centre), filter,
+            normalize(transform_vector(camera.world_from_camera, {0, 0, -1})), width, height};
+}
+
+} // namespace pertev
