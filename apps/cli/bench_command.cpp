@@ -150,8 +150,8 @@ std::size_t tree_bytes(const PreparedScene& prepared) {
     const auto bytes = [](const Bvh& bvh) {
         return bvh.nodes.size() * sizeof(BvhNode) + bvh.triangles.size() * sizeof(BvhTriangle);
     };
-    std::size_t sum = bytes(prepared.baked) + prepared.top_level.nodes.size() * sizeof(BvhNode);
-    for (const Bvh& bvh : prepared.mesh_bvhs) sum += bytes(bvh);
+    std::size_t sum = prepared.top_level.nodes.size() * sizeof(BvhNode);
+    for (const Bvh& bvh : *prepared.trees.parts) sum += bytes(bvh);
     return sum;
 }
 
@@ -205,13 +205,12 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     figures.msamples =
         millions_a_second(uint64_t(settings.width) * settings.height * whole.samples, whole.render_seconds);
 
-    StageSeconds stages; // once more, each stage on its own
-    settings.stage_seconds = &stages;
+    settings.time_kinds = true; // once more, each kind of ray on its own
     settings.body = PathBody::Wavefront;
     const RenderResult staged = render_all(queue, prepared, camera, settings);
-    figures.camera_mrays = millions_a_second(staged.rays.camera, stages.camera_hits);
-    figures.bounce_mrays = millions_a_second(staged.rays.bounce, stages.bounce_hits);
-    figures.shadow_mrays = millions_a_second(staged.rays.shadow, stages.shadows);
+    figures.camera_mrays = millions_a_second(staged.rays.camera, staged.kind_seconds.camera);
+    figures.bounce_mrays = millions_a_second(staged.rays.bounce, staged.kind_seconds.bounce);
+    figures.shadow_mrays = millions_a_second(staged.rays.shadow, staged.kind_seconds.shadow);
     return figures;
 }
 

@@ -18,11 +18,10 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "formats/read_scene.h"
-#include "lab/binary_stack_walk.h"
 #include "lab/measure_rays.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
-#include "render/scene_on_device.h"
+#include "render/prepare_scene.h"
 
 namespace pertev {
 namespace {
@@ -64,13 +63,20 @@ Scene read_geometry(const std::string& name, Messages& messages) {
 
 std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit.t, hit.instance, hit.primitive); }
 
-/// Throws Error(DeviceFault) that names the first ray where the walk of pictures on this device and the binary one on
-/// the host differ.
+/// Binary nodes, one ray a thread: what the record's counts of nodes are of.
+constexpr Combination kBinary = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
+
+Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared) {
+    return {queue, combination,
+            std::make_shared<const StructureOnDevice>(queue, prepared.structures->get(combination))};
+}
+
+/// Throws Error(DeviceFault) that names the first ray where the tracer of pictures on this device and the binary walk
+/// on the host differ.
 void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const PreparedScene& prepared) {
     Queue cpu = Queue::make_cpu();
-    const SceneOnDevice on_host(cpu, prepared);
     RaysOnDevice rays(cpu, set);
-    rays.trace<BinaryStackWalk>(on_host.view().bvh);
+    rays.trace(make_tracer(cpu, kBinary, prepared));
     const std::vector<RayHit> wanted = rays.hits();
     const auto [found, want] = std::ranges::mismatch(hits, wanted);
     if (found == hits.end()) return;
@@ -79,22 +85,29 @@ void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const Prepar
                             found - hits.begin(), hits.size(), describe(*found), describe(*want)));
 }
 
-SetFigures measure(Queue& queue, const SceneBvhView& trees, const RaySet& set, const RaysFlags& flags,
-                   const PreparedScene& prepared) {
+/// What pictures trace the set's rays by on this device.
+const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice) {
+    return set.any_hit ? choice.shadow : set.name == "primary" ? choice.camera : choice.bounce;
+}
+
+SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, const PreparedScene& prepared) {
     SetFigures figures{.set = set.name, .device = queue.device_name(), .rays = set.rays.size()};
     if (set.rays.empty()) return figures;
     throw_if_interrupted();
+    const Tracer tracer = make_tracer(queue, tracer_of_pictures(set, default_tracers(queue.is_cuda())), prepared);
     RaysOnDevice rays(queue, set);
-    rays.trace<StackWalk>(trees);
+    rays.trace(tracer);
     const std::vector<RayHit> hits = rays.hits();
     if (flags.check) check_hits(hits, set, prepared);
     figures.hit_share = hit_share(hits);
     throw_if_interrupted();
-    figures.work = summarize_work(rays.count_work<BinaryStackWalk>(trees));
+    Combination counted = kBinary;
+    counted.options.near_first = !set.any_hit; // as the record has it
+    figures.work = summarize_work(rays.count_work(make_tracer(queue, counted, prepared)));
     const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 5);
     figures.times = time_runs(queue, queue.is_cuda() ? 3 : 1, runs, [&] {
         throw_if_interrupted(); // a run of millions of rays takes seconds on a CPU
-        rays.trace<StackWalk>(trees);
+        rays.trace(tracer);
     });
     return figures;
 }
@@ -145,15 +158,15 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     throw_if_interrupted();
     const PreparedScene prepared = // the sets are in the file's coordinates
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages);
-    const SceneOnDevice on_device(queue, prepared);
-    const SceneBvhView& trees = on_device.view().bvh;
+    const Tracer tracer = make_tracer(queue, kBinary, prepared);
     const FrameSize frame = record_frame(flags.count);
     const Camera camera = choose_camera(flags.camera, scene, 16.0f / 9.0f, messages);
     reporter.say_messages();
     watch.restart();
-    const auto trace = [tracer = make_ray_tracer(queue, trees)](std::span<const Ray> rays, std::span<RayHit> hits) {
+    const auto trace = [trace_rays = make_ray_tracer(queue, tracer)](std::span<const Ray> rays,
+                                                                     std::span<RayHit> hits) {
         throw_if_interrupted();
-        tracer(rays, hits);
+        trace_rays(rays, hits);
     };
     std::vector<RaySet> sets = make_record_ray_sets({scene, camera, frame.width, frame.height, trace}, flags.count);
     reporter.say(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",
@@ -163,7 +176,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const bool is_moved = !flags.camera.eye.empty() || !flags.camera.target.empty() || flags.camera.fov_deg > 0;
     for (std::size_t i = 0; i < sets.size(); ++i) {
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
-        SetFigures figures = measure(queue, trees, sets[i], flags, prepared);
+        SetFigures figures = measure(queue, sets[i], flags, prepared);
         figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
         if (record != nullptr && !is_moved) figures.record = &record->sets[i];
         reporter.answer(std::exchange(header, ""));

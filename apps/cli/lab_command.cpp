@@ -146,7 +146,7 @@ int run(const LabFlags& flags) {
     const Scene scene = read_lab_scene(flags.scene, messages);
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
-    check_any_can_run(list_combinations(settings, lab_machine(*queue, scene))); // before a folder is made
+    check_any_can_run(list_combinations(settings, queue->is_cuda())); // before a folder is made
     if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.say_messages();
     settings.scene = lab_scene_title(flags.scene.scene);

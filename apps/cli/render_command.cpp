@@ -79,12 +79,14 @@ int render(RenderFlags flags) {
     Messages& messages = reporter.messages();
     check_render_flags(flags, messages);
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
+    const std::optional<TracerChoice> tracers = tracer_choice(flags.tracer, queue->is_cuda());
     reporter.say_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const Stopwatch watch;
     const Scene scene = load_scene(flags.scene, messages);
     if (flags.strict) refuse_missing(messages);
-    const RenderSettings settings = render_settings(flags, scene);
+    RenderSettings settings = render_settings(flags, scene);
+    settings.tracers = tracers;
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     aim_eye(flags.scene, scene, messages);
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);

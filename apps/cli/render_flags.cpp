@@ -146,6 +146,7 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("X")
         ->check(number_above_zero())
         ->group(group);
+    add_tracer_flags(verb, flags.tracer, "Tracing");
     group = "Machine";
     add_machine_flags(verb, flags.machine, group);
     verb.add_flag("--no-bvh-cache", flags.no_cache, "build the tree even if it was built before")->group(group);

@@ -8,6 +8,7 @@
 #include "apps/cli/choose_device.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/tracer_flags.h"
 #include "integrators/render_picture.h"
 
 namespace pertev {
@@ -25,6 +26,7 @@ struct RenderFlags {
     float filter_radius = 0, clamp = 0;
     uint32_t max_depth = 16, seed = 0;
     MachineFlags machine;
+    TracerFlags tracer;
     bool no_cache = false, strict = false;
     ReportFlags report;
 };

@@ -47,6 +47,10 @@ public:
     void upload(std::span<const T> values) {
         if (!values.empty()) queue_->copy_to_device(data_, values.data(), values.size_bytes());
     }
+    /// Copies values to elements [first, ...) of the buffer, which has room for them.
+    void upload_at(std::size_t first, std::span<const T> values) {
+        if (!values.empty()) queue_->copy_to_device(data_ + first, values.data(), values.size_bytes());
+    }
     std::vector<T> download() const {
         std::vector<T> values(count_);
         if (count_ > 0) queue_->copy_to_host(values.data(), data_, count_ * sizeof(T));

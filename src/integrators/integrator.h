@@ -8,6 +8,7 @@
 
 #include "render/film.h"
 #include "render/picture_view.h"
+#include "render/tracer/scene_tracer.h"
 
 namespace pertev {
 
@@ -21,10 +22,10 @@ class Integrator {
 public:
     virtual ~Integrator() = default;
 
-    /// From now on samples are of this picture. Memory is taken for `samples` of each pixel, as far as they go into one
-    /// piece of work; more may be asked for. What is held already is kept: another camera takes no memory. Throws
-    /// Error(OutOfMemory).
-    virtual void begin(const PictureView& picture, uint32_t samples) = 0;
+    /// From now on samples are of this picture, whose rays `tracer` traces; it outlives them. Memory is taken for
+    /// `samples` of each pixel, as far as they go into one piece of work; more may be asked for. What is held already
+    /// is kept: another camera takes no memory. Throws Error(OutOfMemory).
+    virtual void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) = 0;
 
     /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
     /// that is done. A sample is a function of the picture, the settings and its number alone, so work may be split any

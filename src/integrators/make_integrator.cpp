@@ -10,12 +10,13 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
     return std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
 }
 
-std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda) {
+std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool walks_itself) {
     switch (settings.kind) {
     case IntegratorKind::Path:
         break;
     }
-    return PathIntegrator::predicted_bytes(pixels * samples, on_cuda, settings.body, settings.batch);
+    if (walks_itself && settings.body == PathBody::Loop) return 0;
+    return PathIntegrator::wavefront_bytes(pixels * samples, settings.batch);
 }
 
 } // namespace pertev

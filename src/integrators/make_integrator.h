@@ -22,7 +22,8 @@ struct IntegratorSettings {
 /// `queue` outlives it.
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings);
 
-/// Bytes of the device's memory that it takes for `samples` of each of `pixels`.
-std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda);
+/// Bytes of the device's memory that it takes for `samples` of each of `pixels`. `walks_itself`: its tracers are such
+/// that a loop may walk them ray by ray (can_walk_on_host).
+std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool walks_itself);
 
 } // namespace pertev

@@ -26,13 +26,19 @@ IntegratorSettings integrator_of(const RenderSettings& settings) {
     return {.path = settings.path, .body = settings.body, .batch = settings.batch};
 }
 
+TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
+    return settings.tracers.value_or(default_tracers(on_cuda));
+}
+
 } // namespace
 
 std::size_t predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool on_cuda) {
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
-    return predicted_bytes(prepared) + film +
+    const TracerChoice tracers = tracers_of(settings, on_cuda);
+    const std::size_t structures = on_cuda ? prepared.structures->device_bytes(tracers) : 0;
+    return predicted_bytes(prepared) + structures + film +
            predicted_bytes(integrator_of(settings), uint64_t(settings.width) * settings.height, settings.samples,
-                           on_cuda);
+                           can_walk_on_host(tracers, on_cuda));
 }
 
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
@@ -48,11 +54,11 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
                                                   settings.width, settings.height, prepared.centre),
                                  settings.transparent};
     const std::unique_ptr<Integrator> renderer = make_integrator(queue, integrator_of(settings));
-    if (settings.stage_seconds != nullptr) {
-        static_cast<PathIntegrator&>(*renderer).time_stages(*settings.stage_seconds);
-    }
-    renderer->begin(picture, settings.samples);
-    result.hidden_back_share = hidden_back_share(queue, picture);
+    SceneTracer tracer(queue, *prepared.structures, tracers_of(settings, queue.is_cuda()));
+    tracer.set_surfaces(scene.view());
+    if (settings.time_kinds) tracer.time_kinds();
+    renderer->begin(picture, tracer, settings.samples);
+    result.hidden_back_share = hidden_back_share(queue, tracer, picture);
     queue.wait();
     result.upload_seconds = watch.seconds();
 
@@ -69,6 +75,7 @@ RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const C
     }
     result.render_seconds = watch.seconds();
     result.rays = renderer->rays();
+    result.kind_seconds = tracer.seconds();
     result.invalid_samples = film.invalid_samples();
     result.picture = film.picture(result.samples, settings.transparent);
     result.layers = film.layers(result.samples);

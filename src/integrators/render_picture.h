@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "integrators/make_integrator.h"
 #include "render/prepare_scene.h"
@@ -20,10 +21,11 @@ struct RenderSettings {
     bool transparent = false; // RGBA: the background is left out, alpha says how much of the pixel is covered
     double time_limit_s = 0;  // 0 = none; ends at a whole sample
     PathSettings path;
-    PathBody body = PathBody::Loop;        // CUDA always takes Wavefront
-    uint32_t batch = 1u << 22;             // paths in flight of the wavefront
-    StageSeconds* stage_seconds = nullptr; // filled by the wavefront, which is then slower
-    uint32_t pass_samples = 0;             // samples a pass; 0 = as many as fit a fraction of a second
+    PathBody body = PathBody::Loop;      // CUDA always takes Wavefront
+    uint32_t batch = 1u << 22;           // paths in flight of the wavefront
+    std::optional<TracerChoice> tracers; // none: the device's default
+    bool time_kinds = false;             // fills RenderResult::kind_seconds; the wavefront is then slower
+    uint32_t pass_samples = 0;           // samples a pass; 0 = as many as fit a fraction of a second
 };
 
 /// Pixels: the one asked for, or the filter's default.
@@ -45,6 +47,7 @@ struct RenderResult {
     uint64_t invalid_samples = 0;
     double hidden_back_share = 0; // of the camera's rays: see render/hidden_back_share.h
     RayCounts rays;
+    SceneTracer::Seconds kind_seconds;
     double upload_seconds = 0, render_seconds = 0, first_pixel_seconds = 0; // first: until one sample of all pixels
     std::size_t device_peak_bytes = 0;
 };

@@ -11,9 +11,9 @@
 #include "base/host_device.h"
 #include "device/buffer.h"
 #include "device/launch.h"
-#include "lab/built_structure.h"
 #include "lab/in_pieces.h"
 #include "lab/trace_rays.h"
+#include "render/prepare_scene.h"
 
 namespace pertev {
 
@@ -60,7 +60,7 @@ private:
 /// The triangles in a device's memory, once for any number of rays.
 class BruteForce {
 public:
-    BruteForce(Queue& queue, const LabTriangles& triangles);
+    BruteForce(Queue& queue, const SceneTriangles& triangles, const TopLevelBvh& top_level);
     std::vector<RayHit> trace(std::span<const Ray> rays, const PieceDone& done) const;
 
 private:

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "image/image.h"
-#include "lab/combination.h"
+#include "render/tracer/built_structure.h"
+#include "render/tracer/combination.h"
 
 namespace pertev {
 
@@ -21,16 +22,6 @@ struct SetFigures {
     uint64_t rays = 0;
     double hit_share = 0;
     uint64_t brute_force_rays = 0; // how many rays the proven walk was held against brute force on
-};
-
-struct StructureFigures {
-    std::string name;                  // "sbvh", "sbvh wide4": the tree and what it was turned into
-    std::string failed;                // why it is not there; empty: it is
-    double build_s = 0;                // from triangles to what the walk reads, conversion included
-    uint64_t nodes = 0, triangles = 0; // triangles: in leaves, so duplicates count
-    std::size_t bytes = 0;             // nodes, triangles, and what the layout has beside them
-    std::optional<double> sah_cost;    // in its builder's own unit: binary trees compare with binary trees alone
-    std::optional<int> depth;          // inner nodes on the longest way down; neither of a bare array of triangles
 };
 
 /// One combination on one set.

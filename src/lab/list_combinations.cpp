@@ -5,33 +5,22 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "lab/walk_kernels.h"
-#include "render/place_meshes.h"
+#include "render/tracer/walk_kernels.h"
 
 namespace pertev {
 namespace {
 
-CombinationFigures figures_of(const Combination& c, const LabMachine& machine) {
+CombinationFigures figures_of(const Combination& c, bool on_cuda) {
     CombinationFigures figures = {.combination = c, .name = name_of(c)};
-    if (const auto reason = why_not(c, machine)) {
-        figures.refused = *reason;
-    } else if (find_kernel(c, false, machine.is_cuda) == nullptr) {
-        figures.refused = !c.options.is_exact()    ? "fast and woop tests are compiled with rta and near alone"
-                          : !c.options.rta_at_pops ? "RTA at nodes alone is compiled with near alone"
-                                                   : "not compiled";
-    }
+    if (const auto reason = why_no_tracer(c, on_cuda)) figures.refused = *reason;
     return figures;
 }
 
 } // namespace
 
-LabMachine lab_machine(const Queue& queue, const Scene& scene) {
-    return {queue.is_cuda(), place_meshes(scene).mesh_tree_count > 0};
-}
-
-std::vector<CombinationFigures> list_combinations(const LabSettings& settings, const LabMachine& machine) {
+std::vector<CombinationFigures> list_combinations(const LabSettings& settings, bool on_cuda) {
     std::vector<CombinationFigures> list;
-    for (const Combination& c : settings.only) list.push_back(figures_of(c, machine));
+    for (const Combination& c : settings.only) list.push_back(figures_of(c, on_cuda));
     if (!settings.only.empty()) return list;
     bool brute_force_listed = false;
     for (const StructureKind structure : settings.structures) {
@@ -41,7 +30,7 @@ std::vector<CombinationFigures> list_combinations(const LabSettings& settings, c
             if (!settings.by_name && why_not(structure, walk)) continue;
             for (const Distribution distribution : settings.distributions) {
                 for (const WalkOptions& options : settings.options) {
-                    list.push_back(figures_of({structure, walk, options, distribution}, machine));
+                    list.push_back(figures_of({structure, walk, options, distribution}, on_cuda));
                 }
             }
         }

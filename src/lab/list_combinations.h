@@ -11,10 +11,8 @@
 
 namespace pertev {
 
-LabMachine lab_machine(const Queue& queue, const Scene& scene);
-
 /// In the order in which they are measured; names differ.
-std::vector<CombinationFigures> list_combinations(const LabSettings& settings, const LabMachine& machine);
+std::vector<CombinationFigures> list_combinations(const LabSettings& settings, bool on_cuda);
 
 /// Throws Error(BadInput) with the reasons where all are refused.
 void check_any_can_run(const std::vector<CombinationFigures>& combinations);

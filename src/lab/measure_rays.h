@@ -19,55 +19,31 @@ class RaysOnDevice {
 public:
     /// Throws Error(OutOfMemory). `queue` outlives it; fewer than 2^32 rays.
     RaysOnDevice(Queue& queue, const RaySet& set)
-        : queue_(queue), any_hit_(set.any_hit), rays_(queue, set.rays, "rays"), hits_(queue, set.rays.size(), "hits") {
+        : queue_(queue), any_hit_(set.any_hit), rays_(queue, set.rays, "rays"), hits_(queue, set.rays.size()) {
         PERTEV_CHECK(set.rays.size() <= std::numeric_limits<uint32_t>::max());
     }
 
     uint32_t count() const { return static_cast<uint32_t>(rays_.size()); }
     /// Of the last trace().
-    std::vector<RayHit> hits() const { return hits_.download(); }
+    std::vector<RayHit> hits() const { return hits_.download(any_hit_); }
 
-    /// Where all triangles are baked, by the kernel that has no top level in it.
-    template <class Walk>
-    void trace(const SceneTrees<typename Walk::Tree>& scene) {
-        if (scene.top_root == kNoLink) {
-            trace_in<Walk>(SingleTree<typename Walk::Tree>{scene.baked});
-        } else {
-            trace_in<Walk>(scene);
-        }
+    void trace(const Tracer& tracer) { pertev::trace(tracer, any_hit_, rays_.data(), count(), hits_.from(0)); }
+    RunTimes time(const Tracer& tracer, int warm_ups, int runs) {
+        return time_runs(queue_, warm_ups, runs, [&] { trace(tracer); });
     }
 
-    template <class Walk>
-    RunTimes time(const SceneTrees<typename Walk::Tree>& scene, int warm_ups, int runs) {
-        return time_runs(queue_, warm_ups, runs, [&] { trace<Walk>(scene); });
-    }
-
-    /// What each ray costs.
-    template <class Walk>
-    std::vector<RayWork> count_work(const SceneTrees<typename Walk::Tree>& scene) {
+    /// What each ray costs; none where nothing can tell.
+    std::vector<RayWork> count_work(const Tracer& tracer) const {
         const Buffer<RayWork> work(queue_, rays_.size(), "counts");
-        if (any_hit_) {
-            launch(queue_, "count work", count(), CountRays<Walk, true>{scene, rays_.data(), work.data()});
-        } else {
-            launch(queue_, "count work", count(), CountRays<Walk, false>{scene, rays_.data(), work.data()});
-        }
+        if (!tracer.count_work(any_hit_, all_candidates(rays_.data()), count(), work.data())) return {};
         return work.download();
     }
 
 private:
-    template <class Walk, class Scene>
-    void trace_in(const Scene& scene) {
-        if (any_hit_) {
-            launch(queue_, "trace rays", count(), TraceRays<Walk, true, Scene>{scene, rays_.data(), hits_.data()});
-        } else {
-            launch(queue_, "trace rays", count(), TraceRays<Walk, false, Scene>{scene, rays_.data(), hits_.data()});
-        }
-    }
-
     Queue& queue_;
     bool any_hit_;
     Buffer<Ray> rays_;
-    Buffer<RayHit> hits_;
+    HitsOnDevice hits_;
 };
 
 /// Of a set: means, and the ray that costs most, which one lane of a GPU walks alone in the end.

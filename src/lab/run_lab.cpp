@@ -21,7 +21,7 @@
 #include "lab/list_combinations.h"
 #include "lab/measure_rays.h"
 #include "lab/traced_set.h"
-#include "lab/walk_kernels.h"
+#include "render/place_meshes.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {
@@ -30,7 +30,15 @@ namespace {
 /// Thrown when keep_going says no; what has been measured is kept.
 struct Stopped {};
 
-bool is_binary(StructureKind kind) { return builder_of(kind).has_value(); }
+/// What pictures on a GPU are made with unless another tracer is chosen, and every other is held to.
+constexpr Combination kProven = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
+
+/// Over the instances that keep a tree of their own, in the file's coordinates, as the sets of rays are.
+TopLevelBvh top_level_over(const Scene& scene, const BinaryTrees& trees) {
+    std::vector<Bounds3> bounds;
+    for (std::size_t part = 1; part < trees.parts->size(); ++part) bounds.push_back((*trees.parts)[part].bounds);
+    return build_top_level_bvh(placed_trees(scene, place_meshes(scene), bounds));
+}
 
 uint64_t host_memory_bytes() {
     return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
@@ -41,13 +49,13 @@ public:
     Lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
         const std::function<bool(const LabProgress&)>& keep_going)
         : queue_(queue), scene_(scene), camera_(camera), settings_(settings), keep_going_(keep_going),
-          triangles_(scene), pool_(queue, 1, "ray pool") {
+          triangles_{{scene, place_meshes(scene)}, {}} {
         report_ = {.scene = settings.scene,
                    .device = queue.device_name(),
                    .commit = fmt::format("{} {}", version(), git_commit()),
                    .threads = static_cast<uint32_t>(thread_count()),
                    .camera = describe_camera(camera),
-                   .triangles = triangles_.count(),
+                   .triangles = triangles_.parts.count(),
                    .instances = scene.instances.size(),
                    .width = settings.width,
                    .height = settings.height,
@@ -94,8 +102,7 @@ private:
     }
 
     void list_structures() {
-        const LabMachine machine = {queue_.is_cuda(), !triangles_.top_level.instances.empty()};
-        report_.combinations = list_combinations(settings_, machine);
+        report_.combinations = list_combinations(settings_, queue_.is_cuda());
         check_any_can_run(report_.combinations);
         for (const CombinationFigures& c : report_.combinations) {
             work_ += c.refused.empty() ? 1 : 0;
@@ -107,15 +114,21 @@ private:
     /// The rays of a frame, and what the proven walk finds, which is held against brute force here.
     void make_sets() {
         progress("building the tree of the proven walk");
-        const BinaryTrees binary = build_binary_trees(triangles_, StructureKind::Binned);
-        const BuiltStructure built(queue_, triangles_, StructureKind::Binned, TreeLayout::Binary, &binary);
-        const auto& proven = std::get<SceneBvhView>(built.trees());
-        const BruteForce oracle(queue_, triangles_);
+        const BinaryTrees binary = build_binary_trees(triangles_.parts, BvhBuilder::Binned);
+        triangles_.top_level = top_level_over(scene_, binary);
+        const Tracer proven = tracer_over(kProven, binary);
+        const BruteForce oracle(queue_, triangles_.parts, triangles_.top_level);
         with_memory_for_rays([&] { trace_sets(proven, oracle); });
         note_heat_maps();
     }
 
-    void trace_sets(const SceneBvhView& proven, const BruteForce& oracle) {
+    Tracer tracer_over(const Combination& combination, const BinaryTrees& trees) {
+        const auto built = std::make_shared<const BuiltStructure>(triangles_.top_level, combination.structure,
+                                                                  layout_of(combination), trees);
+        return {queue_, combination, std::make_shared<const StructureOnDevice>(queue_, built)};
+    }
+
+    void trace_sets(const Tracer& proven, const BruteForce& oracle) {
         std::vector<RaySet> sets = make_rays(proven);
         const bool record = settings_.record_rays > 0;
         int depth = 0;
@@ -142,7 +155,7 @@ private:
         }
     }
 
-    void add_set(const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle, int depth) {
+    void add_set(const RaySet& set, const Tracer& proven, const BruteForce& oracle, int depth) {
         const std::string checking = fmt::format("{}: the proven walk against brute force", set.name);
         progress(checking);
         const uint64_t checked = check_proven_walk(queue_, set, proven, oracle, triangles_, kOracleRays,
@@ -154,7 +167,7 @@ private:
         report_.sets.push_back(sets_.back().figures);
     }
 
-    std::vector<RaySet> make_rays(const SceneBvhView& proven) {
+    std::vector<RaySet> make_rays(const Tracer& proven) {
         progress("making rays");
         const RaySetJob job = {scene_, camera_, settings_.width, settings_.height, ray_tracer(proven)};
         return settings_.record_rays > 0 ? make_record_ray_sets(job, settings_.record_rays)
@@ -201,7 +214,7 @@ private:
     uint64_t pixels() const { return uint64_t(settings_.width) * settings_.height; }
 
     /// By the proven walk, in pieces.
-    RayTracer ray_tracer(const SceneBvhView& proven) {
+    RayTracer ray_tracer(const Tracer& proven) {
         return [this, trace = make_ray_tracer(queue_, proven)](std::span<const Ray> rays, std::span<RayHit> hits) {
             const auto piece = [&](uint64_t begin, uint64_t count) {
                 trace(rays.subspan(begin, count), hits.subspan(begin, count));
@@ -230,15 +243,21 @@ private:
             const std::string failed = unless_memory_lacks([&] {
                 // Builders cannot be stopped inside: an interrupt is heard after the tree and after its conversion.
                 progress(fmt::format("building {}", name_of(structure)));
-                if (is_binary(structure) && !binary) {
-                    binary = build_binary_trees(triangles_, structure);
+                const auto builder = builder_of(structure);
+                if (builder && !binary) {
+                    binary = build_binary_trees(triangles_.parts, *builder);
                     progress(fmt::format("converting {}", name_of(structure)));
                 }
-                const BuiltStructure built(queue_, triangles_, structure, layout, binary ? &*binary : nullptr);
-                report_.structures.push_back(built.figures());
+                const TopLevelBvh& top_level = triangles_.top_level;
+                const auto on_host =
+                    builder ? std::make_shared<const BuiltStructure>(top_level, structure, layout, *binary)
+                            : std::make_shared<const BuiltStructure>(top_level, structure, triangles_.parts);
+                const auto built = std::make_shared<const StructureOnDevice>(queue_, on_host);
+                report_.structures.push_back(on_host->figures());
                 for (CombinationFigures* c : combinations) {
                     c->structure = at;
-                    const std::string lacks = unless_memory_lacks([&] { measure(*c, built); });
+                    const std::string lacks =
+                        unless_memory_lacks([&] { measure(*c, Tracer(queue_, c->combination, built)); });
                     if (!lacks.empty()) c->refused = lacks;
                 }
             });
@@ -265,7 +284,7 @@ private:
         }
     }
 
-    void measure(CombinationFigures& c, const BuiltStructure& built) {
+    void measure(CombinationFigures& c, const Tracer& tracer) {
         measuring_ = &c;
         heat_map_.reset();
         for (uint32_t k = 0; k < sets_.size(); ++k) {
@@ -276,14 +295,12 @@ private:
                 c.runs.push_back(*same);
                 c.runs.back().is_copy = true;
             } else {
-                const WalkKernel* kernel = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
-                PERTEV_CHECK(kernel != nullptr);
                 RunFigures run = {.set = k};
-                if (!check(c, set, *kernel, built, doing, run)) return c.runs.clear();
+                if (!check(c, set, tracer, doing, run)) return c.runs.clear();
                 if (settings_.runs > 0) {
-                    time(set, *kernel, built, doing, run);
-                    count(c, set, built, doing, run);
-                    if (!set.figures.any_hit) take_limits(c, *kernel);
+                    time(set, tracer, doing, run);
+                    count(c, set, tracer, doing, run);
+                    if (!set.figures.any_hit) take_limits(c, tracer);
                 }
                 c.runs.push_back(run);
             }
@@ -306,38 +323,34 @@ private:
         return nullptr;
     }
 
-    void take_limits(CombinationFigures& c, const WalkKernel& kernel) const {
-        if (!queue_.is_cuda() || kernel.limits == nullptr) return;
-        const KernelLimits limits = kernel.limits(!triangles_.top_level.instances.empty());
-        c.registers = limits.registers, c.local_bytes = limits.local_bytes;
-        c.occupancy = static_cast<double>(limits.occupancy);
+    static void take_limits(CombinationFigures& c, const Tracer& tracer) {
+        const auto limits = tracer.limits();
+        if (!limits) return;
+        c.registers = limits->registers, c.local_bytes = limits->local_bytes;
+        c.occupancy = static_cast<double>(limits->occupancy);
     }
 
-    RayBatch batch_of(const TracedSet& set) const { return batch_of(set, 0, set.rays.size()); }
-    RayBatch batch_of(const TracedSet& set, uint64_t begin, uint64_t count) const {
-        return {set.rays.data() + begin, static_cast<uint32_t>(count), pool_.data()};
-    }
+    static uint32_t count_of(const TracedSet& set) { return static_cast<uint32_t>(set.rays.size()); }
     /// A GPU has the whole set at once, as when it is timed: it is soon done. A CPU may have an hour's work.
     template <class Work>
     void over_set(const TracedSet& set, const std::string& doing, const Work& work) {
-        const auto on_batch = [&](uint64_t begin, uint64_t count) { work(batch_of(set, begin, count), begin); };
         if (queue_.is_cuda()) {
-            on_batch(0, set.rays.size());
+            work(0, set.rays.size());
         } else {
-            in_pieces(set.rays.size(), first_piece_of_rays(), on_batch, progress_of(doing));
+            in_pieces(set.rays.size(), first_piece_of_rays(), work, progress_of(doing));
         }
     }
 
     /// False when the combination differs from the proven walk: it has no figures then.
-    bool check(CombinationFigures& c, const TracedSet& set, const WalkKernel& kernel, const BuiltStructure& built,
-               const std::string& doing, RunFigures& run) {
-        Buffer<RayHit> hits(queue_, set.rays.size(), "hits");
-        hits.fill(0xff); // a ray that was forgotten has no result that could be right
-        over_set(set, doing, [&](const RayBatch& batch, uint64_t begin) {
-            kernel.trace(queue_, built.trees(), batch, hits.data() + begin);
+    bool check(CombinationFigures& c, const TracedSet& set, const Tracer& tracer, const std::string& doing,
+               RunFigures& run) {
+        HitsOnDevice hits(queue_, set.rays.size());
+        hits.spoil(); // a ray that was forgotten has no result that could be right
+        over_set(set, doing, [&](uint64_t begin, uint64_t count) {
+            trace(tracer, set.figures.any_hit, set.rays.data() + begin, static_cast<uint32_t>(count), hits.from(begin));
         });
-        std::vector<RayHit> copy;
-        run.different = count_different(hits.read(copy), set.wanted, c.combination.options.is_exact());
+        run.different =
+            count_different(hits.download(set.figures.any_hit), set.wanted, c.combination.options.is_exact());
         if (run.different == 0 || !c.combination.options.is_exact()) return true;
         c.wrong = true;
         c.refused = fmt::format("WRONG: {} of {} {} rays differ from the proven walk; please report it", run.different,
@@ -345,43 +358,35 @@ private:
         return false;
     }
 
-    void time(const TracedSet& set, const WalkKernel& kernel, const BuiltStructure& built, const std::string& doing,
-              RunFigures& run) {
-        const Buffer<RayHit> hits(queue_, set.rays.size(), "hits");
-        const auto trace = [&] { kernel.trace(queue_, built.trees(), batch_of(set), hits.data()); };
-        const RunTimes times = time_runs(queue_, settings_.warm_ups, settings_.runs, trace, [&] { progress(doing); });
+    void time(const TracedSet& set, const Tracer& tracer, const std::string& doing, RunFigures& run) {
+        const HitsOnDevice hits(queue_, set.rays.size());
+        const auto trace_set = [&] {
+            trace(tracer, set.figures.any_hit, set.rays.data(), count_of(set), hits.from(0));
+        };
+        const RunTimes times =
+            time_runs(queue_, settings_.warm_ups, settings_.runs, trace_set, [&] { progress(doing); });
         run.median_s = times.median, run.least_s = times.least, run.largest_s = times.greatest;
     }
 
-    void count(const CombinationFigures& c, const TracedSet& set, const BuiltStructure& built, const std::string& doing,
+    void count(const CombinationFigures& c, const TracedSet& set, const Tracer& tracer, const std::string& doing,
                RunFigures& run) {
-        const WalkKernel* own = find_kernel(c.combination, set.figures.any_hit, queue_.is_cuda());
-        const WalkKernel* counting = own;
-        // What a ray tests does not depend on how it came to its thread, unless its warp has a say in it.
-        const bool company = c.combination.walk == WalkKind::Speculative || c.combination.walk == WalkKind::Packet;
-        if (own->count == nullptr && !company) {
-            Combination plain = c.combination;
-            plain.distribution = Distribution::OneAThread;
-            counting = find_kernel(plain, set.figures.any_hit, queue_.is_cuda());
-        }
-        if (counting != nullptr && counting->count != nullptr) {
-            const Buffer<RayWork> on_device(queue_, set.rays.size(), "ray work");
-            over_set(set, doing, [&](const RayBatch& batch, uint64_t begin) {
-                counting->count(queue_, built.trees(), batch, on_device.data() + begin);
-            });
+        const Buffer<RayWork> on_device(queue_, set.rays.size(), "ray work");
+        bool counted = true;
+        over_set(set, doing, [&](uint64_t begin, uint64_t count) {
+            counted = tracer.count_work(set.figures.any_hit, all_candidates(set.rays.data() + begin),
+                                        static_cast<uint32_t>(count), on_device.data() + begin);
+        });
+        if (counted) {
             const std::vector<RayWork> work = on_device.download();
             const WorkSummary summary = summarize_work(work);
             run.nodes = summary.nodes, run.triangles = summary.triangles;
             if (wants_heat_map(c, set)) make_heat_map(c, set, run, work);
         }
-        if (queue_.is_cuda() && own->count_lanes != nullptr) count_lanes(*own, set, built, run);
+        const auto lanes = tracer.count_lanes(set.figures.any_hit, all_candidates(set.rays.data()), count_of(set));
+        if (lanes) take_lanes(*lanes, run);
     }
 
-    void count_lanes(const WalkKernel& kernel, const TracedSet& set, const BuiltStructure& built, RunFigures& run) {
-        Buffer<LaneCounts> on_device(queue_, 1, "lane counts");
-        on_device.zero();
-        kernel.count_lanes(queue_, built.trees(), batch_of(set), on_device.data());
-        const LaneCounts counts = on_device.download().front();
+    static void take_lanes(const LaneCounts& counts, RunFigures& run) {
         const auto ratio = [](uint64_t a, uint64_t b) {
             return b > 0 ? std::optional(static_cast<double>(a) / static_cast<double>(b)) : std::nullopt;
         };
@@ -432,7 +437,6 @@ private:
     const LabSettings& settings_;
     const std::function<bool(const LabProgress&)>& keep_going_;
     LabTriangles triangles_;
-    Buffer<uint32_t> pool_;
     std::vector<StructureKind> structures_;
     std::vector<TracedSet> sets_;
     LabReport report_;

@@ -1,17 +1,15 @@
 #pragma once
 
-// One walk over a set of rays, as a stage: a ray in (32 bytes), what it met out (12). Every walk of the laboratory runs
-// as this stage, so that their results can be compared byte for byte and their times with each other. A walk's .cu file
-// instantiates launch() of the stages it is run with; lab/trace_rays.cu does so for the walk of pictures.
+// What rays meet, as the laboratory compares it, and where that lies on a device.
 
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
-#include "base/host_device.h"
-#include "device/launch.h"
-#include "trace/trace_any.h"
-#include "trace/trace_closest.h"
+#include "device/buffer.h"
+#include "render/ray_queue.h"
+#include "render/tracer/tracer.h"
 
 namespace pertev {
 
@@ -25,65 +23,42 @@ struct RayHit {
     HD bool is_hit() const { return instance != kNoHit; }
     bool operator==(const RayHit&) const = default;
 };
-static_assert(sizeof(RayHit) == 12 && sizeof(Ray) == 32);
 
-/// rays[i], by two loads of 16 bytes on the device; `rays` begins on a multiple of 16 there, as every buffer does.
-HD inline Ray load_ray(const Ray* rays, uint32_t i) {
-#if PERTEV_ON_DEVICE
-    const float4* from = reinterpret_cast<const float4*>(rays) + 2 * static_cast<uint64_t>(i);
-    const float4 a = __ldg(from), b = __ldg(from + 1);
-    return {{a.x, a.y, a.z}, a.w, {b.x, b.y, b.z}, b.w};
-#else
-    return rays[i];
-#endif
-}
+/// Room for what a set of rays meets.
+class HitsOnDevice {
+public:
+    /// Throws Error(OutOfMemory).
+    HitsOnDevice(Queue& queue, std::size_t rays) : places_(queue, rays, "hits"), instances_(queue, rays, "hits") {}
 
-/// What the ray meets, told to `counter`.
-template <class Walk, bool kAny, class Scene, class Counter>
-HD inline RayHit trace_ray(const Scene& scene, const Ray& ray, const Counter& counter) {
-    const AcceptAll accept;
-    if constexpr (kAny) {
-        return {0.0f, trace_any<Walk>(scene, ray, accept, counter) ? 0u : kNoHit, 0u};
+    /// Of the rays from number `first` on.
+    HitQueueView from(std::size_t first) const { return {places_.data() + first, instances_.data() + first}; }
+    /// No ray has this result.
+    void spoil() {
+        places_.fill(0xff);
+        instances_.fill(0xfe);
+    }
+    std::vector<RayHit> download(bool any_hit) const;
+
+private:
+    Buffer<Float4> places_;
+    Buffer<uint32_t> instances_;
+};
+
+/// Rays [0, count) that lie in a device's memory, of which every candidate counts.
+inline TraceQuery all_candidates(const Ray* rays) { return {.rays = {.rays = rays}}; }
+
+inline void trace(const Tracer& tracer, bool any_hit, const Ray* rays, uint32_t count, const HitQueueView& hits) {
+    if (any_hit) {
+        tracer.find_occlusions(all_candidates(rays), count, hits);
     } else {
-        Hit hit;
-        trace_closest<Walk>(scene, ray, accept, hit, counter);
-        return {hit.t, hit.instance, hit.primitive};
+        tracer.find_hits(all_candidates(rays), count, hits);
     }
 }
-
-/// `Scene` is SceneTrees or SingleTree of what the walk walks.
-template <class Walk, bool kAny, class Scene = SceneTrees<typename Walk::Tree>>
-struct TraceRays {
-    Scene scene;
-    const Ray* rays;
-    RayHit* hits;
-
-    HD void operator()(uint32_t i) const { hits[i] = trace_ray<Walk, kAny>(scene, load_ray(rays, i), NoWalkCounter{}); }
-};
-
-/// What one ray cost: nodes and triangles that were tested.
-struct RayWork {
-    uint32_t nodes = 0, triangles = 0;
-};
-
-/// The same walk, counted. A stage of its own, so that the counting costs the timed one nothing.
-template <class Walk, bool kAny>
-struct CountRays {
-    SceneTrees<typename Walk::Tree> scene;
-    const Ray* rays;
-    RayWork* work;
-
-    HD void operator()(uint32_t i) const {
-        uint64_t nodes = 0, triangles = 0;
-        trace_ray<Walk, kAny>(scene, load_ray(rays, i), WalkCounter{&nodes, &triangles});
-        work[i] = {static_cast<uint32_t>(nodes), static_cast<uint32_t>(triangles)};
-    }
-};
 
 /// What many rays meet first; both spans are the host's and equally long.
 using RayTracer = std::function<void(std::span<const Ray>, std::span<RayHit>)>;
 
-/// By the walk that pictures are made with, on the queue's device, where the trees lie. `queue` outlives it.
-RayTracer make_ray_tracer(Queue& queue, const SceneBvhView& scene);
+/// On the queue's device, where the tracer is. Both outlive it.
+RayTracer make_ray_tracer(Queue& queue, const Tracer& tracer);
 
 } // namespace pertev

@@ -19,11 +19,11 @@ BvhTriangle some_triangle(const LabTriangles& triangles, uint32_t& state) {
         return std::min(static_cast<std::size_t>(draw(state) * static_cast<float>(count)), count - 1);
     };
     const auto& instances = triangles.top_level.instances;
-    const bool baked = instances.empty() || (!triangles.baked.empty() && draw(state) < 0.5f);
-    if (baked) return triangles.baked[below(triangles.baked.size())];
+    const bool baked = instances.empty() || (!triangles.parts.baked.empty() && draw(state) < 0.5f);
+    if (baked) return triangles.parts.baked[below(triangles.parts.baked.size())];
     const InstanceRecord& record = instances[below(instances.size())];
     const Transform world_from_local = inverse(record.local_from_world);
-    BvhTriangle t = triangles.meshes[record.mesh_bvh][below(triangles.meshes[record.mesh_bvh].size())];
+    BvhTriangle t = triangles.parts.meshes[record.mesh_bvh][below(triangles.parts.meshes[record.mesh_bvh].size())];
     t.a = transform_point(world_from_local, t.a);
     t.b = transform_point(world_from_local, t.b);
     t.c = transform_point(world_from_local, t.c);
@@ -68,21 +68,15 @@ bool differs(const RayHit& a, const RayHit& b, bool exact) {
     return exact ? !(a == b) : a.instance != b.instance || (a.is_hit() && a.primitive != b.primitive);
 }
 
-std::vector<RayHit> trace_proven(Queue& queue, const SceneBvhView& proven, bool any_hit, const Buffer<Ray>& rays,
+std::vector<RayHit> trace_proven(Queue& queue, const Tracer& proven, bool any_hit, const Buffer<Ray>& rays,
                                  const PieceDone& done) {
-    const Buffer<RayHit> hits(queue, rays.size(), "hits");
-    const auto trace_piece = [&](uint64_t begin, uint64_t size) {
-        const auto count = static_cast<uint32_t>(size);
-        const Ray* from = rays.data() + begin;
-        if (any_hit) {
-            launch(queue, "proven walk", count, TraceRays<StackWalk, true>{proven, from, hits.data() + begin});
-        } else {
-            launch(queue, "proven walk", count, TraceRays<StackWalk, false>{proven, from, hits.data() + begin});
-        }
+    const HitsOnDevice hits(queue, rays.size());
+    const auto trace_piece = [&](uint64_t begin, uint64_t count) {
+        trace(proven, any_hit, rays.data() + begin, static_cast<uint32_t>(count), hits.from(begin));
         queue.wait();
     };
     in_pieces(rays.size(), first_piece_of_rays(), trace_piece, done);
-    return hits.download();
+    return hits.download(any_hit);
 }
 
 } // namespace
@@ -96,7 +90,7 @@ std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, u
     return rays;
 }
 
-uint64_t check_proven_walk(Queue& queue, const RaySet& set, const SceneBvhView& proven, const BruteForce& oracle,
+uint64_t check_proven_walk(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
                            const LabTriangles& triangles, uint32_t count, uint32_t nasty_count, const PieceDone& done) {
     const std::vector<Ray> some = oracle_rays(set, triangles, count, nasty_count);
     const std::vector<RayHit> truth = oracle.trace(some, done);
@@ -113,7 +107,7 @@ uint64_t check_proven_walk(Queue& queue, const RaySet& set, const SceneBvhView& 
     return some.size();
 }
 
-TracedSet trace_set(Queue& queue, const RaySet& set, const SceneBvhView& proven, const PieceDone& done) {
+TracedSet trace_set(Queue& queue, const RaySet& set, const Tracer& proven, const PieceDone& done) {
     TracedSet traced;
     traced.rays = Buffer<Ray>(queue, std::span<const Ray>(set.rays), set.name + " rays");
     traced.wanted = trace_proven(queue, proven, set.any_hit, traced.rays, done);

@@ -1,19 +1,40 @@
 #include "render/hidden_back_share.h"
 
+#include <vector>
+
 #include "device/buffer.h"
-#include "device/launch.h"
-#include "render/count_hidden_backs.h"
+#include "math/random.h"
 
 namespace pertev {
 
-double hidden_back_share(Queue& queue, const PictureView& picture) {
+double hidden_back_share(Queue& queue, SceneTracer& tracer, const PictureView& picture) {
     if (picture.scene.any_hidden_back == 0) return 0;
-    Buffer<uint32_t> count(queue, 1, "count of hidden backs");
-    count.zero();
-    launch(queue, "count_hidden_backs", CountHiddenBacks::kRays,
-           CountHiddenBacks{picture.scene, picture.camera.view, static_cast<float>(picture.camera.width),
-                            static_cast<float>(picture.camera.height), count.data()});
-    return static_cast<double>(count.download()[0]) / CountHiddenBacks::kRays;
+    constexpr uint32_t kSide = 64, kRays = kSide * kSide;
+    const float width = static_cast<float>(picture.camera.width), height = static_cast<float>(picture.camera.height);
+    std::vector<Ray> rays;
+    std::vector<uint32_t> keys;
+    for (uint32_t i = 0; i < kRays; ++i) {
+        const Vec2 place = {(static_cast<float>(i % kSide) + 0.5f) * (width / kSide),
+                            (static_cast<float>(i / kSide) + 0.5f) * (height / kSide)};
+        rays.push_back(make_camera_ray(picture.camera.view, place, {0.5f, 0.5f})); // through the middle of the lens
+        keys.push_back(hash_words(i, 0, 0, 0).x);
+    }
+    const Buffer<Ray> rays_there(queue, std::span<const Ray>(rays), "rays of a look at backs");
+    const Buffer<uint32_t> keys_there(queue, std::span<const uint32_t>(keys), "keys of a look at backs");
+    const Buffer<Float4> places(queue, kRays, "hits of a look at backs");
+    const auto find = [&](RayKind kind) {
+        const Buffer<uint32_t> instances(queue, kRays, "hits of a look at backs");
+        tracer.find_hits(kind, {.rays = rays_there.data(), .keys = keys_there.data()}, kRays,
+                         {places.data(), instances.data()});
+        return std::pair(places.download(), instances.download());
+    };
+    const auto [met, met_instances] = find(RayKind::Bounce); // which see backs
+    const auto [seen, seen_instances] = find(RayKind::Camera);
+    uint32_t passed = 0;
+    for (uint32_t i = 0; i < kRays; ++i) {
+        passed += met_instances[i] != seen_instances[i] || bits_of(met[i].w) != bits_of(seen[i].w) ? 1 : 0;
+    }
+    return static_cast<double>(passed) / kRays;
 }
 
 } // namespace pertev

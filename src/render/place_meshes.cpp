@@ -109,6 +109,20 @@ std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh) {
     return triangles;
 }
 
+SceneTriangles::SceneTriangles(const Scene& scene, const MeshPlacement& placement)
+    : baked(baked_triangles(scene, placement)), meshes(placement.mesh_tree_count) {
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        const uint32_t tree = placement.tree_of_mesh[i];
+        if (tree != kBakedMesh) meshes[tree] = mesh_triangles(scene.meshes[i]);
+    }
+}
+
+uint64_t SceneTriangles::count() const {
+    uint64_t count = baked.size();
+    for (const auto& mesh : meshes) count += mesh.size();
+    return count;
+}
+
 std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement,
                                     std::span<const Bounds3> bounds) {
     std::vector<PlacedBvh> placed;

@@ -42,6 +42,18 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
 /// The triangles of a mesh, in its own space.
 std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh);
 
+/// A scene's triangles as builders take them.
+struct SceneTriangles {
+    std::vector<BvhTriangle> baked;
+    std::vector<std::vector<BvhTriangle>> meshes; // of each mesh that keeps a tree of its own
+
+    SceneTriangles(const Scene& scene, const MeshPlacement& placement);
+    uint64_t count() const;
+    /// 0 the baked ones, then those of the meshes.
+    const std::vector<BvhTriangle>& part(std::size_t number) const { return number == 0 ? baked : meshes[number - 1]; }
+    std::size_t parts() const { return 1 + meshes.size(); }
+};
+
 /// What the top level is built from; `bounds` are of the mesh trees.
 std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement,
                                     std::span<const Bounds3> bounds);

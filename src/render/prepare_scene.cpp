@@ -45,19 +45,18 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
                         counted(placement.copies, "instance"), placement.copied_triangles));
     }
 
-    prepared.baked = load_or_build_bvh(baked_triangles(scene, placement), options.bvh, options.bvh_cache, messages);
-    prepared.mesh_bvhs.resize(placement.mesh_tree_count);
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        if (placement.tree_of_mesh[i] == kBakedMesh) continue;
-        prepared.mesh_bvhs[placement.tree_of_mesh[i]] =
-            load_or_build_bvh(mesh_triangles(scene.meshes[i]), options.bvh, options.bvh_cache, messages);
+    const SceneTriangles triangles(scene, placement);
+    const auto trees = std::make_shared<std::vector<Bvh>>();
+    for (std::size_t part = 0; part < triangles.parts(); ++part) {
+        trees->push_back(load_or_build_bvh(triangles.part(part), options.bvh, options.bvh_cache, messages));
     }
     std::vector<Bounds3> bounds;
-    for (const Bvh& bvh : prepared.mesh_bvhs) bounds.push_back(bvh.bounds);
+    for (std::size_t part = 1; part < trees->size(); ++part) bounds.push_back((*trees)[part].bounds);
     prepared.top_level = build_top_level_bvh(placed_trees(scene, placement, bounds));
-    prepared.triangles = prepared.baked.triangles.size();
-    for (const Bvh& bvh : prepared.mesh_bvhs) prepared.triangles += bvh.triangles.size();
-    prepared.build_seconds = watch.seconds();
+    prepared.triangles = triangles.count();
+    prepared.trees.parts = trees;
+    prepared.build_seconds = prepared.trees.build_s = watch.seconds();
+    prepared.structures = std::make_shared<SceneStructures>(scene, prepared.centre, prepared.trees, prepared.top_level);
 
     prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages, prepared.centre);
     balance_lights(prepared, srgb_decode_table().data());

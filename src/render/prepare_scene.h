@@ -11,6 +11,7 @@
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "base/messages.h"
+#include "render/tracer/scene_structures.h"
 #include "scene/scene.h"
 #include "shading/build_light_set.h"
 
@@ -23,15 +24,15 @@ struct PrepareOptions {
 };
 
 struct PreparedScene {
-    const Scene* scene = nullptr; // outlives this
-    Vec3 centre;                  // origin of the moved world, in the file's coordinates, metres
-    std::vector<bool> is_baked;   // of each instance
-    Bvh baked;                    // all baked instances, moved world
-    std::vector<Bvh> mesh_bvhs;   // of the meshes that are not baked everywhere, local space
-    TopLevelBvh top_level;        // over the instances that are not baked
-    LightSetData lights;          // moved world
-    uint64_t triangles = 0;       // in all trees
-    double build_seconds = 0;     // trees alone, built or read from the cache
+    const Scene* scene = nullptr;                // outlives this
+    Vec3 centre;                                 // origin of the moved world, in the file's coordinates, metres
+    std::vector<bool> is_baked;                  // of each instance
+    BinaryTrees trees;                           // moved world and local spaces
+    TopLevelBvh top_level;                       // over the instances that are not baked
+    std::shared_ptr<SceneStructures> structures; // of `trees` and of others, built when they are asked for
+    LightSetData lights;                         // moved world
+    uint64_t triangles = 0;                      // in all trees
+    double build_seconds = 0;                    // placement and trees, built or read from the cache
 };
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);

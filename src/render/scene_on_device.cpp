@@ -2,7 +2,6 @@
 
 #include <span>
 
-#include "accel/bvh/wide_bvh.h"
 #include "image/srgb_table.h"
 
 namespace pertev {
@@ -17,36 +16,11 @@ const T* SceneOnDevice::keep(Queue& queue, std::span<const T> values, const std:
 
 SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) {
     const Scene& scene = *prepared.scene;
-    upload_trees(queue, prepared);
     upload_meshes(queue, scene);
     upload_instances(queue, prepared);
     upload_images(queue, scene);
     upload_lights(queue, prepared.lights);
     view_.centre = prepared.centre;
-}
-
-BvhView SceneOnDevice::upload(Queue& queue, const Bvh& bvh, const std::string& name) {
-    BvhView view = view_of(bvh);
-    view.nodes = keep(queue, std::span(bvh.nodes), name + " nodes");
-    view.triangles = keep(queue, std::span(bvh.triangles), name + " triangles");
-    if (!queue.is_cuda()) {
-        const std::vector<WideBvhNode<8>> wide = make_wide_nodes(bvh);
-        view.wide = keep(queue, std::span(wide), name + " wide nodes");
-    }
-    return view;
-}
-
-void SceneOnDevice::upload_trees(Queue& queue, const PreparedScene& prepared) {
-    SceneBvhView& view = view_.bvh;
-    view.top_root = prepared.top_level.root;
-    view.top_reach = prepared.top_level.reach;
-    view.top_growth = prepared.top_level.growth;
-    view.baked = upload(queue, prepared.baked, "tree");
-    std::vector<BvhView> meshes;
-    for (const Bvh& bvh : prepared.mesh_bvhs) meshes.push_back(upload(queue, bvh, "mesh tree"));
-    view.meshes = keep(queue, std::span<const BvhView>(meshes), "mesh trees");
-    view.top_nodes = keep(queue, std::span(prepared.top_level.nodes), "top level nodes");
-    view.instances = keep(queue, std::span(prepared.top_level.instances), "top level instances");
 }
 
 void SceneOnDevice::upload_meshes(Queue& queue, const Scene& scene) {
@@ -121,10 +95,7 @@ void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
 
 std::size_t predicted_bytes(const PreparedScene& prepared) {
     const auto bytes_of = [](const auto& values) { return values.size() * sizeof(values[0]); };
-    std::size_t bytes = bytes_of(prepared.top_level.nodes) + bytes_of(prepared.top_level.instances);
-    const auto add_tree = [&](const Bvh& bvh) { bytes += bytes_of(bvh.nodes) + bytes_of(bvh.triangles); };
-    add_tree(prepared.baked);
-    for (const Bvh& bvh : prepared.mesh_bvhs) add_tree(bvh);
+    std::size_t bytes = 0;
     const Scene& scene = *prepared.scene;
     for (const Mesh& mesh : scene.meshes) {
         bytes += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.tangents) + bytes_of(mesh.uv[0]) +

@@ -18,8 +18,6 @@ public:
     const SceneView& view() const { return view_; }
 
 private:
-    BvhView upload(Queue& queue, const Bvh& bvh, const std::string& name);
-    void upload_trees(Queue& queue, const PreparedScene& prepared);
     void upload_meshes(Queue& queue, const Scene& scene);
     void upload_instances(Queue& queue, const PreparedScene& prepared);
     void upload_images(Queue& queue, const Scene& scene);

@@ -11,7 +11,7 @@
 #include "shading/light_set.h"
 #include "shading/material_view.h"
 #include "shading/texture_lookup.h"
-#include "trace/scene_bvh.h"
+#include "trace/ray.h"
 
 namespace pertev {
 
@@ -37,7 +37,6 @@ struct InstanceView {
 };
 
 struct SceneView {
-    SceneBvhView bvh;
     const InstanceView* instances;
     const MeshView* meshes;
     const MaterialView* materials;

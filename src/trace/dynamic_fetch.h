@@ -2,8 +2,8 @@
 
 // Persistent threads with dynamic fetch: lanes whose rays are done get new ones while the others are still on their
 // way, as soon as fewer than Place::kRefillBelow of a warp's lanes are at work. The loop of the walk is the kernel, so
-// this is for walks that can be left between two turns (WhileWhileWalk, SpeculativeWalk, CompressedWalk) over one tree;
-// a scene with instances has more than one, and is for the caller to refuse. Included by .cu files alone (see
+// this is for walks that can be left between two turns (WhileWhileWalk, SpeculativeWalk, CompressedWalk). In a scene
+// with instances each lane goes from tree to tree by itself (trace/scene_place.h). Included by .cu files alone (see
 // device/launch_body.h).
 //
 // Such a walk has, besides what all have (trace/walk_scene.h),
@@ -17,6 +17,7 @@
 // 2012.
 
 #include <cstdint>
+#include <type_traits>
 
 #include "base/error.h"
 #include "base/host_device.h"
@@ -24,28 +25,29 @@
 #include "device/queue.h"
 #include "trace/kernel_limits.h"
 #include "trace/persistent.h"
+#include "trace/scene_place.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 #include "trace/warp_vote.h"
 
 namespace pertev {
 
-/// The visitor of one kind of search, made anew for each ray, and what the search found.
-template <bool kAny>
+/// The visitor of one kind of search, made anew for each ray, and what the search found. `accept` outlives it.
+template <bool kAny, class Accept>
 struct RaySearch;
 
-template <>
-struct RaySearch<false> {
-    ClosestVisitor<AcceptAll> visitor;
-    HD RaySearch(const AcceptAll& accept, float t_max) : visitor{accept, Hit{.t = t_max}} {}
+template <class Accept>
+struct RaySearch<false, Accept> {
+    ClosestVisitor<Accept> visitor;
+    HD RaySearch(const Accept& accept, float t_max) : visitor{accept, Hit{.t = t_max}} {}
     HD void restart(float t_max) { visitor.best = Hit{.t = t_max}; }
     HD Hit hit() const { return visitor.best; }
 };
 
-template <>
-struct RaySearch<true> {
-    AnyVisitor<AcceptAll> visitor;
-    HD RaySearch(const AcceptAll& accept, float t_max) : visitor{accept, t_max} {}
+template <class Accept>
+struct RaySearch<true, Accept> {
+    AnyVisitor<Accept> visitor;
+    HD RaySearch(const Accept& accept, float t_max) : visitor{accept, t_max} {}
     HD void restart(float t_max) {
         visitor.t_max = t_max;
         visitor.found = false;
@@ -55,18 +57,18 @@ struct RaySearch<true> {
 
 #if PERTEV_HAS_KERNELS
 
-template <class Walk, bool kAny, class Rays, class Counter>
+template <class Walk, bool kAny, class Scene, class Rays, class Counter>
 __global__ void __launch_bounds__(kWalkThreads)
-    run_dynamic_fetch(typename Walk::Tree tree, Rays rays, uint32_t count, uint32_t* pool, Counter counter) {
-    using Visitor = decltype(RaySearch<kAny>::visitor);
+    run_dynamic_fetch(Scene scene, Rays rays, uint32_t count, uint32_t* pool, Counter counter) {
     constexpr LaneMask kWarp = 0xffffffffu;
     constexpr uint32_t kNoRay = 0xffffffffu;
-    const AcceptAll accept;
-    typename Walk::Place::Slot slots[Walk::Place::kSlots];
-    typename Walk::Place place(slots); // done, as it is whenever there is no ray
-    RaySearch<kAny> search(accept, 0);
-    Ray ray;
     uint32_t index = kNoRay;
+    typename Walk::Place::Slot slots[Walk::Place::kSlots];
+    ScenePlace<Walk, Scene> place(slots); // done, as it is whenever there is no ray
+    auto accept = rays.accept(index);
+    using Search = RaySearch<kAny, decltype(accept)>;
+    Search search(accept, 0);
+    Ray ray;
     bool pool_is_empty = false; // alike in all lanes, as is what leads out of this loop
     for (;;) {
         if (!pool_is_empty) {
@@ -78,14 +80,15 @@ __global__ void __launch_bounds__(kWalkThreads)
             if (index == kNoRay && next < count) {
                 index = next;
                 ray = rays.load(index);
+                accept.i = index;
                 search.restart(ray.t_max);
-                Walk::template start<Visitor>(tree, ray, place);
+                place.template start<decltype(Search::visitor)>(scene, ray);
             }
         }
         if (ballot(kWarp, index != kNoRay) == 0) return; // then the pool is empty too
         const auto count_working = [&] { return count_lanes(ballot(kWarp, !place.is_done())); };
         for (int working = count_working(); working != 0;) { // with all lanes, since votes of a whole warp cost least
-            if (Walk::turn(tree, ray, kNoHit, place, search.visitor, counter, kWarp, working)) place.stop();
+            place.turn(scene, ray, search.visitor, counter, kWarp, working);
             working = count_working();
             if (!pool_is_empty && working < Walk::Place::kRefillBelow) break;
         }
@@ -99,33 +102,34 @@ __global__ void __launch_bounds__(kWalkThreads)
 
 #endif
 
-/// Walks one tree, whose triangles carry their instance, for rays [0, count), count <= kMaxPoolCount. `rays` has
-/// `Ray load(uint32_t i) const` and `void store(uint32_t i, const Hit&) const`, host-device; of an any-hit search the
-/// hit's instance alone counts: kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. On the
-/// CPU this is one ray after the other.
-template <class Walk, bool kAny, class Rays, class Counter = NoWalkCounter>
-void launch_dynamic_fetch(Queue& queue, const char* name, const typename Walk::Tree& tree, const Rays& rays,
-                          uint32_t count, uint32_t* pool, const Counter& counter = {}) {
+/// Walks a scene (SceneTrees or SingleTree) for rays [0, count), count <= kMaxPoolCount. `rays` has `Ray load(uint32_t
+/// i) const`, `accept(uint32_t i) const`, an Accept (trace/trace_closest.h) with a member `i` that names its ray, and
+/// `void store(uint32_t i, const Hit&) const`, all host-device; of an any-hit search the hit's instance alone counts:
+/// kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. On the CPU this is one ray after
+/// the other.
+template <class Walk, bool kAny, class Scene, class Rays, class Counter = NoWalkCounter>
+void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, const Rays& rays, uint32_t count,
+                          uint32_t* pool, const Counter& counter = {}) {
     PERTEV_CHECK(count <= kMaxPoolCount);
     if (count == 0) return;
     const Queue::Scope scope(queue, name);
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
-        static const KernelLimits limits = limits_of(run_dynamic_fetch<Walk, kAny, Rays, Counter>);
+        static const KernelLimits limits = limits_of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>);
         const uint32_t blocks = blocks_that_fit(limits, count);
         queue.zero(pool, sizeof *pool);
         run_dynamic_fetch<Walk, kAny>
-            <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(tree, rays, count, pool, counter);
+            <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);
         return queue.check_launch();
     }
 #endif
     static_cast<void>(pool);
     parallel_for(count, 256, [&](uint64_t k) {
         const uint32_t i = static_cast<uint32_t>(k);
-        const AcceptAll accept;
+        const auto accept = rays.accept(i);
         const Ray ray = rays.load(i);
-        RaySearch<kAny> search(accept, ray.t_max);
-        Walk::walk(tree, ray, kNoHit, search.visitor, counter);
+        RaySearch<kAny, std::remove_const_t<decltype(accept)>> search(accept, ray.t_max);
+        walk_scene<Walk>(scene, ray, search.visitor, counter);
         rays.store(i, search.hit());
     });
 }

@@ -144,7 +144,7 @@ public:
         const PacketBoxes boxes = make_packet_boxes(rays_, alive_, [&](const Ray& ray) {
             return make_ray_boxes(ray.origin, ray.direction, scene_.top_reach, scene_.top_growth);
         });
-        walk_packet<Visitor::kNearestFirst>(
+        walk_packet<true>(
             scene_.top_nodes, scene_.top_root, boxes, limits_, alive_, counter_, [&](uint32_t link, unsigned mask) {
                 const InstanceRecord& record = scene_.instances[link & ~kLeafBit];
                 RayPacket local;
@@ -197,13 +197,18 @@ private:
     alignas(32) float limits_[kPacketRays] = {};
 };
 
+/// What counts for each ray of a packet.
+template <class Accept>
+using PacketAccepts = std::array<Accept, kPacketRays>;
+
 /// trace_closest of the rays in `active`; the mask of those that meet something. Other hits are left as they are.
 template <WalkOptions kOptions, class Accept, class Counter = NoWalkCounter>
-unsigned trace_packet_closest(const SceneBvhView& scene, const RayPacket& rays, unsigned active, const Accept& accept,
-                              std::array<Hit, kPacketRays>& hits, const Counter& counter = {}) {
+unsigned trace_packet_closest(const SceneBvhView& scene, const RayPacket& rays, unsigned active,
+                              const PacketAccepts<Accept>& accepts, std::array<Hit, kPacketRays>& hits,
+                              const Counter& counter = {}) {
     using Visitor = ClosestVisitor<Accept>;
     auto visitors = [&]<std::size_t... k>(std::index_sequence<k...>) {
-        return std::array<Visitor, kPacketRays>{Visitor{accept, Hit{.t = rays[k].t_max}}...};
+        return std::array<Visitor, kPacketRays>{Visitor{accepts[k], Hit{.t = rays[k].t_max}}...};
     }(std::make_index_sequence<kPacketRays>());
     PacketTracer<kOptions, Visitor, Counter>(scene, rays, visitors, active, counter).run();
     unsigned found = 0;
@@ -217,11 +222,11 @@ unsigned trace_packet_closest(const SceneBvhView& scene, const RayPacket& rays, 
 
 /// trace_any of the rays in `active`: the mask of those that meet something.
 template <WalkOptions kOptions, class Accept, class Counter = NoWalkCounter>
-unsigned trace_packet_any(const SceneBvhView& scene, const RayPacket& rays, unsigned active, const Accept& accept,
-                          const Counter& counter = {}) {
+unsigned trace_packet_any(const SceneBvhView& scene, const RayPacket& rays, unsigned active,
+                          const PacketAccepts<Accept>& accepts, const Counter& counter = {}) {
     using Visitor = AnyVisitor<Accept>;
     auto visitors = [&]<std::size_t... k>(std::index_sequence<k...>) {
-        return std::array<Visitor, kPacketRays>{Visitor{accept, rays[k].t_max}...};
+        return std::array<Visitor, kPacketRays>{Visitor{accepts[k], rays[k].t_max}...};
     }(std::make_index_sequence<kPacketRays>());
     PacketTracer<kOptions, Visitor, Counter>(scene, rays, visitors, active, counter).run();
     unsigned found = 0;

@@ -7,6 +7,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "base/host_device.h"
 #include "math/transform.h"
 #include "trace/ray.h"
@@ -25,6 +26,7 @@ struct SceneTrees {
     float top_reach = 0, top_growth = 0; // TopLevelBvh's
 };
 using SceneBvhView = SceneTrees<BvhView>;
+using HostTrees = SceneTrees<WideBvhView<8>>; // what a CPU walks by default (trace/walk_wide.h)
 
 /// A scene all of whose triangles are baked. Its walk has no top level in it, which saves a kernel registers.
 template <class Tree>

@@ -11,7 +11,6 @@ namespace pertev {
 
 template <class Accept>
 struct AnyVisitor {
-    static constexpr bool kNearestFirst = false;
     const Accept& accept;
     float t_max;
     bool found = false;
@@ -23,7 +22,7 @@ struct AnyVisitor {
     }
 };
 
-template <class Walk = StackWalk, class Scene, class Accept, class Counter = NoWalkCounter>
+template <class Walk = PlainWalk, class Scene, class Accept, class Counter = NoWalkCounter>
 HD inline bool trace_any(const Scene& scene, const Ray& ray, const Accept& accept, const Counter& counter = {}) {
     AnyVisitor<Accept> visitor = {accept, ray.t_max};
     walk_scene<Walk>(scene, ray, visitor, counter);

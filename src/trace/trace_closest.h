@@ -17,7 +17,6 @@ struct AcceptAll {
 
 template <class Accept>
 struct ClosestVisitor {
-    static constexpr bool kNearestFirst = true;
     const Accept& accept;
     Hit best;
 
@@ -34,7 +33,7 @@ struct ClosestVisitor {
 /// True and `hit` when there is a candidate; else false and hit.instance is kNoHit. `accept(instance, primitive, u, v)`
 /// is a pure function: a walk may ask it in any order, and about any subset that decides the result. `scene` is
 /// SceneTrees or SingleTree of what the walk walks.
-template <class Walk = StackWalk, class Scene, class Accept, class Counter = NoWalkCounter>
+template <class Walk = PlainWalk, class Scene, class Accept, class Counter = NoWalkCounter>
 HD inline bool trace_closest(const Scene& scene, const Ray& ray, const Accept& accept, Hit& hit,
                              const Counter& counter = {}) {
     ClosestVisitor<Accept> visitor = {accept, {}};

@@ -15,6 +15,11 @@ struct NoWalkCounter {
     HD void add_triangle(const void*) const {}
 };
 
+/// What one ray cost: nodes and triangles that were tested.
+struct RayWork {
+    uint32_t nodes = 0, triangles = 0;
+};
+
 struct WalkCounter {
     uint64_t* nodes;
     uint64_t* triangles;

@@ -22,6 +22,7 @@ struct WalkOptions {
     TestKind tests = TestKind::Exact;
     bool rta_at_pops = true; // off: RTA at nodes alone; the compressed walk has that, the others do not
 
+    constexpr bool operator==(const WalkOptions&) const = default;
     constexpr bool is_exact() const { return tests == TestKind::Exact; }
 };
 

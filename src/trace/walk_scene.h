@@ -2,7 +2,6 @@
 
 // The walk of a whole scene: the baked tree first, then each instance that the top level leads to. Closest and any hit
 // differ only in the visitor:
-//   static constexpr bool kNearestFirst              whether nearer boxes should be entered first
 //   float limit() const                              a box whose entry is greater holds nothing of interest
 //   bool visit(instance, primitive, TriangleHit)     sees each candidate; true ends the walk
 // The set of triangles that a visitor sees may differ between structures; what it makes of them may not.
@@ -12,11 +11,8 @@
 #include "base/host_device.h"
 #include "base/limits.h"
 #include "trace/scene_bvh.h"
-#include "trace/test_leaf.h"
 #include "trace/walk_tree.h"
-#if !PERTEV_ON_DEVICE
-#include "trace/walk_wide.h"
-#endif
+#include "trace/while_while_walk.h"
 
 namespace pertev {
 
@@ -25,30 +21,8 @@ namespace pertev {
 //   static bool walk(tree, ray, instance, visitor, counter)     `instance` is kNoHit where the triangles carry their
 //                                                               own; true when the visitor ended it
 
-/// The one that pictures are made with: a stack, near child first where the visitor wants that. On the host eight boxes
-/// at a time where the tree has wide nodes.
-struct StackWalk {
-    using Tree = BvhView;
-
-    template <class Visitor, class Counter>
-    HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
-                        const Counter& counter) {
-#if !PERTEV_ON_DEVICE
-        if (bvh.wide != nullptr && !(bvh.root & kLeafBit)) return walk_wide(bvh, ray, instance, visitor, counter);
-#endif
-        WalkStackEntry stack[kMaxBvhDepth];
-        const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, bvh.bounds_max_abs);
-        const RayShear shear = make_ray_shear(ray.direction);
-        TreeWalk walk = {bvh.root};
-        for (;;) {
-            const uint32_t leaf =
-                next_leaf<Visitor::kNearestFirst>(walk, bvh.nodes, boxes, ray.t_min, visitor.limit(), stack, counter);
-            if (leaf == kNoLink) return false;
-            if (test_leaf(bvh.triangles, leaf, ray, shear, instance, visitor, counter)) return true;
-            leave_leaf(walk, stack, visitor.limit());
-        }
-    }
-};
+/// Where a caller names no walk: of binary trees, near child first.
+using PlainWalk = WhileWhileWalk<WalkOptions{}>;
 
 template <class Walk, class Visitor, class Counter>
 HD inline void walk_scene(const SingleTree<typename Walk::Tree>& scene, const Ray& ray, Visitor& visitor,
@@ -70,8 +44,7 @@ HD inline void walk_scene(const SceneTrees<typename Walk::Tree>& scene, const Ra
         if (top.link == kNoLink) return;
         // Made anew at each turn: cheaper than keeping it in registers through the inner walk.
         const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, scene.top_reach, scene.top_growth);
-        const uint32_t leaf = next_leaf<Visitor::kNearestFirst>(top, scene.top_nodes, boxes, ray.t_min, visitor.limit(),
-                                                                top_stack, counter);
+        const uint32_t leaf = next_leaf(top, scene.top_nodes, boxes, ray.t_min, visitor.limit(), top_stack, counter);
         if (leaf == kNoLink) return;
         const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
         instance = record.instance;

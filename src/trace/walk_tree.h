@@ -29,7 +29,7 @@ struct TreeWalk {
 
 /// Goes on to the next leaf whose box may hold a hit with t_min < t <= t_limit and returns its link; kNoLink at the
 /// end. `stack` holds as many entries as the tree is deep.
-template <bool kNearestFirst, class Counter>
+template <class Counter>
 HD inline uint32_t next_leaf(TreeWalk& walk, const BvhNode* nodes, const RayBoxes& boxes, float t_min, float t_limit,
                              WalkStackEntry* stack, const Counter& counter) {
     uint32_t link = walk.link;
@@ -48,7 +48,7 @@ HD inline uint32_t next_leaf(TreeWalk& walk, const BvhNode* nodes, const RayBoxe
         const bool enters0 = enters_child(boxes, node, 0, t_min, t_limit, entry0);
         const bool enters1 = enters_child(boxes, node, 1, t_min, t_limit, entry1);
         if (enters0 && enters1) {
-            const bool swap = kNearestFirst && entry1 <= entry0;
+            const bool swap = entry1 <= entry0;
             stack[size++] = {swap ? node.child[0] : node.child[1], swap ? entry0 : entry1};
             link = swap ? node.child[1] : node.child[0];
         } else if (enters0 || enters1) {

@@ -34,8 +34,8 @@ inline WideRay make_wide_ray(const RayBoxes& boxes) {
     return ray;
 }
 
-/// Bit k: child k may hold a hit with t_min < t <= t_limit; its entry parameter goes to entries[k]. Always inlined: as a
-/// call, with its vectors through memory, it takes a tenth of a render.
+/// Bit k: child k may hold a hit with t_min < t <= t_limit; its entry parameter goes to entries[k]. Always inlined: as
+/// a call, with its vectors through memory, it takes a tenth of a render.
 [[gnu::always_inline]] inline unsigned enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node,
                                                        __m256 t_min, __m256 t_limit, float (&entries)[kWideChildren]) {
     const auto near = [&](int axis) {
@@ -146,14 +146,7 @@ inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uin
     }
 }
 
-/// The one that pictures are made with. `bvh.wide` is there and the root is an inner node.
-template <class Visitor, class Counter>
-inline bool walk_wide(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
-    return walk_wide<WalkOptions{.near_first = Visitor::kNearestFirst}>(
-        WideBvhView<kWideChildren>{bvh.wide, bvh.triangles, bvh.bounds_max_abs}, ray, instance, visitor, counter);
-}
-
-/// It as a walk of the laboratory; host only.
+/// It as a walk (trace/walk_scene.h); host only.
 template <WalkOptions kOptions>
 struct Wide8SimdWalk {
     using Tree = WideBvhView<kWideChildren>;

@@ -1,7 +1,7 @@
 #pragma once
 
 // While-while: one loop goes down to a leaf, another tests its triangles, and a warp's lanes wait for each other
-// between the two. It is StackWalk with the laboratory's switches; with all of them on it tests the very same nodes.
+// between the two.
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
 

@@ -5,10 +5,12 @@
 
 #include "device/buffer.h"
 #include "device/launch.h"
+#include "lab/trace_rays.h"
 #include "render/prepare_scene.h"
 #include "render/scene_on_device.h"
 #include "tests/statistical/bsdf_cases.h"
 #include "tests/support/device_stages.h"
+#include "tests/support/make_tracer.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -63,20 +65,26 @@ void check_same_hits(const Scene& scene, uint32_t count) {
     std::vector<uint32_t> occluded[2];
     for (int device = 0; device < 2; ++device) {
         Queue queue = device == 0 ? Queue::make_cpu() : test::queue_asked_for();
-        const SceneOnDevice on_device(queue, prepared);
+        const Tracer tracer = test::make_tracer(queue, prepared);
         const Buffer<Ray> in(queue, std::span<const Ray>(rays), "rays");
-        const Buffer<Hit> out(queue, count, "hits");
-        const Buffer<uint32_t> any(queue, count, "any hits");
-        launch(queue, "trace_rays", count, test::TraceRays{on_device.view().bvh, in.data(), out.data(), any.data()});
+        const Buffer<Float4> places(queue, count, "hits");
+        const Buffer<uint32_t> instances(queue, count, "hits"), any(queue, count, "any hits");
+        tracer.find_hits(all_candidates(in.data()), count, {places.data(), instances.data()});
+        tracer.find_occlusions(all_candidates(in.data()), count, {nullptr, any.data()});
         queue.wait();
-        hits[device] = out.download();
+        const std::vector<Float4> found_places = places.download();
+        const std::vector<uint32_t> found_instances = instances.download();
+        for (uint32_t i = 0; i < count; ++i) {
+            const Float4 p = found_places[i];
+            hits[device].push_back({p.x, p.y, p.z, found_instances[i], bits_of(p.w)});
+        }
         occluded[device] = any.download();
     }
     uint32_t different = 0, found = 0, disagree = 0;
     for (uint32_t i = 0; i < count; ++i) {
         different += hits[0][i] == hits[1][i] && occluded[0][i] == occluded[1][i] ? 0 : 1;
         found += hits[0][i].instance != kNoHit ? 1 : 0;
-        disagree += (hits[0][i].instance != kNoHit) == (occluded[0][i] != 0) ? 0 : 1;
+        disagree += (hits[0][i].instance != kNoHit) == (occluded[0][i] != kNoHit) ? 0 : 1;
     }
     CHECK(different == 0);
     CHECK(disagree == 0); // a closest hit exists exactly where any does

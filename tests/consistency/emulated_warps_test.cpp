@@ -91,7 +91,7 @@ void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t bl
 }
 
 /// Of the same triangles, in each layout.
-struct HostTrees {
+struct TestTrees {
     Bvh bvh;
     CompressedBvh compressed_bvh;
     WoopBvh woop_bvh;
@@ -99,7 +99,7 @@ struct HostTrees {
     CompressedBvhView compressed;
     WoopBvhView woop;
 
-    explicit HostTrees(const std::vector<BvhTriangle>& triangles)
+    explicit TestTrees(const std::vector<BvhTriangle>& triangles)
         : bvh(build_bvh(triangles)), compressed_bvh(make_compressed_bvh(bvh)), woop_bvh(make_woop_bvh(bvh)),
           binary(view_of(bvh)), compressed(view_of(compressed_bvh)), woop(view_of(woop_bvh)) {}
 
@@ -112,7 +112,7 @@ struct HostTrees {
 struct HostHits {
     std::vector<Hit> exact, cut_outs, fast_binary, fast_compressed, woop;
 
-    HostHits(const HostTrees& trees, const std::vector<Ray>& rays) {
+    HostHits(const TestTrees& trees, const std::vector<Ray>& rays) {
         constexpr WalkOptions kFast = {.tests = TestKind::Fast}, kWoop = {.tests = TestKind::Woop};
         const SingleTree<BvhView> binary = {trees.binary};
         for (const Ray& ray : rays) {
@@ -141,7 +141,7 @@ TEST_CASE("on warps, every walk by every way of handing out rays gives each ray 
     for (const NastyMesh& c : nasty_meshes(500)) {
         CAPTURE(std::string(c.name));
         const bool has_ties = c.extent != 1 || std::string(c.name).find("soup") != 0;
-        const HostTrees trees(c.triangles);
+        const TestTrees trees(c.triangles);
         for (uint32_t round = 0; round < rounds; ++round) {
             const std::vector<Ray> rays = nasty_rays(kRays, c, 7 + round);
             const HostHits host(trees, rays);
@@ -158,7 +158,7 @@ TEST_CASE("on warps, every walk by every way of handing out rays gives each ray 
 
 TEST_CASE("so they do for any number of rays and of warps") {
     const NastyMesh mesh = nasty_meshes()[3];
-    const HostTrees trees(mesh.triangles);
+    const TestTrees trees(mesh.triangles);
     uint32_t seed = 0;
     struct Size {
         uint32_t rays, blocks;
@@ -205,7 +205,7 @@ TEST_CASE("so they do over instances, where rays of a warp come to different mes
 }
 
 TEST_CASE("on warps, live lanes add up to the visits of the rays") {
-    const HostTrees trees(triangles_of(make_torus(40, 24)));
+    const TestTrees trees(triangles_of(make_torus(40, 24)));
     Random random(4);
     std::vector<Ray> rays(static_cast<std::size_t>(effort(kRays, 20'011)));
     std::vector<Hit> expected;

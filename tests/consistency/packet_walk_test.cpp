@@ -36,8 +36,10 @@ void check_packets(const SceneBvhView& scene, const std::vector<Ray>& rays, cons
         const unsigned active = first % 3 == 0 ? 0xffu : random.below(256);
         std::array<Hit, kPacketRays> hits;
         hits.fill(untouched);
-        const unsigned found = trace_packet_closest<kOptions>(scene, packet, active, accept, hits);
-        const unsigned any = trace_packet_any<kOptions>(scene, packet, active, accept);
+        PacketAccepts<Accept> accepts;
+        accepts.fill(accept);
+        const unsigned found = trace_packet_closest<kOptions>(scene, packet, active, accepts, hits);
+        const unsigned any = trace_packet_any<kOptions>(scene, packet, active, accepts);
         for (std::size_t k = 0; k < kPacketRays; ++k) {
             Hit want = expected[first + k];
             if (want.instance == kNoHit) want.t = packet[k].t_max;
@@ -96,7 +98,7 @@ TEST_CASE("a packet of one ray visits what the ray visits alone, rays that go to
         std::array<Hit, kPacketRays> hits;
         const auto count = [&](unsigned active) {
             uint64_t nodes = 0, triangles = 0;
-            trace_packet_closest<kOptions>(scene_of(view_of(bvh)), packet, active, AcceptAll{}, hits,
+            trace_packet_closest<kOptions>(scene_of(view_of(bvh)), packet, active, PacketAccepts<AcceptAll>{}, hits,
                                            WalkCounter{&nodes, &triangles});
             return nodes * 1'000'000 + triangles;
         };

@@ -11,6 +11,7 @@
 #include "tests/support/check_walk.h"
 #include "tests/support/instanced_scene.h"
 #include "tests/support/nasty_meshes.h"
+#include "trace/walk_wide.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -21,6 +22,8 @@ const BvhBuildSettings kSettings[] = {{},
                                       {.bins = 2, .max_leaf = 1},
                                       {.bins = 64, .max_leaf = 16, .leaf_cost = 0.1f},
                                       {.bins = 7, .max_leaf = 3, .max_depth = 13}};
+
+using SimdWalk = Wide8SimdWalk<WalkOptions{}>;
 
 } // namespace
 
@@ -36,15 +39,11 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
         for (const BvhBuildSettings& settings : kSettings) {
             CAPTURE(settings.bins);
             const Bvh bvh = build_bvh(c.triangles, settings);
-            const std::vector<WideBvhNode<8>> wide_nodes = make_wide_nodes(bvh);
-            for (const bool wide : {false, true}) {
-                CAPTURE(wide);
-                SceneBvhView scene;
-                scene.baked = view_of(bvh);
-                if (wide) scene.baked.wide = wide_nodes.data();
-                check_walk(scene, rays, all, AcceptAll{});
-                check_walk(scene, rays, some, AcceptSome{});
-            }
+            check_walk(scene_of(view_of(bvh)), rays, all, AcceptAll{});
+            check_walk(scene_of(view_of(bvh)), rays, some, AcceptSome{});
+            const WideBvh<kWideChildren> wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse);
+            check_walk<SimdWalk>(scene_of(view_of(wide)), rays, all, AcceptAll{});
+            check_walk<SimdWalk>(scene_of(view_of(wide)), rays, some, AcceptSome{});
         }
     }
 }
@@ -53,12 +52,17 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
     const InstancedScene s = make_instanced_scene(3000);
     std::vector<BvhView> views;
     for (const Bvh& tree : s.trees) views.push_back(view_of(tree));
-    const std::vector<WideBvhNode<8>> wide_torus = make_wide_nodes(s.trees[0]), wide_soup = make_wide_nodes(s.trees[2]);
-    views[0].wide = wide_torus.data();
-    views[2].wide = wide_soup.data();
+    std::vector<WideBvh<kWideChildren>> wide;
+    for (const Bvh& tree : s.trees) wide.push_back(make_wide_bvh<kWideChildren>(tree, kSimdCollapse));
+    const WideBvh<kWideChildren> wide_baked = make_wide_bvh<kWideChildren>(s.baked_tree, kSimdCollapse);
+    std::vector<WideBvhView<kWideChildren>> wide_views;
+    for (const auto& tree : wide) wide_views.push_back(view_of(tree));
     for (const bool with_baked : {false, true}) {
+        const std::vector<Hit> expected = s.hits_by_brute_force(with_baked);
         const SceneBvhView scene = s.scene(views, with_baked ? view_of(s.baked_tree) : BvhView{});
-        check_walk(scene, s.rays, s.hits_by_brute_force(with_baked), AcceptSome{});
+        check_walk(scene, s.rays, expected, AcceptSome{});
+        const HostTrees trees = s.scene(wide_views, with_baked ? view_of(wide_baked) : WideBvhView<kWideChildren>{});
+        check_walk<SimdWalk>(trees, s.rays, expected, AcceptSome{});
     }
 }
 

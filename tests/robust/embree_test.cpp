@@ -16,6 +16,7 @@
 #include "tests/support/options.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
+#include "trace/walk_wide.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -29,13 +30,11 @@ struct Tally {
 /// Least weight of the hit's three vertices: near 0 on an edge.
 float edge_distance(float u, float v) { return min(min(u, v), 1 - u - v); }
 
-Tally compare(const TriangleMesh& mesh, bool wide, uint64_t count) {
+template <class Walk, class Tree>
+Tally compare(const TriangleMesh& mesh, const Bvh& bvh, const Tree& tree, uint64_t count) {
     const EmbreeScene embree(mesh);
-    const Bvh bvh = build_bvh(triangles_of(mesh));
-    const std::vector<WideBvhNode<8>> wide_nodes = make_wide_nodes(bvh);
-    SceneBvhView scene;
-    scene.baked = view_of(bvh);
-    if (wide) scene.baked.wide = wide_nodes.data();
+    SceneTrees<Tree> scene;
+    scene.baked = tree;
     const float reach = bvh.bounds.max_abs(), last_place = 4 * (std::nextafterf(reach, kInfinity) - reach);
     constexpr uint64_t kBlock = 10000;
     std::vector<Tally> tallies((count + kBlock - 1) / kBlock);
@@ -48,7 +47,7 @@ Tally compare(const TriangleMesh& mesh, bool wide, uint64_t count) {
             ray.origin = bvh.bounds.lo + Vec3{size.x * random.unit(), size.y * random.unit(), size.z * random.unit()};
             ray.direction = random.direction();
             Hit hit;
-            trace_closest(scene, ray, AcceptAll{}, hit);
+            trace_closest<Walk>(scene, ray, AcceptAll{}, hit);
             const Hit want = embree.closest(ray);
             const bool found = hit.instance != kNoHit, expected = want.instance != kNoHit;
             tally.hits += found ? 1 : 0;
@@ -78,7 +77,9 @@ Tally compare(const TriangleMesh& mesh, bool wide, uint64_t count) {
 
 TEST_CASE("hits on a torus agree with Embree's") {
     const uint64_t count = effort(300'000, 10'000'000);
-    const Tally tally = compare(make_torus(300, 200), false, count);
+    const TriangleMesh mesh = make_torus(300, 200);
+    const Bvh bvh = build_bvh(triangles_of(mesh));
+    const Tally tally = compare<PlainWalk>(mesh, bvh, view_of(bvh), count);
     CHECK(tally.hits > count / 10);
     CHECK(tally.unexplained <= std::max<uint64_t>(1, count / 1'000'000));
 }
@@ -87,7 +88,10 @@ TEST_CASE("hits in Sponza agree with Embree's") {
     const auto path = test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     const uint64_t count = effort(1'000'000, 10'000'000);
-    const Tally tally = compare(read_obj_geometry(*path), true, count);
+    const TriangleMesh mesh = read_obj_geometry(*path);
+    const Bvh bvh = build_bvh(triangles_of(mesh));
+    const auto wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse);
+    const Tally tally = compare<Wide8SimdWalk<WalkOptions{}>>(mesh, bvh, view_of(wide), count);
     CHECK(tally.hits > count / 2);
     CHECK(tally.unexplained <= std::max<uint64_t>(1, count / 1'000'000));
 }

@@ -11,10 +11,10 @@
 #include <fmt/format.h>
 
 #include "base/parallel_for.h"
-#include "lab/binary_stack_walk.h"
 #include "lab/measure_rays.h"
 #include "math/random.h"
-#include "render/scene_on_device.h"
+#include "render/tracer/tracer_choice.h"
+#include "tests/support/make_tracer.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -62,23 +62,19 @@ std::string text_of(const Ray& r) {
 /// Instance 0 of a scene, closed, about `centre`; `world` is its mesh there.
 struct ClosedInstance {
     Queue queue = queue_asked_for();
-    SceneOnDevice on_device;
+    Messages messages;
+    PreparedScene prepared;
     TriangleMesh world;
     Vec3 centre;
 
     ClosedInstance(const Scene& scene, TriangleMesh in_world, Vec3 about)
-        : on_device(queue, prepare(scene)), world(std::move(in_world)), centre(about) {}
-
-    static PreparedScene prepare(const Scene& scene) {
-        Messages messages;
-        return prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages);
-    }
+        : prepared(prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages)),
+          world(std::move(in_world)), centre(about) {}
 
     /// Which of the rays do not hit it.
-    template <class Walk>
-    std::vector<Ray> lost(const RaySet& set) {
+    std::vector<Ray> lost(const Tracer& tracer, const RaySet& set) {
         RaysOnDevice rays(queue, set);
-        rays.trace<Walk>(on_device.view().bvh);
+        rays.trace(tracer);
         const std::vector<RayHit> hits = rays.hits();
         std::vector<Ray> lost;
         for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -88,8 +84,7 @@ struct ClosedInstance {
     }
 
     /// Traces rays [0, count) of the set, every eighth to any hit as well, and reports one of those that are lost.
-    template <class Walk>
-    void check_none_is_lost(Aim aim, uint64_t count, uint32_t set_number) {
+    void check_none_is_lost(const Tracer& tracer, Aim aim, uint64_t count, uint32_t set_number) {
         constexpr uint64_t kPiece = 1 << 18;
         std::vector<Ray> lost_rays;
         for (uint64_t begin = 0; begin < count; begin += kPiece) {
@@ -100,7 +95,7 @@ struct ClosedInstance {
             for (const bool any_hit : {false, true}) {
                 set.any_hit = any_hit;
                 if (any_hit) set.rays.resize(set.rays.size() / 8);
-                const std::vector<Ray> more = lost<Walk>(set);
+                const std::vector<Ray> more = lost(tracer, set);
                 lost_rays.insert(lost_rays.end(), more.begin(), more.end());
             }
         }
@@ -108,12 +103,12 @@ struct ClosedInstance {
     }
 
     /// `count` rays at vertices, as many at edges, and a few others.
-    template <class Walk>
-    void check_walk(uint64_t count, uint32_t set_number) {
+    void check_tracer(const Combination& combination, uint64_t count, uint32_t set_number) {
+        const Tracer tracer = make_tracer(queue, prepared, combination);
         for (const Aim aim : {Aim::Vertex, Aim::Edge, Aim::Bent, Aim::Anywhere}) {
             CAPTURE(static_cast<int>(aim));
             const bool is_aimed = aim == Aim::Vertex || aim == Aim::Edge;
-            check_none_is_lost<Walk>(aim, is_aimed ? count : count / 20, set_number);
+            check_none_is_lost(tracer, aim, is_aimed ? count : count / 20, set_number);
         }
     }
 };
@@ -141,10 +136,10 @@ TEST_CASE("no ray leaves a closed sphere") {
         // At 150 km a float is 1/64 m: smaller faces would fold over each other.
         const TriangleMesh sphere = make_sphere(away_m > 1e4f ? 2 : 5, centre, 1);
         ClosedInstance instance(scene_of(sphere, {{}}), sphere, centre);
-        REQUIRE(instance.on_device.view().bvh.top_root == kNoLink); // baked
+        REQUIRE(instance.prepared.top_level.root == kNoLink); // baked
         const uint64_t count = effort(700'000, 7'000'000);
-        instance.check_walk<StackWalk>(count, ++set_number);
-        instance.check_walk<BinaryStackWalk>(count, ++set_number);
+        instance.check_tracer(default_tracers(instance.queue.is_cuda()).bounce, count, ++set_number);
+        instance.check_tracer(kBinaryTracer, count, ++set_number);
     }
 }
 
@@ -161,9 +156,9 @@ TEST_CASE("no ray leaves a closed sphere that is an instance") {
         for (Vec3& v : world.positions) v = transform_point(place, v);
         // The second one is there because a mesh that is used once is baked.
         ClosedInstance instance(scene_of(local, {place, compose(make_translation({0, 20, 0}), place)}), world, centre);
-        REQUIRE(instance.on_device.view().bvh.top_root != kNoLink);
+        REQUIRE(instance.prepared.top_level.root != kNoLink);
         const uint64_t count = effort(150'000, 1'500'000);
-        instance.check_walk<StackWalk>(count, ++set_number);
-        instance.check_walk<BinaryStackWalk>(count, ++set_number);
+        instance.check_tracer(default_tracers(instance.queue.is_cuda()).bounce, count, ++set_number);
+        instance.check_tracer(kBinaryTracer, count, ++set_number);
     }
 }

@@ -30,7 +30,7 @@ std::vector<Hit> hits_by_brute_force(const std::vector<BvhTriangle>& triangles, 
     return hits;
 }
 
-template <class Walk = StackWalk, class Accept>
+template <class Walk = PlainWalk, class Accept>
 void check_walk(const SceneTrees<typename Walk::Tree>& scene, const std::vector<Ray>& rays,
                 const std::vector<Hit>& expected, const Accept& accept) {
     uint64_t wrong = 0;

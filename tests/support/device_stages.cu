@@ -5,6 +5,5 @@ namespace pertev {
 template void launch(Queue&, const char*, uint32_t, const test::DrawSamples&);
 template void launch(Queue&, const char*, uint32_t, const test::ScatterRandomly&);
 template void launch(Queue&, const char*, uint32_t, const test::DrawLights&);
-template void launch(Queue&, const char*, uint32_t, const test::TraceRays&);
 template void launch(Queue&, const char*, uint32_t, const test::EvaluateMath&);
 } // namespace pertev

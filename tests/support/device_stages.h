@@ -74,24 +74,6 @@ struct DrawLights {
     }
 };
 
-struct AcceptAll {
-    HD bool operator()(uint32_t, uint32_t, float, float) const { return true; }
-};
-
-struct TraceRays {
-    SceneBvhView bvh;
-    const Ray* rays;
-    Hit* hits;
-    uint32_t* occluded; // by any hit
-
-    HD void operator()(uint32_t i) const {
-        Hit hit;
-        trace_closest(bvh, rays[i], AcceptAll{}, hit);
-        hits[i] = hit;
-        occluded[i] = trace_any(bvh, rays[i], AcceptAll{}) ? 1 : 0;
-    }
-};
-
 /// Folds `per_index` inputs of one portable function from first + i * per_index on.
 struct EvaluateMath {
     int function;

@@ -28,6 +28,10 @@ struct AcceptSome {
     }
 };
 
+struct AcceptAllOf : AcceptAll {
+    uint32_t i;
+};
+
 struct Batch {
     const Ray* rays;
     Hit* hits;
@@ -40,6 +44,7 @@ struct Batch {
         ++stores[i < count ? i : count];
         if (i < count) hits[i] = hit;
     }
+    AcceptAllOf accept(uint32_t i) const { return {{}, i}; }
     template <class Counter>
     Counter counter() const {
         if constexpr (std::is_same_v<Counter, LaneCounter>) {
@@ -82,7 +87,7 @@ void run_persistent(const Scene& scene, const Batch& batch, uint32_t* pool) {
 
 template <class Walk, bool kAny, class, class Counter, class Scene>
 void run_dynamic(const Scene& scene, const Batch& batch, uint32_t* pool) {
-    run_dynamic_fetch<Walk, kAny>(scene.baked, batch, batch.count, pool, batch.counter<Counter>());
+    run_dynamic_fetch<Walk, kAny>(scene, batch, batch.count, pool, batch.counter<Counter>());
 }
 
 } // namespace

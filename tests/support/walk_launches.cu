@@ -35,9 +35,14 @@ struct TraceBatch {
     }
 };
 
+struct AcceptAllOf : AcceptAll {
+    uint32_t i;
+};
+
 struct BatchRays {
     WalkBatch batch;
 
+    HD AcceptAllOf accept(uint32_t i) const { return {{}, i}; }
     HD Ray load(uint32_t i) const { return batch.rays[i]; }
     HD void store(uint32_t i, const Hit& hit) const { batch.hits[i] = hit; }
 };
@@ -74,7 +79,13 @@ void run_scene(Queue& queue, const WalkScenes& scenes, const WalkBatch& batch) {
 
 template <class Walk, bool kAny>
 void run_dynamic(Queue& queue, const WalkTrees& trees, const WalkBatch& batch) {
-    launch_dynamic_fetch<Walk, kAny>(queue, "trace dynamic", pick<Walk>(trees), BatchRays{batch}, batch.count,
+    launch_dynamic_fetch<Walk, kAny>(queue, "trace dynamic", SingleTree<typename Walk::Tree>{pick<Walk>(trees)},
+                                     BatchRays{batch}, batch.count, batch.pool);
+}
+
+template <class Walk, bool kAny>
+void run_dynamic_scene(Queue& queue, const WalkScenes& scenes, const WalkBatch& batch) {
+    launch_dynamic_fetch<Walk, kAny>(queue, "trace dynamic", pick<Walk>(scenes), BatchRays{batch}, batch.count,
                                      batch.pool);
 }
 
@@ -91,7 +102,7 @@ void add(const char* name, std::vector<WalkLaunch>& launches) {
     if constexpr (kDynamic) {
         row.distribution = "dynamic fetch";
         row.run = run_dynamic<W, kAny>;
-        row.run_scene = nullptr;
+        row.run_scene = kOptions.rta ? run_dynamic_scene<W, kAny> : nullptr;
         launches.push_back(row);
     }
 }

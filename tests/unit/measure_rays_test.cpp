@@ -8,9 +8,8 @@
 #include <chrono>
 
 #include "accel/bvh/build_bvh.h"
-#include "accel/bvh/wide_bvh.h"
-#include "lab/binary_stack_walk.h"
 #include "tests/support/check_walk.h"
+#include "tests/support/make_tracer.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -31,20 +30,17 @@ RaySet random_rays(uint32_t count, bool any_hit) {
 
 TEST_CASE("a walk over a set of rays gives the hits and the work of each ray's own walk") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(32, 24)));
-    const std::vector<WideBvhNode<8>> wide = make_wide_nodes(bvh);
-    BvhView view = view_of(bvh);
-    const SceneBvhView binary = scene_of(view);
-    view.wide = wide.data();
-    const SceneBvhView scene = scene_of(view);
+    const SceneBvhView binary = scene_of(view_of(bvh));
     Queue queue = Queue::make_cpu();
+    const Tracer tracer = make_tracer(queue, bvh);
     for (const bool any : {false, true}) {
         const RaySet set = random_rays(5000, any);
         RaysOnDevice rays(queue, set);
-        rays.trace<StackWalk>(scene);
+        rays.trace(make_tracer(queue, bvh, kSimdTracer));
         const std::vector<RayHit> hits = rays.hits();
-        rays.trace<BinaryStackWalk>(scene);
+        rays.trace(tracer);
         CHECK(hits == rays.hits());
-        const std::vector<RayWork> work = rays.count_work<BinaryStackWalk>(scene);
+        const std::vector<RayWork> work = rays.count_work(tracer);
         uint64_t wrong = 0, nodes = 0, triangles = 0, found = 0;
         uint32_t most = 0;
         for (std::size_t i = 0; i < set.rays.size(); ++i) {
@@ -77,11 +73,12 @@ TEST_CASE("no rays: no hits, no work, no time to speak of") {
     Queue queue = Queue::make_cpu();
     const RaySet none{"none"};
     RaysOnDevice rays(queue, none);
-    rays.trace<StackWalk>({});
+    const Tracer tracer = make_tracer(queue, Bvh{});
+    rays.trace(tracer);
     CHECK(rays.hits().empty());
     CHECK(hit_share({}) == 0);
-    CHECK(summarize_work(rays.count_work<BinaryStackWalk>({})).nodes == 0);
-    CHECK(rays.time<StackWalk>({}, 0, 1).median < 0.1);
+    CHECK(summarize_work(rays.count_work(tracer)).nodes == 0);
+    CHECK(rays.time(tracer, 0, 1).median < 0.1);
 }
 
 TEST_CASE("runs are timed one by one, and the median of an even number is the mean of the middle two") {

@@ -13,12 +13,11 @@
 #include <set>
 
 #include "base/parallel_for.h"
-#include "lab/binary_stack_walk.h"
 #include "lab/make_bunny_box.h"
 #include "lab/measure_rays.h"
 #include "lab/record_scenes.h"
 #include "math/frame.h"
-#include "render/scene_on_device.h"
+#include "tests/support/make_tracer.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -34,19 +33,19 @@ struct Traced {
     Messages messages;
     PreparedScene prepared;
     Queue queue;
-    SceneOnDevice on_device;
+    Tracer tracer;
 
     explicit Traced(Scene given, Queue of_device = Queue::make_cpu())
         : scene(std::move(given)),
           prepared(prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages)),
-          queue(std::move(of_device)), on_device(queue, prepared) {}
+          queue(std::move(of_device)), tracer(make_tracer(queue, prepared)) {}
 
     RaySetJob job(uint32_t width, uint32_t height) {
-        return {scene, scene.cameras.front(), width, height, make_ray_tracer(queue, on_device.view().bvh)};
+        return {scene, scene.cameras.front(), width, height, make_ray_tracer(queue, tracer)};
     }
     std::vector<RayHit> hits(const RaySet& set) {
         std::vector<RayHit> hits(set.rays.size());
-        make_ray_tracer(queue, on_device.view().bvh)(set.rays, hits);
+        make_ray_tracer(queue, tracer)(set.rays, hits);
         return hits;
     }
 };
@@ -254,15 +253,15 @@ TEST_CASE("ray sets, hits and work are the same on the GPU") {
     for (const RaySet& set : sets) {
         CAPTURE(set.name);
         RaysOnDevice on_here(here.queue, set), on_there(there.queue, set);
-        on_here.trace<StackWalk>(here.on_device.view().bvh);
-        on_there.trace<StackWalk>(there.on_device.view().bvh);
+        on_here.trace(here.tracer);
+        on_there.trace(there.tracer);
         CHECK(on_here.hits() == on_there.hits());
-        const auto work_here = on_here.count_work<BinaryStackWalk>(here.on_device.view().bvh);
-        const auto work_there = on_there.count_work<BinaryStackWalk>(there.on_device.view().bvh);
+        const auto work_here = on_here.count_work(here.tracer);
+        const auto work_there = on_there.count_work(there.tracer);
         const WorkSummary a = summarize_work(work_here), b = summarize_work(work_there);
         CHECK(a.most_nodes == b.most_nodes);
         CHECK(a.nodes == doctest::Approx(b.nodes));
-        CHECK(on_there.time<StackWalk>(there.on_device.view().bvh, 1, 3).median > 0);
+        CHECK(on_there.time(there.tracer, 1, 3).median > 0);
     }
 }
 
@@ -343,7 +342,7 @@ TEST_CASE("as many rays hit Sponza as on the record") {
     for (std::size_t k = 0; k < sets.size(); ++k) {
         CAPTURE(sets[k].name);
         RaysOnDevice rays(traced.queue, sets[k]);
-        rays.trace<StackWalk>(traced.on_device.view().bvh);
+        rays.trace(traced.tracer);
         const double share = hit_share(rays.hits()), tolerance = count == kRecordRays ? 0.001 : 0.01;
         CAPTURE(share);
         CHECK(std::abs(share - record.sets[k].hit_share) < tolerance);

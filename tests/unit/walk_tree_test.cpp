@@ -18,7 +18,7 @@ using namespace pertev::test;
 TEST_CASE("a box whose entry equals the limit is entered, one ulp less and it is not") {
     Random random(6);
     const Bvh bvh = build_bvh(triangles_of(make_torus(16, 12)));
-    const std::vector<WideBvhNode<8>> wide = make_wide_nodes(bvh);
+    const std::vector<WideBvhNode<8>> wide = make_wide_bvh<8>(bvh, kSimdCollapse).nodes;
     uint64_t tried = 0, wide_tried = 0, wrong = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec3 origin = random.point(-4, 4), direction = random.point(-1, 1) - origin;
@@ -69,7 +69,7 @@ TEST_CASE("an inner node without a box on the ray goes back to what waits on the
     for (const float limit : {2.0f, std::nextafterf(2.0f, 0)}) {
         WalkStackEntry stack[4] = {{kLeafBit | 5u, 2.0f}};
         TreeWalk walk = {0, 1};
-        CHECK(next_leaf<true>(walk, &node, boxes, 0, limit, stack, NoWalkCounter{}) ==
+        CHECK(next_leaf(walk, &node, boxes, 0, limit, stack, NoWalkCounter{}) ==
               (limit == 2.0f ? (kLeafBit | 5u) : kNoLink));
     }
 }

@@ -138,7 +138,7 @@ TEST_CASE("wide trees of all nasty meshes are sound and lose no triangle") {
 
 TEST_CASE("a wide tree walks its binary tree's own triangles by the counts in its nodes") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(30, 20)));
-    const std::vector<WideBvhNode<8>> nodes = make_wide_nodes(bvh);
+    const std::vector<WideBvhNode<8>> nodes = make_wide_bvh<8>(bvh, kSimdCollapse).nodes;
     std::vector<int> seen(bvh.triangles.size());
     for (const auto& node : nodes) {
         for (int k = 0; k < 8; ++k) {

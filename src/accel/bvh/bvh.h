@@ -49,9 +49,6 @@ inline Bounds3 child_bounds(const BvhNode& node, int k) {
     return {{node.x[k], node.y[k], node.z[k]}, {node.x[k + 2], node.y[k + 2], node.z[k + 2]}};
 }
 
-template <int kWidth>
-struct WideBvhNode; // wide_bvh.h
-
 struct Bvh {
     std::vector<BvhNode> nodes; // depth first; of two children, the first is where any-hit searches end sooner
     std::vector<BvhTriangle> triangles;
@@ -66,13 +63,12 @@ struct BvhView {
     const BvhNode* nodes = nullptr;
     const BvhTriangle* triangles = nullptr;
     uint32_t root = kNoLink;
-    float bounds_max_abs = 0;             // largest |coordinate| of the bounds
-    const WideBvhNode<8>* wide = nullptr; // the host walks these in place of nodes where they are given
+    float bounds_max_abs = 0; // largest |coordinate| of the bounds
 };
 
 inline BvhView view_of(const Bvh& bvh) {
     const bool empty = bvh.root == kNoLink;
-    return {bvh.nodes.data(), bvh.triangles.data(), bvh.root, empty ? 0.0f : bvh.bounds.max_abs(), nullptr};
+    return {bvh.nodes.data(), bvh.triangles.data(), bvh.root, empty ? 0.0f : bvh.bounds.max_abs()};
 }
 
 } // namespace pertev

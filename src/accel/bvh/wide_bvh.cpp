@@ -209,10 +209,4 @@ template WideBvh<8> make_wide_bvh(const Bvh&, const CollapseSettings&);
 template std::optional<std::string> find_fault(const WideBvh<4>&, bool);
 template std::optional<std::string> find_fault(const WideBvh<8>&, bool);
 
-std::vector<WideBvhNode<kWideChildren>> make_wide_nodes(const Bvh& bvh) {
-    if (bvh.root & kLeafBit) return {};
-    // Four triangles are tested at once, for about twice what the eight boxes of a node cost.
-    return assemble<kWideChildren>(bvh, {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 2}).nodes;
-}
-
 } // namespace pertev

@@ -57,10 +57,10 @@ WideBvhView<kWidth> view_of(const WideBvh<kWidth>& bvh) {
 template <int kWidth>
 WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings = {});
 
-/// What BvhView::wide wants, beside the binary tree's own triangles (their flags do not tell where these leaves end).
-/// None where the tree has no inner node.
+/// For the CPU's vector unit (trace/walk_wide.h): eight boxes at a time, and four triangles, for about twice what the
+/// boxes of a node cost.
 inline constexpr int kWideChildren = 8;
-std::vector<WideBvhNode<kWideChildren>> make_wide_nodes(const Bvh& bvh);
+inline constexpr CollapseSettings kSimdCollapse = {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 2};
 
 /// Whether links and counts are sound, each node and triangle is reached once, the depth is as stated and every box
 /// holds what is beneath it. Nothing when it is sound, else what is wrong. `clipped`: the tree has spatial splits, so a

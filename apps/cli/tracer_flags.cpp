@@ -1,0 +1,132 @@
+#include "apps/cli/tracer_flags.h"
+
+#include <set>
+#include <span>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace pertev {
+namespace {
+
+constexpr const char* kRayNames[] = {"camera", "bounce", "shadow"}; // in the order of RayKind
+
+Combination& of_kind(TracerChoice& choice, std::size_t kind) {
+    return kind == 0 ? choice.camera : kind == 1 ? choice.bounce : choice.shadow;
+}
+
+/// Calls set(combination, name) for each ray kind that each of `values` is for; set is false where nothing is named so.
+template <class Set>
+void apply(const char* flag, const std::vector<std::string>& values, TracerChoice& choice, const std::string& known,
+           const Set& set) {
+    for (const std::string& value : values) {
+        const std::size_t equals = value.find('=');
+        const std::string name = equals == std::string::npos ? value : value.substr(equals + 1);
+        bool any = false, good = true;
+        for (std::size_t kind = 0; kind < std::size(kRayNames); ++kind) {
+            if (equals != std::string::npos && value.substr(0, equals) != kRayNames[kind]) continue;
+            any = true;
+            good = good && set(of_kind(choice, kind), name);
+        }
+        if (any && good) continue;
+        throw Error(ErrorCode::BadInput,
+                    any ? fmt::format("{} {}: expected {}", flag, value, known)
+                        : fmt::format("{} {}: rays are of the kinds camera, bounce and shadow, as in {} shadow={}",
+                                      flag, value, flag, name));
+    }
+}
+
+template <class Kind>
+std::string list_of(std::span<const Kind> kinds) {
+    std::string list;
+    for (const Kind kind : kinds) list += fmt::format("{}{}", list.empty() ? "one of " : ", ", name_of(kind));
+    return list;
+}
+
+/// A structure that only one walk goes over brings that walk with it, and the other way round.
+void complete(Combination& c, bool structure_named, bool walk_named) {
+    const bool is_kd = c.structure == StructureKind::KdMedian || c.structure == StructureKind::KdSah;
+    if (structure_named && !walk_named) {
+        if (is_kd) c.walk = WalkKind::Kd;
+        if (c.structure == StructureKind::Octree) c.walk = WalkKind::Octree;
+    }
+    if (walk_named && !structure_named) {
+        if (c.walk == WalkKind::Kd) c.structure = StructureKind::KdSah;
+        if (c.walk == WalkKind::Octree) c.structure = StructureKind::Octree;
+    }
+}
+
+bool set_on_off(bool& value, const std::string& name) {
+    value = name == "on";
+    return name == "on" || name == "off";
+}
+
+} // namespace
+
+void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group) {
+    const auto add = [&](const char* flag, std::vector<std::string>& values, const char* what, const char* type) {
+        verb.add_option(flag, values, what)->type_name(type)->allow_extra_args(false)->group(group);
+    };
+    add("--structure", flags.structures,
+        "how the scene is sorted for rays, as pertev lab names it; of\none kind of ray: camera=, bounce= or "
+        "shadow=NAME; "
+        "may be given\nagain. Neither this nor what follows changes the picture",
+        "[KIND=]NAME");
+    add("--walk", flags.walks, "how rays go through it, as pertev lab names it", "[KIND=]NAME");
+    add("--rta", flags.rta, "redundant traversal avoidance: on, nodes or off", "[KIND=]WHICH");
+    add("--order", flags.order, "nearer children first: on or off", "[KIND=]WHICH");
+    add("--distribution", flags.distributions,
+        "how rays come to a GPU's threads: one-a-thread, persistent or\ndynamic-fetch", "[KIND=]NAME");
+}
+
+std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda) {
+    if (flags.structures.empty() && flags.walks.empty() && flags.rta.empty() && flags.order.empty() &&
+        flags.distributions.empty()) {
+        return std::nullopt;
+    }
+    TracerChoice choice = default_tracers(on_cuda);
+    std::set<const Combination*> structure_named, walk_named;
+    apply("--structure", flags.structures, choice, list_of(all_structures()),
+          [&](Combination& c, const std::string& name) {
+              const auto kind = pertev::structure_named(name);
+              if (kind) c.structure = *kind, structure_named.insert(&c);
+              return kind.has_value();
+          });
+    apply("--walk", flags.walks, choice, list_of(all_walks()), [&](Combination& c, const std::string& name) {
+        const auto kind = pertev::walk_named(name);
+        // Switches and a distribution that the default has for its own walk are none of this one's.
+        if (kind) c = {.structure = c.structure, .walk = *kind}, walk_named.insert(&c);
+        return kind.has_value();
+    });
+    for (std::size_t kind = 0; kind < std::size(kRayNames); ++kind) {
+        Combination& c = of_kind(choice, kind);
+        const bool named = structure_named.contains(&c);
+        complete(c, named, walk_named.contains(&c));
+        if (named && !walk_named.contains(&c) && (c.walk == WalkKind::Kd || c.walk == WalkKind::Octree)) {
+            c = {.structure = c.structure, .walk = c.walk};
+        }
+    }
+    apply("--rta", flags.rta, choice, "on, nodes or off", [](Combination& c, const std::string& name) {
+        c.options.rta = name != "off";
+        c.options.rta_at_pops = name != "nodes";
+        return name == "on" || name == "nodes" || name == "off";
+    });
+    apply("--order", flags.order, choice, "on or off",
+          [](Combination& c, const std::string& name) { return set_on_off(c.options.near_first, name); });
+    apply("--distribution", flags.distributions, choice, "one-a-thread, persistent or dynamic-fetch",
+          [](Combination& c, const std::string& name) {
+              for (const Distribution d :
+                   {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
+                  if (name != name_of(d)) continue;
+                  c.distribution = d;
+                  return true;
+              }
+              return false;
+          });
+    check_choice(choice, on_cuda);
+    return choice;
+}
+
+} // namespace pertev

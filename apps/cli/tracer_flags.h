@@ -1,0 +1,28 @@
+#pragma once
+
+// How pictures find what rays meet, as flags: --structure, --walk and their switches. None changes the picture.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/tracer/tracer_choice.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pertev {
+
+/// Each is "NAME" for all rays, or "KIND=NAME" for camera, bounce or shadow rays; the last that names a ray counts.
+struct TracerFlags {
+    std::vector<std::string> structures, walks, rta, order, distributions;
+};
+
+void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group);
+
+/// What the flags ask for, the device's default where they say nothing; nothing at all where none is given. Throws
+/// Error(BadInput) where pictures cannot be traced so.
+std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda);
+
+} // namespace pertev

@@ -1,0 +1,60 @@
+#pragma once
+
+// Which candidates of a queued ray count (render/accept_hit.h), for kernels: nothing of it is held in registers while a
+// ray walks. What the rule needs of the ray is looked up when there is a candidate, which is seldom.
+
+#include <cstdint>
+
+#include "render/accept_hit.h"
+#include "render/ray_queue.h"
+
+namespace pertev {
+
+/// Rays, and what decides which of their candidates count.
+struct TraceQuery {
+    RayQueueView rays;
+    // In the device's memory; null where every surface is opaque, and shown from both sides to these rays.
+    const SceneView* scene = nullptr;
+    const InstanceView* instances = nullptr; // the scene's
+    bool hides_backs = false;                // rays of the camera, which pass backs that are hidden
+
+    bool is_opaque() const { return scene == nullptr; }
+};
+
+/// Of an instance that lets something pass. Out of line: what it does with textures must not cost the walk registers.
+HD PERTEV_OUT_OF_LINE inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+                                                 uint32_t instance, uint32_t primitive, float u, float v) {
+    const AcceptHit accept{*scene, {}, {}, key};
+    if (hides_backs && AcceptCameraHit{accept, ray->direction}.meets_hidden_back(instance, primitive)) return true;
+    return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
+}
+
+/// Where all surfaces are opaque and shown from both sides: a walk has no registers to spare for the others.
+struct AcceptOpaque {
+    const TraceQuery& query;
+    uint32_t i; // the ray's number
+
+    HD bool operator()(uint32_t instance, uint32_t primitive, float, float) const {
+        const RayQueueView& rays = query.rays;
+        if (rays.ends == nullptr) return true;
+        const Uint4 ends = rays.ends[rays.slot(i)];
+        return !(instance == ends.x && primitive == ends.y) && !(instance == ends.z && primitive == ends.w);
+    }
+};
+
+struct AcceptQueued {
+    const TraceQuery& query;
+    uint32_t i;
+
+    HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
+        if (!AcceptOpaque{query, i}(instance, primitive, u, v)) return false;
+        if (query.scene == nullptr) return true;
+        const InstanceView& placed = query.instances[instance];
+        if (placed.has_alpha == 0 && !(query.hides_backs && placed.hides_back != 0)) return true;
+        const uint32_t slot = query.rays.slot(i);
+        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[slot] : 0;
+        return !passes_surface(query.scene, query.rays.rays + slot, key, query.hides_backs, instance, primitive, u, v);
+    }
+};
+
+} // namespace pertev

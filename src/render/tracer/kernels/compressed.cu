@@ -1,0 +1,13 @@
+#include "render/tracer/kernels/walk_kernels_body.h"
+#include "trace/compressed_walk.h"
+
+namespace pertev {
+
+void add_compressed_kernels(std::vector<WalkKernel>& rows) {
+    add_all_kernels<CompressedWalk, true>(WalkKind::Compressed, rows);
+    add_kernels<CompressedWalk, WalkOptions{.rta_at_pops = false}, true>(WalkKind::Compressed, rows);
+    add_kernels<CompressedWalk, WalkOptions{.tests = TestKind::Fast, .rta_at_pops = false}, true>(WalkKind::Compressed,
+                                                                                                  rows);
+}
+
+} // namespace pertev

@@ -1,0 +1,10 @@
+#include "render/tracer/kernels/walk_kernels_body.h"
+#include "trace/parent_links_walk.h"
+
+namespace pertev {
+
+void add_parent_links_kernels(std::vector<WalkKernel>& rows) {
+    add_all_kernels<ParentLinksWalk>(WalkKind::ParentLinks, rows);
+}
+
+} // namespace pertev

@@ -1,0 +1,10 @@
+#include "render/tracer/kernels/walk_kernels_body.h"
+#include "trace/restart_trail_walk.h"
+
+namespace pertev {
+
+void add_restart_trail_kernels(std::vector<WalkKernel>& rows) {
+    add_all_kernels<RestartTrailWalk>(WalkKind::RestartTrail, rows);
+}
+
+} // namespace pertev

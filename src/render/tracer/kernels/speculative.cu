@@ -1,0 +1,11 @@
+#include "render/tracer/kernels/walk_kernels_body.h"
+#include "trace/speculative_walk.h"
+
+namespace pertev {
+
+void add_speculative_kernels(std::vector<WalkKernel>& rows) {
+    add_all_kernels<SpeculativeWalk, true>(WalkKind::Speculative, rows);
+    add_woop_kernels<SpeculativeWalk>(WalkKind::Speculative, rows);
+}
+
+} // namespace pertev

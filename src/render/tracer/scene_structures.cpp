@@ -1,0 +1,43 @@
+#include "render/tracer/scene_structures.h"
+
+#include <set>
+
+namespace pertev {
+
+SceneStructures::SceneStructures(const Scene& scene, Vec3 centre, BinaryTrees binned, TopLevelBvh top_level)
+    : scene_(scene), centre_(centre), top_level_(std::move(top_level)) {
+    for (const Bvh& bvh : *binned.parts) triangle_count_ += bvh.triangles.size();
+    binary_.emplace(BvhBuilder::Binned, std::move(binned));
+}
+
+const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {
+    const auto at = binary_.find(builder);
+    if (at != binary_.end()) return at->second;
+    const SceneTriangles triangles(scene_, place_meshes(scene_, centre_));
+    return binary_.emplace(builder, build_binary_trees(triangles, builder)).first->second;
+}
+
+std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& combination) {
+    const std::lock_guard lock(mutex_);
+    const StructureKind kind = combination.structure;
+    const TreeLayout layout = layout_of(combination);
+    auto& built = built_[{kind, layout}];
+    if (built != nullptr) return built;
+    if (const auto builder = builder_of(kind)) {
+        built = std::make_shared<const BuiltStructure>(top_level_, kind, layout, binary_trees(*builder));
+    } else {
+        const SceneTriangles triangles(scene_, place_meshes(scene_, centre_));
+        built = std::make_shared<const BuiltStructure>(top_level_, kind, triangles);
+    }
+    return built;
+}
+
+std::size_t SceneStructures::device_bytes(const TracerChoice& choice) {
+    std::set<std::shared_ptr<const BuiltStructure>> structures;
+    for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) structures.insert(get(choice[kind]));
+    std::size_t bytes = 0;
+    for (const auto& structure : structures) bytes += structure->device_bytes();
+    return bytes;
+}
+
+} // namespace pertev

@@ -1,0 +1,81 @@
+#include "render/tracer/scene_tracer.h"
+
+#include <map>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/stopwatch.h"
+
+namespace pertev {
+namespace {
+
+constexpr RayKind kRayKinds[] = {RayKind::Camera, RayKind::Bounce, RayKind::Shadow};
+
+} // namespace
+
+namespace {
+
+/// Throws Error(OverLimit).
+void check_brute_force(const Combination& c, uint64_t triangles) {
+    if (c.walk != WalkKind::BruteForce || triangles <= kMaxBruteForceTriangles) return;
+    throw Error(ErrorCode::OverLimit,
+                fmt::format("{}: each ray would test all {} triangles of the scene; pictures of at most {} are made so",
+                            name_of(c), triangles, kMaxBruteForceTriangles));
+}
+
+} // namespace
+
+SceneTracer::SceneTracer(Queue& queue, SceneStructures& structures, const TracerChoice& choice)
+    : queue_(queue), choice_(choice), scene_on_device_(queue, 1, "scene") {
+    check_choice(choice, queue.is_cuda());
+    std::map<std::shared_ptr<const BuiltStructure>, std::shared_ptr<const StructureOnDevice>> placed;
+    for (const RayKind kind : kRayKinds) {
+        check_brute_force(choice[kind], structures.triangle_count());
+        const auto built = structures.get(choice[kind]);
+        auto& structure = placed[built];
+        if (structure == nullptr) structure = std::make_shared<const StructureOnDevice>(queue, built);
+        tracers_.push_back(std::make_unique<Tracer>(queue, choice[kind], structure));
+    }
+    if (can_walk_on_host(choice, queue.is_cuda())) {
+        host_trees_ = &std::get<HostTrees>(tracers_.front()->structure().trees());
+    }
+}
+
+void SceneTracer::set_surfaces(const SceneView& scene) {
+    scene_ = scene;
+    scene_on_device_.upload(std::span(&scene, 1));
+}
+
+TraceQuery SceneTracer::query_of(RayKind kind, const RayQueueView& rays) const {
+    TraceQuery query = {.rays = rays};
+    query.hides_backs = kind == RayKind::Camera && scene_.any_hidden_back != 0;
+    if (scene_.any_alpha != 0 || query.hides_backs) {
+        query.scene = scene_on_device_.data();
+        query.instances = scene_.instances;
+    }
+    return query;
+}
+
+template <class Trace>
+void SceneTracer::timed(double& seconds, const Trace& trace) {
+    if (!is_timed_) return trace();
+    queue_.wait();
+    const Stopwatch watch;
+    trace();
+    queue_.wait();
+    seconds += watch.seconds();
+}
+
+void SceneTracer::find_hits(RayKind kind, const RayQueueView& rays, uint32_t count, const HitQueueView& hits) {
+    timed(kind == RayKind::Camera ? seconds_.camera : seconds_.bounce,
+          [&] { tracer(kind).find_hits(query_of(kind, rays), count, hits); });
+}
+
+void SceneTracer::find_occlusions(const RayQueueView& rays, uint32_t count, const HitQueueView& hits) {
+    timed(seconds_.shadow,
+          [&] { tracer(RayKind::Shadow).find_occlusions(query_of(RayKind::Shadow, rays), count, hits); });
+}
+
+} // namespace pertev

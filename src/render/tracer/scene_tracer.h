@@ -1,0 +1,61 @@
+#pragma once
+
+// The one host door to "find these hits" and "find these occlusions": a tracer for each kind of ray, over the
+// structures that they need, with the scene's rules of what counts as a hit. Integrators hand queues of rays to it and
+// know neither trees nor walks.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "device/buffer.h"
+#include "render/ray_queue.h"
+#include "render/scene_view.h"
+#include "render/tracer/scene_structures.h"
+#include "render/tracer/tracer.h"
+
+namespace pertev {
+
+class SceneTracer {
+public:
+    /// `queue` outlives it. Throws Error(BadInput) as check_choice does, Error(OutOfMemory), Error(OverLimit).
+    SceneTracer(Queue& queue, SceneStructures& structures, const TracerChoice& choice);
+
+    /// What the rays meet is part of this scene: its surfaces say which candidates count. Its arrays stay where they
+    /// are as long as rays are traced.
+    void set_surfaces(const SceneView& scene);
+
+    /// What rays [0, count) meet first. Queued: the work may still be under way. Throws Error(DeviceFault).
+    void find_hits(RayKind kind, const RayQueueView& rays, uint32_t count, const HitQueueView& hits);
+    /// Whether shadow rays meet anything.
+    void find_occlusions(const RayQueueView& rays, uint32_t count, const HitQueueView& hits);
+
+    /// What a loop over rays on the host may walk by itself, by render/find_hit.h. Null unless rays of all kinds are
+    /// traced so.
+    const HostTrees* host_trees() const { return host_trees_; }
+    const TracerChoice& choice() const { return choice_; }
+    const Tracer& tracer(RayKind kind) const { return *tracers_[static_cast<std::size_t>(kind)]; }
+
+    /// Rays of each kind are timed from now on, by waiting before and after: slower. Seconds since then.
+    struct Seconds {
+        double camera = 0, bounce = 0, shadow = 0;
+    };
+    void time_kinds() { is_timed_ = true; }
+    const Seconds& seconds() const { return seconds_; }
+
+private:
+    TraceQuery query_of(RayKind kind, const RayQueueView& rays) const;
+    template <class Trace>
+    void timed(double& seconds, const Trace& trace);
+
+    Queue& queue_;
+    TracerChoice choice_;
+    std::vector<std::unique_ptr<Tracer>> tracers_; // [RayKind]
+    const HostTrees* host_trees_ = nullptr;
+    SceneView scene_{};
+    Buffer<SceneView> scene_on_device_;
+    bool is_timed_ = false;
+    Seconds seconds_;
+};
+
+} // namespace pertev

@@ -1,0 +1,55 @@
+#include "render/tracer/tracer_choice.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "render/tracer/walk_kernels.h"
+
+namespace pertev {
+
+const Combination& TracerChoice::operator[](RayKind kind) const {
+    switch (kind) {
+    case RayKind::Camera:
+        return camera;
+    case RayKind::Bounce:
+        return bounce;
+    case RayKind::Shadow:
+        break;
+    }
+    return shadow;
+}
+
+TracerChoice same_for_all(const Combination& combination) { return {combination, combination, combination}; }
+
+TracerChoice default_tracers(bool on_cuda) {
+    TracerChoice choice = same_for_all(
+        {.structure = StructureKind::Binned, .walk = on_cuda ? WalkKind::WhileWhile : WalkKind::Wide8Simd});
+    choice.shadow.options.near_first = false; // of two children, the first is where any-hit searches end sooner
+    return choice;
+}
+
+bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
+    if (on_cuda) return false;
+    for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) {
+        Combination c = choice[kind];
+        if (kind == RayKind::Shadow) c.options.near_first = true; // either way it finds the same
+        if (!(c == Combination{.structure = choice.camera.structure, .walk = WalkKind::Wide8Simd})) return false;
+    }
+    return true;
+}
+
+void check_choice(const TracerChoice& choice, bool on_cuda) {
+    for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) {
+        const Combination& c = choice[kind];
+        if (const auto reason = why_no_tracer(c, on_cuda)) {
+            throw Error(ErrorCode::BadInput, fmt::format("{}: {}", name_of(c), *reason));
+        }
+        if (!c.options.is_exact()) {
+            throw Error(ErrorCode::BadInput, fmt::format("{}: {} tests let rays slip through edges; pictures are made "
+                                                         "with exact ones",
+                                                         name_of(c), name_of(c.options.tests)));
+        }
+    }
+}
+
+} // namespace pertev

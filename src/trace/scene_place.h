@@ -1,0 +1,90 @@
+#pragma once
+
+// Where a ray stands in the walk of a whole scene between two turns, for walks that can be left there
+// (trace/dynamic_fetch.h): in one tree, or on its way through the trees of a scene with instances. The walk from tree
+// to tree is that of trace/walk_scene.h.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "trace/walk_scene.h"
+#include "trace/warp_vote.h"
+
+namespace pertev {
+
+/// `Scene` is SceneTrees or SingleTree of what the walk walks.
+template <class Walk, class Scene>
+struct ScenePlace;
+
+template <class Walk>
+struct ScenePlace<Walk, SingleTree<typename Walk::Tree>> {
+    using Scene = SingleTree<typename Walk::Tree>;
+    typename Walk::Place place;
+
+    HD explicit ScenePlace(typename Walk::Place::Slot* slots) : place(slots) {}
+
+    HD bool is_done() const { return place.is_done(); }
+    template <class Visitor>
+    HD void start(const Scene& scene, const Ray& ray) {
+        Walk::template start<Visitor>(scene.baked, ray, place);
+    }
+    /// All of `lanes` come here together; to those that are done it does nothing.
+    template <class Visitor, class Counter>
+    HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
+                 int working) {
+        if (Walk::turn(scene.baked, ray, kNoHit, place, visitor, counter, lanes, working)) place.stop();
+    }
+};
+
+template <class Walk>
+struct ScenePlace<Walk, SceneTrees<typename Walk::Tree>> {
+    using Scene = SceneTrees<typename Walk::Tree>;
+    typename Walk::Place place; // in `tree`
+    typename Walk::Tree tree = {};
+    Ray local; // the ray in the tree's space
+    uint32_t instance = kNoHit;
+    TreeWalk top = {kNoLink}; // of the tree over instances; kNoLink: at its end
+    WalkStackEntry top_stack[kMaxTopLevelDepth];
+
+    HD explicit ScenePlace(typename Walk::Place::Slot* slots) : place(slots) {}
+
+    HD bool is_done() const { return place.is_done() && top.link == kNoLink; }
+    template <class Visitor>
+    HD void start(const Scene& scene, const Ray& ray) {
+        tree = scene.baked;
+        local = ray;
+        instance = kNoHit;
+        top = {scene.top_root};
+        Walk::template start<Visitor>(tree, local, place);
+    }
+    /// As above.
+    template <class Visitor, class Counter>
+    HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
+                 int working) {
+        if (place.is_done() && top.link != kNoLink) next_tree(scene, ray, visitor, counter);
+        if (Walk::turn(tree, local, instance, place, visitor, counter, lanes, working)) {
+            place.stop();
+            top.link = kNoLink;
+        }
+    }
+
+private:
+    template <class Visitor, class Counter>
+    HD void next_tree(const Scene& scene, const Ray& ray, const Visitor& visitor, const Counter& counter) {
+        if (instance != kNoHit) leave_leaf(top, top_stack, visitor.limit());
+        if (top.link == kNoLink) return;
+        const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, scene.top_reach, scene.top_growth);
+        const uint32_t leaf = next_leaf(top, scene.top_nodes, boxes, ray.t_min, visitor.limit(), top_stack, counter);
+        if (leaf == kNoLink) {
+            top.link = kNoLink;
+            return;
+        }
+        const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
+        instance = record.instance;
+        tree = scene.meshes[record.mesh_bvh];
+        local = transform_ray(record.local_from_world, ray);
+        Walk::template start<Visitor>(tree, local, place);
+    }
+};
+
+} // namespace pertev
