@@ -30,6 +30,7 @@ private:
 
 class CpuBackend final : public DeviceBackend {
 public:
+    void make_current() const override {}
     std::string name() const override { return "CPU"; }
     bool is_cuda() const override { return false; }
     void* stream() const override { return nullptr; }
@@ -58,6 +59,11 @@ double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1024.
 Queue Queue::make_cpu() { return Queue(std::make_unique<CpuBackend>()); }
 
 Queue Queue::make_cuda(int index) { return Queue(make_cuda_backend(index)); }
+
+Queue::Queue(Queue&& other) {
+    PERTEV_CHECK(other.allocations_.empty());
+    backend_ = std::move(other.backend_);
+}
 
 void* Queue::allocate(std::size_t bytes, const std::string& name) {
     if (bytes == 0) return nullptr;
