@@ -46,6 +46,7 @@ public:
     void add_all() {
         for (uint32_t sample = 0; sample < kSamples; ++sample) add_sample(sample);
     }
+    void add(const Render& other) { film_.add(other.film_); }
     Hash128 hash() const {
         Hasher hasher;
         hasher.add_values(std::span<const float>(film_.picture(kSamples, true).pixels));
@@ -82,6 +83,15 @@ TEST_CASE("two queues used in turns from one thread give the pictures of renders
     CHECK(first.hash() == hash_alone(0));
     CHECK(second.hash() == hash_alone(1));
     CHECK(hash_alone(0) != hash_alone(1));
+}
+
+TEST_CASE("a picture whose samples are shared out between two queues is the one of a queue alone") {
+    Queue first_queue = make_queue(0), second_queue = make_queue(1);
+    Render first(first_queue, subject(0)), second(second_queue, subject(0));
+    for (uint32_t sample = 0; sample < kSamples; ++sample) (sample % 2 == 0 ? first : second).add_sample(sample);
+    CHECK(first.hash() != hash_alone(0));
+    first.add(second);
+    CHECK(first.hash() == hash_alone(0));
 }
 
 TEST_CASE("two queues used from two threads at once give the pictures of renders done alone") {
