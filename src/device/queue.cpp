@@ -14,7 +14,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kAlignment = 128; // a cache line pair; more than any vector load needs
+constexpr std::size_t kAlignment = 256; // as cudaMalloc gives: parts of a buffer may count on it
 
 /// The CPU's work is done when its call returns, so the clock on the wall tells.
 class CpuTimeMark final : public TimeMark {

@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "render/scene_on_device.h"
+#include "render/trees_on_device.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
 
 using namespace pertev;
 
@@ -15,12 +18,34 @@ Mesh make_triangle() {
     return mesh;
 }
 
+/// What is said of the scene, which is checked to be what it takes.
 std::size_t bytes_of(const Scene& scene) {
     Messages messages;
-    return predicted_bytes(prepare_scene(scene, {}, messages));
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const std::size_t predicted = predicted_bytes(prepared);
+    {
+        Queue queue = Queue::make_cpu();
+        const SceneOnDevice on_device(queue, prepared);
+        Queue tree_queue = Queue::make_cpu();
+        Buffer<std::byte> trees; // with wide nodes, which nothing is said of
+        upload_trees(tree_queue, prepared, trees);
+        CHECK(queue.allocated_bytes() == predicted - predicted_tree_bytes(prepared) + tree_queue.allocated_bytes());
+        CHECK(predicted_tree_bytes(prepared) <= tree_queue.allocated_bytes());
+    }
+    if (test::cuda_requested()) {
+        Queue queue = test::make_cuda_queue();
+        const SceneOnDevice on_device(queue, prepared);
+        CHECK(queue.allocated_bytes() == predicted);
+    }
+    return predicted;
 }
 
 } // namespace
+
+TEST_CASE("a scene takes the bytes that are said beforehand") {
+    CHECK(bytes_of(test::make_mixed_scene()) > 100'000);
+    CHECK(bytes_of(test::make_furnace_scene(0.5f)) > 10'000);
+}
 
 TEST_CASE("each light of a scene counts in the bytes that it will take") {
     constexpr std::size_t kCount = 64;
