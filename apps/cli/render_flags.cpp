@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
@@ -29,8 +30,6 @@ const std::vector<std::pair<std::string, PixelFilter>> kFilters = {{"box", Pixel
                                                                    {"tent", PixelFilter::Tent},
                                                                    {"gaussian", PixelFilter::Gaussian},
                                                                    {"blackman-harris", PixelFilter::BlackmanHarris}};
-const std::vector<std::pair<std::string, uint32_t>> kAovs = {
-    {"albedo", kAovAlbedo}, {"normal", kAovNormal}, {"depth", kAovDepth}, {"position", kAovPosition}, {"ids", kAovIds}};
 
 template <class T>
 std::vector<std::string> names_of(const std::vector<std::pair<std::string, T>>& choices) {
@@ -124,11 +123,11 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("STOPS|auto")
         ->group(group);
     verb.add_flag("--transparent", flags.transparent, "keep how much of a pixel is covered as alpha")->group(group);
-    verb.add_option("--aov", flags.aovs, "layers of an EXR, of albedo,normal,depth,position,ids")
+    verb.add_option("--aov", flags.aovs, fmt::format("layers of an EXR, of {}", fmt::join(aov_names(), ",")))
         ->type_name("NAME,...")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(one_of(names_of(kAovs)))
+        ->check(one_of(aov_names()))
         ->group(group);
     group = "Quality";
     add_light_path_flags(verb, flags, group);
@@ -203,7 +202,7 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
     settings.filter_radius = flags.filter_radius;
     settings.transparent = flags.transparent;
     settings.time_limit_s = flags.time_s;
-    for (const std::string& name : flags.aovs) settings.aovs |= choice(kAovs, name);
+    for (const std::string& name : flags.aovs) settings.aovs |= *aov_named(name);
     settings.path = {.max_depth = flags.max_depth,
                      .light = choice(kIntegrators, flags.integrator),
                      .clamp = flags.clamp,

@@ -110,7 +110,7 @@ std::vector<ExrLayer> layers_of(RenderResult& result) {
     if (!result.ids.empty()) {
         std::vector<uint32_t> ids;
         for (const PixelIds& id : result.ids) ids.insert(ids.end(), {id.instance, id.primitive, id.material});
-        layers.push_back({"id", {"instance", "primitive", "material"}, std::move(ids)});
+        layers.push_back({aov_group(kAovIds).layer, channel_names(aov_group(kAovIds)), std::move(ids)});
     }
     return layers;
 }

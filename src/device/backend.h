@@ -24,6 +24,10 @@ class DeviceBackend {
 public:
     virtual ~DeviceBackend() = default;
 
+    /// From now on, what the calling thread asks of CUDA goes to this device. Each call below makes it so first; a
+    /// launch goes through no call here, so Queue::Scope does. On the CPU it does nothing. Throws Error(DeviceFault).
+    virtual void make_current() const = 0;
+
     virtual std::string name() const = 0;
     virtual bool is_cuda() const = 0;
     virtual void* stream() const = 0; // cudaStream_t; null on the CPU
@@ -43,7 +47,7 @@ public:
 };
 
 /// Why no CUDA device can be used, or empty when device `index` can: no support compiled in, no driver, no such
-/// device, or an architecture that the binary holds no code for.
+/// device, or an architecture that the binary holds no code for. The calling thread's device stays as it was.
 std::string why_no_cuda(int index);
 int cuda_device_count();
 /// Throws Error(BadInput) with why_no_cuda's reason.

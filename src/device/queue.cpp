@@ -14,7 +14,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kAlignment = 128; // a cache line pair; more than any vector load needs
+constexpr std::size_t kAlignment = 256; // as cudaMalloc gives: parts of a buffer may count on it
 
 /// The CPU's work is done when its call returns, so the clock on the wall tells.
 class CpuTimeMark final : public TimeMark {
@@ -30,6 +30,7 @@ private:
 
 class CpuBackend final : public DeviceBackend {
 public:
+    void make_current() const override {}
     std::string name() const override { return "CPU"; }
     bool is_cuda() const override { return false; }
     void* stream() const override { return nullptr; }
@@ -58,6 +59,11 @@ double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1024.
 Queue Queue::make_cpu() { return Queue(std::make_unique<CpuBackend>()); }
 
 Queue Queue::make_cuda(int index) { return Queue(make_cuda_backend(index)); }
+
+Queue::Queue(Queue&& other) {
+    PERTEV_CHECK(other.allocations_.empty());
+    backend_ = std::move(other.backend_);
+}
 
 void* Queue::allocate(std::size_t bytes, const std::string& name) {
     if (bytes == 0) return nullptr;

@@ -1,7 +1,8 @@
 #pragma once
 
 // A queue of work on one device, and the owner of that device's memory. Work runs in the order given. On the CPU each
-// call returns when it is done; in CUDA it runs behind, and wait() meets it.
+// call returns when it is done; in CUDA it runs behind, and wait() meets it. Several queues, on one device or on many,
+// may be used in turns from one thread or from several at once; one queue is for one thread at a time.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,8 @@ public:
     static Queue make_cpu();
     /// Throws Error(BadInput) that says why when the device cannot be used.
     static Queue make_cuda(int index);
+    /// Buffers point to their queue: it may move only while it has given no memory.
+    Queue(Queue&& other);
 
     bool is_cuda() const { return backend_->is_cuda(); }
     void* stream() const { return backend_->stream(); }
@@ -47,10 +50,13 @@ public:
     std::size_t peak_bytes() const { return peak_; }
     std::size_t free_bytes() const { return backend_->free_bytes(); }
 
-    /// Names the stage being launched, for errors.
+    /// Made before each launch: names its stage, for errors, and makes the queue's device the thread's current one.
     class Scope {
     public:
-        Scope(Queue& queue, const char* stage) { queue.stage_ = stage; }
+        Scope(Queue& queue, const char* stage) {
+            queue.stage_ = stage;
+            queue.backend_->make_current();
+        }
     };
 
 private:

@@ -90,4 +90,15 @@ HD inline Rgb tone_map(Rgb linear, ToneMap kind, float scale = 1.0f) {
     return {};
 }
 
+/// One 8-bit RGBA pixel to be shown. `light` has alpha in it as a factor; alpha is clamped to [0, 1] and stays linear.
+HD inline void tone_map_pixel(Rgb light, float alpha, ToneMap kind, float scale, uint8_t* rgba) {
+    alpha = clamp(alpha, 0.0f, 1.0f);
+    if (alpha > 0 && alpha < 1) light = (1.0f / alpha) * light;
+    const Rgb shown = tone_map(light, kind, scale);
+    rgba[0] = to_byte(shown.r);
+    rgba[1] = to_byte(shown.g);
+    rgba[2] = to_byte(shown.b);
+    rgba[3] = to_byte(alpha);
+}
+
 } // namespace pertev

@@ -15,14 +15,8 @@ Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stop
         const float* from = linear.at(0, static_cast<uint32_t>(y));
         uint8_t* to = result.pixels.data() + y * linear.width * 4;
         for (uint32_t x = 0; x < linear.width; ++x, from += linear.channels, to += 4) {
-            Rgb light = is_grey ? grey(from[0]) : Rgb{from[0], from[1], from[2]};
-            const float alpha = has_alpha ? clamp(from[linear.channels - 1], 0.0f, 1.0f) : 1.0f;
-            if (alpha > 0 && alpha < 1) light = (1.0f / alpha) * light;
-            const Rgb shown = tone_map(light, kind, scale);
-            to[0] = to_byte(shown.r);
-            to[1] = to_byte(shown.g);
-            to[2] = to_byte(shown.b);
-            to[3] = to_byte(alpha);
+            const Rgb light = is_grey ? grey(from[0]) : Rgb{from[0], from[1], from[2]};
+            tone_map_pixel(light, has_alpha ? from[linear.channels - 1] : 1.0f, kind, scale, to);
         }
     });
     return result;

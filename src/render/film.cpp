@@ -1,95 +1,108 @@
 #include "render/film.h"
 
-#include <span>
+#include <algorithm>
 
-#include "base/parallel_for.h"
+#include "base/error.h"
+#include "device/launch.h"
+#include "render/film_stages.h"
 
 namespace pertev {
 namespace {
 
-struct AovLayout {
-    AovBits bit;
-    const char* name;
-    std::vector<std::string> channels;
-    bool over_hits; // mean over the samples that hit, not over all
-};
-
-const std::vector<AovLayout>& aov_layouts() {
-    static const std::vector<AovLayout> layouts = {
-        {kAovAlbedo, "albedo", {"R", "G", "B"}, false},
-        {kAovNormal, "normal", {"X", "Y", "Z"}, true},
-        {kAovDepth, "depth", {"Z"}, true},
-        {kAovPosition, "position", {"X", "Y", "Z"}, true},
-    };
-    return layouts;
-}
-
-uint32_t channel_count(uint32_t aovs) {
-    uint32_t count = kFilmColorChannels;
-    for (const AovLayout& layout : aov_layouts()) {
-        if ((aovs & layout.bit) != 0) count += static_cast<uint32_t>(layout.channels.size());
+/// Calls add(first, from, count) for a few elements at a time of `values`, which lie in `from` in memory of `queue`:
+/// where they are, or copied there from another queue's.
+template <class T, class Add>
+void visit_in(Queue& queue, Queue& theirs, const Buffer<T>& values, const Add& add) {
+    constexpr std::size_t kAtOnce = std::size_t(1) << 20; // 16 MiB of sums
+    const bool is_here = &queue == &theirs;
+    std::vector<T> on_host;
+    Buffer<T> copy;
+    if (!is_here) {
+        on_host.resize(std::min(kAtOnce, values.size()));
+        copy = Buffer<T>(queue, on_host.size(), "film to be added");
     }
-    return count;
+    for (std::size_t first = 0; first < values.size(); first += kAtOnce) {
+        const std::size_t count = std::min(kAtOnce, values.size() - first);
+        const T* from = values.data() + first;
+        if (!is_here) {
+            theirs.copy_to_host(on_host.data(), from, count * sizeof(T));
+            copy.upload({on_host.data(), count});
+            from = copy.data();
+        }
+        add(first, from, static_cast<uint32_t>(count));
+    }
+    queue.wait(); // before the copy goes
 }
 
 } // namespace
 
 Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs)
-    : width_(width), height_(height), aovs_(aovs), channels_(channel_count(aovs)),
+    : queue_(&queue), width_(width), height_(height), aovs_(aovs), channels_(film_channel_count(aovs)),
       sums_(queue, std::size_t(width) * height * channels_, "film"),
       ids_(queue, (aovs & kAovIds) != 0 ? std::size_t(width) * height : 0, "film ids"),
-      invalid_(queue, 1, "invalid samples") {
+      invalid_(queue, 1, "invalid samples"),
+      resolved_(queue, std::size_t(width) * height * kFilmColorChannels, "resolved film") {
     clear();
 }
 
 std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs) {
-    const std::size_t of_pixel =
-        channel_count(aovs) * sizeof(FixedSum) + ((aovs & kAovIds) != 0 ? sizeof(PixelIds) : 0);
+    const std::size_t of_pixel = film_channel_count(aovs) * sizeof(FixedSum) +
+                                 ((aovs & kAovIds) != 0 ? sizeof(PixelIds) : 0) + kFilmColorChannels * sizeof(float);
     return std::size_t(width) * height * of_pixel + sizeof(uint64_t);
 }
 
 void Film::clear() {
     sums_.zero();
-    ids_.zero();
+    ids_.fill(0xff); // kNoHit
     invalid_.zero();
 }
 
 FilmView Film::view() const { return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_}; }
 
-Image Film::picture(uint64_t samples, bool transparent) const {
-    std::vector<FixedSum> copy;
-    const std::span<const FixedSum> sums = sums_.read(copy);
-    Image image{width_, height_, transparent ? 4u : 3u, {}};
-    image.pixels.resize(std::size_t(width_) * height_ * image.channels);
-    parallel_for(std::size_t(width_) * height_, 4096, [&](uint64_t pixel) {
-        for (uint32_t c = 0; c < image.channels; ++c) {
-            image.pixels[pixel * image.channels + c] = mean_of(sums[pixel * channels_ + c], samples);
-        }
+void Film::add(const Film& other) {
+    PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_);
+    visit_in(*queue_, *other.queue_, other.sums_, [&](std::size_t first, const FixedSum* from, uint32_t count) {
+        launch(*queue_, "add_films", count, AddSums{from, sums_.data() + first});
     });
+    visit_in(*queue_, *other.queue_, other.ids_, [&](std::size_t first, const PixelIds* from, uint32_t count) {
+        launch(*queue_, "add_film_ids", count, AddIds{from, ids_.data() + first});
+    });
+    const uint64_t invalid = invalid_samples() + other.invalid_samples();
+    invalid_.upload({&invalid, 1});
+}
+
+Image Film::resolve(uint32_t first, uint32_t channels, bool over_hits, uint64_t samples) const {
+    launch(*queue_, "resolve_film", pixel_count(),
+           ResolveFilm{view(), first, channels, over_hits, samples, resolved_.data()});
+    Image image{width_, height_, channels, {}};
+    image.pixels.resize(std::size_t(pixel_count()) * channels);
+    queue_->copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size() * sizeof(float));
+    return image;
+}
+
+Image Film::picture(uint64_t samples, bool transparent) const {
+    return resolve(0, transparent ? 4 : 3, false, samples);
+}
+
+Rgba8Image Film::display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) const {
+    static_assert(kFilmColorChannels * sizeof(float) >= 4);
+    launch(*queue_, "display_film", pixel_count(),
+           DisplayFilm{view(), samples, kind, exposure_scale(exposure_stops), transparent,
+                       reinterpret_cast<uint8_t*>(resolved_.data())});
+    Rgba8Image image{width_, height_, {}};
+    image.pixels.resize(std::size_t(pixel_count()) * 4);
+    queue_->copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size());
     return image;
 }
 
 std::vector<FilmLayer> Film::layers(uint64_t samples) const {
     std::vector<FilmLayer> layers;
-    if ((aovs_ & ~static_cast<uint32_t>(kAovIds)) == 0) return layers;
-    std::vector<FixedSum> copy;
-    const std::span<const FixedSum> sums = sums_.read(copy);
-    uint32_t first = kFilmColorChannels;
-    for (const AovLayout& layout : aov_layouts()) {
-        if ((aovs_ & layout.bit) == 0) continue;
-        const auto channels = static_cast<uint32_t>(layout.channels.size());
-        FilmLayer layer{layout.name, layout.channels, {width_, height_, channels, {}}};
-        layer.image.pixels.resize(std::size_t(width_) * height_ * channels);
-        parallel_for(std::size_t(width_) * height_, 4096, [&](uint64_t pixel) {
-            const FixedSum* sum = &sums[pixel * channels_];
-            const uint64_t hits = sum[3].high; // ones are 2^64 units
-            const uint64_t count = layout.over_hits ? hits : samples;
-            for (uint32_t c = 0; c < channels; ++c) {
-                layer.image.pixels[pixel * channels + c] = count == 0 ? 0.0f : mean_of(sum[first + c], count);
-            }
-        });
-        layers.push_back(std::move(layer));
-        first += channels;
+    for (const AovGroup& group : kAovTable) {
+        if ((aovs_ & group.bit) == 0 || !group.is_summed) continue;
+        const std::vector<std::string> channels = channel_names(group);
+        layers.push_back({group.layer, channels,
+                          resolve(channel_offset(aovs_, group.bit), static_cast<uint32_t>(channels.size()),
+                                  group.over_hits, samples)});
     }
     return layers;
 }

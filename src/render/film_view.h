@@ -1,29 +1,18 @@
 #pragma once
 
-// Where samples are added, on the device. Channels of a pixel lie together: R, G, B, then hits (1 a sample whose
-// camera ray hit something), then whatever auxiliary channels the render was asked for.
+// Where samples are added, on the device. Channels of a pixel lie together, in the order of render/film_channels.h.
 
 #include <cstdint>
 
 #include "base/host_device.h"
 #include "math/rgb.h"
 #include "math/vec3.h"
+#include "render/film_channels.h"
 #include "render/fixed_sum.h"
 
 namespace pertev {
 
-/// Groups of auxiliary channels, in the order in which they follow R, G, B, hits.
-enum AovBits : uint32_t {
-    kAovAlbedo = 1,   // 3 channels: reflectance of the first surface
-    kAovNormal = 2,   // 3: its shading normal, world space
-    kAovDepth = 4,    // 1: distance along the camera's axis, metres
-    kAovPosition = 8, // 3: the file's coordinates, metres
-    kAovIds = 16,     // no sums: ids of sample 0, see FilmView::ids
-};
-
-inline constexpr uint32_t kFilmColorChannels = 4;
-
-/// Ids of what sample 0 of a pixel hit first; each kNoHit where it hit nothing.
+/// Ids of what sample 0 of a pixel hit first; each kNoHit where it hit nothing or was not taken.
 struct PixelIds {
     uint32_t instance, primitive, material;
 };

@@ -5,6 +5,7 @@
 // and 10^6 samples lose nothing. docs/conventions.md, "The film adds exactly".
 
 #include <cstdint>
+#include <cstring>
 
 #include "base/host_device.h"
 #include "base/limits.h"
@@ -59,7 +60,39 @@ HD inline void atomic_add(FixedSum* target, FixedSum value) {
     if (value.high != 0) atomic_add(&target->high, value.high);
 }
 
-/// sum / count, rounded once to the nearest float (ties to even). count > 0. Host only.
-float mean_of(FixedSum sum, uint64_t count);
+/// sum / count, rounded once to the nearest float (ties to even). count > 0.
+HD inline float mean_of(FixedSum sum, uint64_t count) {
+    __extension__ using Wide = unsigned __int128;
+    const bool negative = (sum.high >> 63) != 0;
+    Wide magnitude = (Wide(sum.high) << 64) | sum.low;
+    if (negative) magnitude = -magnitude;
+    if (magnitude == 0) return 0;
+
+    // Long division that keeps 26 or more significant bits of the quotient and whether anything is left: enough for one
+    // correct rounding. `exponent` counts the powers of two brought in from below the point.
+    Wide quotient = magnitude / count;
+    Wide rest = magnitude % count;
+    int exponent = -64;
+    while (quotient < (Wide(1) << 26)) {
+        rest <<= 1;
+        quotient = (quotient << 1) | (rest >= count ? 1 : 0);
+        if (rest >= count) rest -= count;
+        --exponent;
+    }
+    bool sticky = rest != 0;
+    while (quotient >= (Wide(1) << 26)) { // down to 26 bits: 24 of the float, one to round by, one for the rest
+        sticky = sticky || (quotient & 1) != 0;
+        quotient >>= 1;
+        ++exponent;
+    }
+    // An odd last bit below the rounding bit stands for everything cut. The double is exact and so is its product with
+    // a power of two (no double is subnormal here); its conversion rounds once, to a subnormal float where it must.
+    const double digits = static_cast<double>(static_cast<uint64_t>((quotient << 1) | (sticky ? 1 : 0)));
+    const uint64_t scale_bits = static_cast<uint64_t>(1023 + exponent - 1) << 52; // 2^(exponent - 1)
+    double scale;
+    memcpy(&scale, &scale_bits, sizeof scale);
+    const float mean = static_cast<float>(digits * scale);
+    return negative ? -mean : mean;
+}
 
 } // namespace pertev

@@ -1,118 +1,140 @@
 #include "render/scene_on_device.h"
 
-#include <span>
-
 #include "image/srgb_table.h"
+#include "render/part_arrays.h"
 
 namespace pertev {
+namespace {
 
-template <class T>
-const T* SceneOnDevice::keep(Queue& queue, std::span<const T> values, const std::string& name) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    if (values.empty()) return nullptr;
-    buffers_.emplace_back(queue, std::as_bytes(values), name);
-    return reinterpret_cast<const T*>(buffers_.back().data());
-}
+// Each list below says what a part is made of, for the upload and for the prediction of memory alike. Arrays that are
+// made for the device alone stand in the arguments, so that they outlive the list.
 
-SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) {
-    const Scene& scene = *prepared.scene;
-    upload_meshes(queue, scene);
-    upload_instances(queue, prepared);
-    upload_images(queue, scene);
-    upload_lights(queue, prepared.lights);
-    view_.centre = prepared.centre;
-}
-
-void SceneOnDevice::upload_meshes(Queue& queue, const Scene& scene) {
-    std::vector<MeshView> views;
-    for (const Mesh& mesh : scene.meshes) {
-        views.push_back({keep(queue, std::span(mesh.positions), "positions"),
-                         keep(queue, std::span(mesh.normals), "normals"),
-                         keep(queue, std::span(mesh.tangents), "tangents"),
-                         {keep(queue, std::span(mesh.uv[0]), "texture coordinates"),
-                          keep(queue, std::span(mesh.uv[1]), "texture coordinates")},
-                         keep(queue, std::span(mesh.colors), "vertex colours"),
-                         keep(queue, std::span(mesh.indices), "indices")});
+PartArrays list_geometry(const Scene& scene, std::vector<MeshView>& meshes, SceneView& view) {
+    PartArrays arrays;
+    meshes.resize(scene.meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Mesh& mesh = scene.meshes[i];
+        arrays.add(mesh.positions, meshes[i].positions);
+        arrays.add(mesh.normals, meshes[i].normals);
+        arrays.add(mesh.tangents, meshes[i].tangents);
+        for (int set = 0; set < 2; ++set) arrays.add(mesh.uv[set], meshes[i].uv[set]);
+        arrays.add(mesh.colors, meshes[i].colors);
+        arrays.add(mesh.indices, meshes[i].indices);
     }
-    view_.meshes = keep(queue, std::span<const MeshView>(views), "meshes");
+    arrays.add(meshes, view.meshes);
+    return arrays;
 }
 
-void SceneOnDevice::upload_instances(Queue& queue, const PreparedScene& prepared) {
+PartArrays list_instances(const PreparedScene& prepared, std::vector<InstanceView>& instances, SceneView& view) {
     const Scene& scene = *prepared.scene;
-    std::vector<MaterialView> materials;
-    for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
-    view_.materials = keep(queue, std::span<const MaterialView>(materials), "materials");
-
-    std::vector<InstanceView> instances;
+    view.any_alpha = 0;
+    view.any_hidden_back = 0;
+    view.centre = prepared.centre;
+    instances.reserve(scene.instances.size());
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Transform world_from_local = moved_to(instance.world_from_local, prepared.centre);
         const Material& material = scene.materials[instance.material];
         const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
         const uint16_t hides_back = material.double_sided ? 0 : 1;
-        view_.any_alpha |= has_alpha;
-        view_.any_hidden_back |= hides_back;
+        view.any_alpha |= has_alpha;
+        view.any_hidden_back |= hides_back;
         instances.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material, has_alpha,
                              hides_back, is_mirroring(world_from_local) ? 1u : 0u, prepared.is_baked[i] ? 1u : 0u});
     }
-    view_.instances = keep(queue, std::span<const InstanceView>(instances), "instances");
+    PartArrays arrays;
+    arrays.add(instances, view.instances);
+    return arrays;
 }
 
-void SceneOnDevice::upload_images(Queue& queue, const Scene& scene) {
-    std::vector<TextureImageView> images;
-    for (const TextureImage& image : scene.images) {
-        TextureImageView view = view_of(image);
-        view.rgba8 = keep(queue, std::span(image.rgba8.pixels), image.name);
-        view.rgba_float = keep(queue, std::span(image.rgba_float.pixels), image.name);
-        images.push_back(view);
+PartArrays list_materials(const Scene& scene, std::vector<MaterialView>& materials, SceneView& view) {
+    for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
+    PartArrays arrays;
+    arrays.add(materials, view.materials);
+    return arrays;
+}
+
+PartArrays list_textures(const Scene& scene, std::vector<TextureImageView>& images, SceneView& view) {
+    PartArrays arrays;
+    images = views_of_images(scene);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        arrays.add(scene.images[i].rgba8.pixels, images[i].rgba8);
+        arrays.add(scene.images[i].rgba_float.pixels, images[i].rgba_float);
     }
-    view_.images = keep(queue, std::span<const TextureImageView>(images), "images");
-    view_.linear_from_srgb = keep(queue, std::span<const float>(srgb_decode_table()), "sRGB table");
+    arrays.add(images, view.images);
+    arrays.add(std::span<const float>(srgb_decode_table()), view.linear_from_srgb);
+    return arrays;
 }
 
-void SceneOnDevice::upload_lights(Queue& queue, const LightSetData& lights) {
-    LightSetView& view = view_.lights;
-    view = view_of(lights, view_.images, view_.linear_from_srgb);
-    const auto keep_table = [&](const OrderedTable& table, OrderedTableView& table_view, const std::string& name) {
-        table_view.starts = keep(queue, std::span(table.starts), name);
-        table_view.guide = keep(queue, std::span(table.guide), name + " guide");
+PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
+    PartArrays arrays;
+    const auto add_table = [&](const OrderedTable& table, OrderedTableView& table_view) {
+        arrays.add(table.starts, table_view.starts);
+        arrays.add(table.guide, table_view.guide);
     };
-    keep_table(lights.choice, view.choice, "light table");
-    view.emitters = keep(queue, std::span(lights.emitters), "emissive instances");
-    view.triangle_order = keep(queue, std::span(lights.triangle_order), "order of emissive triangles");
-    view.triangle_starts = keep(queue, std::span(lights.triangle_starts), "tables of emissive triangles");
-    view.triangle_guides = keep(queue, std::span(lights.triangle_guides), "guides of emissive triangles");
-    view.triangles = keep(queue, std::span(lights.triangles), "emissive triangles");
-    view.punctual = keep(queue, std::span(lights.punctual), "punctual lights");
-    view.first_light = keep(queue, std::span(lights.first_light), "lights of instances");
-    view.emissions = keep(queue, std::span(lights.emissions), "emissions");
-    if (!lights.has_environment) return;
-    view.environment.pixels = keep(queue, std::span(lights.environment.pixels), "environment");
-    view.environment.row_bounds = keep(queue, std::span(lights.environment.row_bounds), "bounds of environment rows");
-    keep_table(lights.environment.rows, view.environment.rows, "environment rows");
-    keep_table(lights.environment.columns, view.environment.columns, "environment columns");
+    add_table(lights.choice, view.choice);
+    arrays.add(lights.emitters, view.emitters);
+    arrays.add(lights.triangle_order, view.triangle_order);
+    arrays.add(lights.triangle_starts, view.triangle_starts);
+    arrays.add(lights.triangle_guides, view.triangle_guides);
+    arrays.add(lights.triangles, view.triangles);
+    arrays.add(lights.punctual, view.punctual);
+    arrays.add(lights.first_light, view.first_light);
+    arrays.add(lights.emissions, view.emissions);
+    if (!lights.has_environment) return arrays;
+    arrays.add(lights.environment.pixels, view.environment.pixels);
+    arrays.add(lights.environment.row_bounds, view.environment.row_bounds);
+    add_table(lights.environment.rows, view.environment.rows);
+    add_table(lights.environment.columns, view.environment.columns);
+    return arrays;
+}
+
+} // namespace
+
+SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) {
+    update_geometry(queue, *prepared.scene);
+    update_instances(queue, prepared);
+    update_materials(queue, *prepared.scene);
+    update_textures(queue, *prepared.scene);
+    update_lights(queue, prepared);
+}
+
+void SceneOnDevice::update_geometry(Queue& queue, const Scene& scene) {
+    std::vector<MeshView> meshes;
+    list_geometry(scene, meshes, view_).upload(queue, geometry_, "geometry");
+}
+
+void SceneOnDevice::update_instances(Queue& queue, const PreparedScene& prepared) {
+    std::vector<InstanceView> instances;
+    list_instances(prepared, instances, view_).upload(queue, instances_, "instances");
+}
+
+void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
+    std::vector<MaterialView> materials;
+    list_materials(scene, materials, view_).upload(queue, materials_, "materials");
+}
+
+void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {
+    std::vector<TextureImageView> images;
+    list_textures(scene, images, view_).upload(queue, textures_, "textures");
+    view_.lights.images = view_.images; // lights look at textures too
+    view_.lights.linear_from_srgb = view_.linear_from_srgb;
+}
+
+void SceneOnDevice::update_lights(Queue& queue, const PreparedScene& prepared) {
+    view_.lights = view_of(prepared.lights, view_.images, view_.linear_from_srgb);
+    list_lights(prepared.lights, view_.lights).upload(queue, lights_, "lights");
 }
 
 std::size_t predicted_bytes(const PreparedScene& prepared) {
-    const auto bytes_of = [](const auto& values) { return values.size() * sizeof(values[0]); };
-    std::size_t bytes = 0;
     const Scene& scene = *prepared.scene;
-    for (const Mesh& mesh : scene.meshes) {
-        bytes += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.tangents) + bytes_of(mesh.uv[0]) +
-                 bytes_of(mesh.uv[1]) + bytes_of(mesh.colors) + bytes_of(mesh.indices);
-    }
-    for (const TextureImage& image : scene.images)
-        bytes += bytes_of(image.rgba8.pixels) + bytes_of(image.rgba_float.pixels);
-    bytes += scene.instances.size() * sizeof(InstanceView) + scene.materials.size() * sizeof(MaterialView);
-    const LightSetData& lights = prepared.lights;
-    bytes += bytes_of(lights.emitters) + bytes_of(lights.punctual) + bytes_of(lights.emissions) +
-             bytes_of(lights.triangles) + bytes_of(lights.first_light) + bytes_of(lights.triangle_order) +
-             bytes_of(lights.triangle_starts) + bytes_of(lights.triangle_guides) + bytes_of(lights.environment.pixels) +
-             bytes_of(lights.environment.row_bounds);
-    for (const OrderedTable* table : {&lights.choice, &lights.environment.rows, &lights.environment.columns}) {
-        bytes += bytes_of(table->starts) + bytes_of(table->guide);
-    }
-    return bytes;
+    SceneView view{};
+    std::vector<MeshView> meshes;
+    std::vector<InstanceView> instances;
+    std::vector<MaterialView> materials;
+    std::vector<TextureImageView> images;
+    return list_geometry(scene, meshes, view).bytes() + list_instances(prepared, instances, view).bytes() + list_materials(scene, materials, view).bytes() +
+           list_textures(scene, images, view).bytes() + list_lights(prepared.lights, view.lights).bytes();
 }
 
 } // namespace pertev

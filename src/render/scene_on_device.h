@@ -1,8 +1,7 @@
 #pragma once
 
-// A prepared scene in a device's memory: owns the buffers, hands out the view.
-
-#include <vector>
+// A prepared scene in a device's memory, but for its trees, which are a tracer's (render/tracer/): owns the buffers, hands out the view. It lies there in parts, one buffer each,
+// that are updated each on its own; an update that needs no more room than the part has takes no memory.
 
 #include "device/buffer.h"
 #include "render/prepare_scene.h"
@@ -10,27 +9,31 @@
 
 namespace pertev {
 
+/// Every update copies: what it is given may go away afterwards. The view, and each copy of it, is void after an
+/// update: view() has the new one. Work that was queued before an update still sees the scene as it was. All throw
+/// Error(OutOfMemory), after which the part is empty and no view may be used until it is updated again.
 class SceneOnDevice {
 public:
-    /// Copies everything; `prepared` and its scene may go away afterwards. Throws Error(OutOfMemory).
     SceneOnDevice(Queue& queue, const PreparedScene& prepared);
 
     const SceneView& view() const { return view_; }
 
+    /// Meshes.
+    void update_geometry(Queue& queue, const Scene& scene);
+    /// Where instances are and the world's centre; of their materials, whether they have alpha and hide their backs.
+    void update_instances(Queue& queue, const PreparedScene& prepared);
+    /// All else of materials. What they emit is in the lights too.
+    void update_materials(Queue& queue, const Scene& scene);
+    void update_lights(Queue& queue, const PreparedScene& prepared);
+    /// Images.
+    void update_textures(Queue& queue, const Scene& scene);
+
 private:
-    void upload_meshes(Queue& queue, const Scene& scene);
-    void upload_instances(Queue& queue, const PreparedScene& prepared);
-    void upload_images(Queue& queue, const Scene& scene);
-    void upload_lights(Queue& queue, const LightSetData& lights);
-
-    template <class T>
-    const T* keep(Queue& queue, std::span<const T> values, const std::string& name);
-
     SceneView view_{};
-    std::vector<Buffer<std::byte>> buffers_;
+    Buffer<std::byte> geometry_, instances_, materials_, lights_, textures_;
 };
 
-/// Bytes that SceneOnDevice will ask for.
+/// Bytes that SceneOnDevice asks for.
 std::size_t predicted_bytes(const PreparedScene& prepared);
 
 } // namespace pertev

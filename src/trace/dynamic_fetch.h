@@ -115,8 +115,9 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, co
     const Queue::Scope scope(queue, name);
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
-        static const KernelLimits limits = limits_of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>);
-        const uint32_t blocks = blocks_that_fit(limits, count);
+        static LimitsByDevice limits;
+        const uint32_t blocks =
+            blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count);
         queue.zero(pool, sizeof *pool);
         run_dynamic_fetch<Walk, kAny>
             <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);

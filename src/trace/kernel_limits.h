@@ -3,6 +3,7 @@
 // How many blocks of a walk's kernel a GPU holds at once, and what the kernel takes of it. For .cu files.
 
 #include <cstdint>
+#include <mutex>
 
 namespace pertev {
 
@@ -38,6 +39,25 @@ KernelLimits limits_of(Kernel* kernel) {
     limits.occupancy = static_cast<float>(limits.blocks * kWalkThreads) / static_cast<float>(threads);
     return limits;
 }
+
+/// The limits of one kernel, asked of each device once, since asking takes longer than launching. Any thread may ask.
+class LimitsByDevice {
+public:
+    /// Of the current device.
+    template <class Kernel>
+    KernelLimits of(Kernel* kernel) {
+        int device = 0;
+        if (cudaGetDevice(&device) != cudaSuccess) return {};
+        if (device >= kDevices) return limits_of(kernel);
+        std::call_once(asked_[device], [&] { limits_[device] = limits_of(kernel); });
+        return limits_[device];
+    }
+
+private:
+    static constexpr int kDevices = 64; // later ones are asked each time
+    std::once_flag asked_[kDevices];
+    KernelLimits limits_[kDevices];
+};
 
 /// Blocks that fill the GPU, or fewer where `count` threads do with them; at least 1.
 inline uint32_t blocks_that_fit(const KernelLimits& limits, uint32_t count) {

@@ -48,8 +48,8 @@ void launch_persistent(Queue& queue, const char* name, uint32_t count, const Sta
     const Queue::Scope scope(queue, name);
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
-        static const KernelLimits limits = limits_of(run_stage_persistent<Stage>); // asking takes longer than launching
-        const uint32_t blocks = blocks_that_fit(limits, count);
+        static LimitsByDevice limits;
+        const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count);
         queue.zero(pool, sizeof *pool);
         run_stage_persistent<<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count,
                                                                                                      pool);

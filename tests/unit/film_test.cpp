@@ -130,7 +130,8 @@ TEST_CASE("only the layers asked for are there, and ids only with kAovIds") {
     some.view().ids[2] = {7, 8, 9};
     REQUIRE(some.ids().size() == 4);
     CHECK(some.ids()[2].primitive == 8);
-    CHECK(Film::predicted_bytes(2, 2, kAovDepth | kAovIds) == 4 * (5 * sizeof(FixedSum) + sizeof(PixelIds)) + 8);
+    CHECK(Film::predicted_bytes(2, 2, kAovDepth | kAovIds) == 4 * (5 * sizeof(FixedSum) + sizeof(PixelIds) + 16) + 8);
+    CHECK(queue.allocated_bytes() == Film::predicted_bytes(2, 2, 0) + Film::predicted_bytes(2, 2, kAovDepth | kAovIds));
 }
 
 TEST_CASE("a sample with a channel that is not finite or too large adds 0 to all and is counted") {

@@ -17,6 +17,27 @@ long double value_of(FixedSum sum) {
            std::ldexp(static_cast<long double>(sum.low), -64);
 }
 
+/// mean_of by the C library's ldexp, which IEEE 754 fixes to the last bit: for the host alone.
+float mean_by_ldexp(FixedSum sum, uint64_t count) {
+    __extension__ using Wide = unsigned __int128;
+    const bool negative = (sum.high >> 63) != 0;
+    Wide magnitude = (Wide(sum.high) << 64) | sum.low;
+    if (negative) magnitude = -magnitude;
+    int shift = 0;
+    while (magnitude != 0 && (magnitude >> 127) == 0) {
+        magnitude <<= 1;
+        ++shift;
+    }
+    // 2^127 <= magnitude: with any count below 2^64 the quotient has 63 bits or more.
+    Wide quotient = magnitude / count;
+    bool sticky = magnitude % count != 0;
+    int exponent = -64 - shift;
+    for (; (quotient >> 40) != 0; quotient >>= 1, ++exponent) sticky = sticky || (quotient & 1) != 0;
+    const double digits = static_cast<double>(static_cast<uint64_t>((quotient << 1) | (sticky ? 1 : 0)));
+    const float mean = static_cast<float>(std::ldexp(digits, exponent - 1));
+    return negative ? -mean : mean;
+}
+
 } // namespace
 
 TEST_CASE("a float in fixed point is itself, cut towards zero below 2^-64") {
@@ -69,6 +90,33 @@ TEST_CASE("the mean is the correctly rounded quotient") {
         FixedSum negative = {~sum.low + 1, ~sum.high + (sum.low == 0 ? 1u : 0u)};
         CHECK(mean_of(negative, count) == -mean);
     }
+}
+
+TEST_CASE("the mean has the bits of a division by the C library, down to subnormal floats") {
+    test::Random random(11);
+    const auto bits64 = [&] { return (uint64_t(random.bits()) << 32) | random.bits(); };
+    int subnormal = 0;
+    for (int i = 0; i < 200'000; ++i) {
+        FixedSum sum = {bits64(), bits64()};
+        const auto cut = static_cast<int>(random.below(128)); // leading zeros
+        if (cut >= 64) sum = {sum.low >> (cut - 64), 0};
+        if (cut < 64) sum.high >>= cut;
+        if (i % 5 == 0) sum.low = 0;
+        if (i % 7 == 0) sum = {~sum.low + 1, ~sum.high + (sum.low == 0 ? 1u : 0u)};
+        uint64_t count = 1 + (bits64() >> random.below(64)) / 2;
+        if (i % 3 == 0) { // the least sums over the largest counts
+            sum = {1 + random.below(40), 0};
+            count = (uint64_t(1) << 63) + (bits64() >> 1);
+        }
+        const float mean = mean_of(sum, count);
+        subnormal += mean != 0 && std::fabs(mean) < 0x1p-126f ? 1 : 0;
+        REQUIRE(bits_of(mean) == bits_of(mean_by_ldexp(sum, count)));
+    }
+    CHECK(subnormal > 1000);
+    // Halfway between two floats the even one is taken.
+    CHECK(mean_of({0, (1u << 24) + 1}, 1) == 0x1p24f);
+    CHECK(mean_of({0, (1u << 24) + 3}, 1) == 0x1p24f + 4);
+    CHECK(mean_of({1, (1u << 24) + 1}, 1) == 0x1p24f + 2);
 }
 
 TEST_CASE("a million samples lose nothing") {

@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "render/scene_on_device.h"
+#include "render/tracer/scene_tracer.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
 
 using namespace pertev;
 
@@ -15,12 +18,28 @@ Mesh make_triangle() {
     return mesh;
 }
 
+/// What is said of the scene, which is checked to be what it takes; and so with its trees, which take none where the
+/// device is the host.
 std::size_t bytes_of(const Scene& scene) {
     Messages messages;
-    return predicted_bytes(prepare_scene(scene, {}, messages));
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const std::size_t predicted = predicted_bytes(prepared);
+    Queue queue = test::queue_asked_for();
+    const SceneOnDevice on_device(queue, prepared);
+    CHECK(queue.allocated_bytes() == predicted);
+    const TracerChoice choice = default_tracers(queue.is_cuda());
+    const std::size_t structures = queue.is_cuda() ? prepared.structures->device_bytes(choice) : 0;
+    const SceneTracer tracer(queue, *prepared.structures, choice);
+    CHECK(queue.allocated_bytes() == predicted + structures + sizeof(SceneView) + 3 * sizeof(uint32_t)); // and pools
+    return predicted;
 }
 
 } // namespace
+
+TEST_CASE("a scene takes the bytes that are said beforehand") {
+    CHECK(bytes_of(test::make_mixed_scene()) > 100'000);
+    CHECK(bytes_of(test::make_furnace_scene(0.5f)) > 10'000);
+}
 
 TEST_CASE("each light of a scene counts in the bytes that it will take") {
     constexpr std::size_t kCount = 64;

@@ -138,22 +138,22 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
 /// Auxiliary channels of what a camera ray hit first.
 HD inline void add_first_hit(const FilmView& film, const PathState& path, const Hit& hit, const Surface& surface,
                              Vec3 camera_axis, Vec3 centre) {
-    add_channel(film, path.pixel, 3, 1.0f);
-    uint32_t channel = kFilmColorChannels;
+    add_channel(film, path.pixel, kFilmHits, 1.0f);
     if ((film.aovs & kAovAlbedo) != 0) {
-        add_channels(film, path.pixel, channel, {surface.albedo.r, surface.albedo.g, surface.albedo.b});
-        channel += 3;
+        add_channels(film, path.pixel, channel_offset(film.aovs, kAovAlbedo),
+                     {surface.albedo.r, surface.albedo.g, surface.albedo.b});
     }
     if ((film.aovs & kAovNormal) != 0) {
         const Vec3 normal = surface.frame.normal;
-        add_channels(film, path.pixel, channel, dot(normal, path.direction) > 0 ? -normal : normal);
-        channel += 3;
+        add_channels(film, path.pixel, channel_offset(film.aovs, kAovNormal),
+                     dot(normal, path.direction) > 0 ? -normal : normal);
     }
     if ((film.aovs & kAovDepth) != 0) {
-        add_channel(film, path.pixel, channel, dot(surface.position - path.origin, camera_axis));
-        channel += 1;
+        add_channel(film, path.pixel, channel_offset(film.aovs, kAovDepth),
+                    dot(surface.position - path.origin, camera_axis));
     }
     if ((film.aovs & kAovPosition) != 0) { // in the file's coordinates: the film adds both without rounding
+        const uint32_t channel = channel_offset(film.aovs, kAovPosition);
         add_channels(film, path.pixel, channel, surface.position);
         add_channels(film, path.pixel, channel, centre);
     }

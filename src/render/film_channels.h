@@ -1,0 +1,100 @@
+#pragma once
+
+// What a film holds for each pixel: R, G, B, hits (1 a sample whose camera ray hit something), then the auxiliary
+// groups that the render was asked for. kAovTable is the one place that knows names, order and numbers of channels.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/host_device.h"
+
+namespace pertev {
+
+/// Groups of auxiliary channels; lower bits come first.
+enum AovBits : uint32_t {
+    kAovAlbedo = 1,   // reflectance of the first surface
+    kAovNormal = 2,   // its shading normal, world space
+    kAovDepth = 4,    // distance along the camera's axis, metres
+    kAovPosition = 8, // the file's coordinates, metres
+    kAovIds = 16,     // no sums: ids of sample 0, see FilmView::ids
+};
+
+inline constexpr uint32_t kFilmColorChannels = 4;
+inline constexpr uint32_t kFilmHits = 3; // of these, the channel that counts hits
+
+struct AovGroup {
+    AovBits bit;
+    const char* name;        // as it is asked for
+    const char* layer;       // as files name it
+    const char* channels[3]; // names in files; null where there are fewer
+    bool is_summed;          // its channels are sums in the film
+    bool over_hits;          // mean over the samples that hit, not over all
+};
+
+inline constexpr AovGroup kAovTable[] = {
+    {kAovAlbedo, "albedo", "albedo", {"R", "G", "B"}, true, false},
+    {kAovNormal, "normal", "normal", {"X", "Y", "Z"}, true, true},
+    {kAovDepth, "depth", "depth", {"Z"}, true, true},
+    {kAovPosition, "position", "position", {"X", "Y", "Z"}, true, true},
+    {kAovIds, "ids", "id", {"instance", "primitive", "material"}, false, false},
+};
+
+namespace film_channels {
+
+constexpr uint32_t kGroups = sizeof(kAovTable) / sizeof(kAovTable[0]);
+
+/// Sums of each group, four bits each: device code cannot read the table.
+constexpr uint32_t pack_widths() {
+    uint32_t widths = 0;
+    for (uint32_t i = 0; i < kGroups; ++i) {
+        for (const char* channel : kAovTable[i].channels) {
+            widths += kAovTable[i].is_summed && channel != nullptr ? 1u << (4 * i) : 0;
+        }
+    }
+    return widths;
+}
+inline constexpr uint32_t kWidths = pack_widths();
+
+constexpr bool is_in_order_of_bits() {
+    for (uint32_t i = 0; i < kGroups; ++i) {
+        if (kAovTable[i].bit != 1u << i) return false;
+    }
+    return true;
+}
+static_assert(is_in_order_of_bits());
+
+/// Sums of a pixel before those of group `index`.
+HD constexpr uint32_t sums_before(uint32_t aovs, uint32_t index) {
+    uint32_t sums = kFilmColorChannels;
+    for (uint32_t i = 0; i < index; ++i) sums += (aovs >> i & 1u) * (kWidths >> (4 * i) & 15u);
+    return sums;
+}
+
+} // namespace film_channels
+
+/// The first channel of group `aov` in a film that holds the groups `aovs`.
+HD constexpr uint32_t channel_offset(uint32_t aovs, AovBits aov) {
+    uint32_t index = 0;
+    while ((1u << index) < aov) ++index;
+    return film_channels::sums_before(aovs, index);
+}
+
+/// Sums of a pixel in all.
+HD constexpr uint32_t film_channel_count(uint32_t aovs) {
+    return film_channels::sums_before(aovs, film_channels::kGroups);
+}
+
+/// The group of one bit.
+const AovGroup& aov_group(AovBits aov);
+std::vector<std::string> channel_names(const AovGroup& group);
+
+/// By the name that it is asked for.
+std::optional<AovBits> aov_named(std::string_view name);
+/// All of them, in the order of the bits.
+std::vector<std::string> aov_names();
+
+} // namespace pertev

@@ -1,0 +1,131 @@
+// Two queues in one process, each with a scene of its own: what one does never shows in the other's picture. Two GPUs
+// with --device cuda where there are as many (one GPU twice where there is one), else the CPU twice.
+
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "image/picture_hash.h"
+#include "integrators/make_integrator.h"
+#include "render/filter_table.h"
+#include "render/scene_on_device.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kSamples = 4;
+
+Queue make_queue(int which) {
+    if (!test::cuda_requested()) return Queue::make_cpu();
+    return Queue::make_cuda(cuda_device_count() >= 2 ? which : 0);
+}
+
+struct Subject {
+    Scene scene;
+    uint32_t width, height;
+};
+
+/// Two scenes of unlike size, so that no buffer of one could stand in for the other's.
+const Subject& subject(int which) {
+    static const Subject subjects[2] = {{test::make_mixed_scene(), 61, 35}, {test::make_furnace_scene(0.5f), 32, 40}};
+    return subjects[which];
+}
+
+/// A render that is taken further sample by sample.
+class Render {
+public:
+    Render(Queue& queue, const Subject& subject)
+        : prepared_(prepare_scene(subject.scene, {}, messages_)), scene_(queue, prepared_),
+          film_(queue, subject.width, subject.height, kAovNormal | kAovDepth),
+          tracer_(queue, *prepared_.structures, default_tracers(queue.is_cuda())), filter_(queue),
+          integrator_(make_integrator(queue, {.path = {}, .body = PathBody::Wavefront, .batch = 1000})) {
+        tracer_.set_surfaces(scene_.view());
+        const PixelFilter kind = PixelFilter::BlackmanHarris;
+        const CameraRays rays = make_camera_rays(test::mixed_scene_camera(), filter_.set(kind, default_filter_radius(kind)),
+                                                 subject.width, subject.height, prepared_.centre);
+        integrator_->begin({scene_.view(), rays}, tracer_, kSamples);
+    }
+
+    void add_sample(uint32_t sample) { integrator_->render(sample, 1, film_); }
+    void add_all() {
+        for (uint32_t sample = 0; sample < kSamples; ++sample) add_sample(sample);
+    }
+    void add(const Render& other) { film_.add(other.film_); }
+    Hash128 hash() const {
+        Hasher hasher;
+        hasher.add_values(std::span<const float>(film_.picture(kSamples, true).pixels));
+        for (const FilmLayer& layer : film_.layers(kSamples)) {
+            hasher.add_values(std::span<const float>(layer.image.pixels));
+        }
+        return hasher.result();
+    }
+
+private:
+    Messages messages_;
+    PreparedScene prepared_;
+    SceneOnDevice scene_;
+    Film film_;
+    SceneTracer tracer_;
+    FilterTable filter_;
+    std::unique_ptr<Integrator> integrator_;
+};
+
+Hash128 hash_alone(int which) {
+    Queue queue = Queue::make_cpu();
+    Render render(queue, subject(which));
+    render.add_all();
+    return render.hash();
+}
+
+} // namespace
+
+TEST_CASE("two queues used in turns from one thread give the pictures of renders done alone") {
+    Queue first_queue = make_queue(0), second_queue = make_queue(1);
+    Render first(first_queue, subject(0)), second(second_queue, subject(1));
+    for (uint32_t sample = 0; sample < kSamples; ++sample) {
+        first.add_sample(sample);
+        second.add_sample(sample);
+    }
+    CHECK(first.hash() == hash_alone(0));
+    CHECK(second.hash() == hash_alone(1));
+    CHECK(hash_alone(0) != hash_alone(1));
+}
+
+TEST_CASE("a picture whose samples are shared out between two queues is the one of a queue alone") {
+    Queue first_queue = make_queue(0), second_queue = make_queue(1);
+    Render first(first_queue, subject(0)), second(second_queue, subject(0));
+    for (uint32_t sample = 0; sample < kSamples; ++sample) (sample % 2 == 0 ? first : second).add_sample(sample);
+    CHECK(first.hash() != hash_alone(0));
+    first.add(second);
+    CHECK(first.hash() == hash_alone(0));
+}
+
+TEST_CASE("two queues used from two threads at once give the pictures of renders done alone") {
+    Hash128 hashes[2];
+    const auto render_on_its_queue = [&](int which) {
+        Queue queue = make_queue(which);
+        Render render(queue, subject(which));
+        render.add_all();
+        hashes[which] = render.hash();
+    };
+    subject(0); // made before the threads begin
+    std::thread first(render_on_its_queue, 0), second(render_on_its_queue, 1);
+    first.join();
+    second.join();
+    CHECK(hashes[0] == hash_alone(0));
+    CHECK(hashes[1] == hash_alone(1));
+}
+
+TEST_CASE("asking whether a device can be used disturbs no queue") {
+    Queue queue = make_queue(1);
+    Render render(queue, subject(0));
+    for (uint32_t sample = 0; sample < kSamples; ++sample) {
+        static_cast<void>(why_no_cuda(0));
+        static_cast<void>(why_no_cuda(1000));
+        render.add_sample(sample);
+    }
+    CHECK(render.hash() == hash_alone(0));
+}

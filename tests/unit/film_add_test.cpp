@@ -1,0 +1,109 @@
+// Films put together, and what is made of a film on its device. With --device cuda the GPU joins in.
+
+#include <stdexcept>
+
+#include <doctest/doctest.h>
+
+#include "image/tone_map_image.h"
+#include "render/film.h"
+#include "tests/support/options.h"
+#include "tests/support/random.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+constexpr uint32_t kWidth = 17, kHeight = 9, kSamples = 6;
+
+/// One made-up sample of every pixel of a film in the CPU's memory. Some are not finite, some miss.
+void take_sample(const Film& film, uint32_t sample) {
+    const FilmView view = film.view();
+    test::Random random(100 + sample);
+    for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+        const Vec3 light = random.point(-0.1f, pixel % 5 == 0 ? 40.0f : 1.0f);
+        add_radiance(view, pixel, {light.x, pixel == 3 ? kInfinity : light.y, light.z});
+        const bool is_hit = random.below(3) != 0 && pixel % 11 != 0;
+        if (sample == 0) view.ids[pixel] = is_hit ? PixelIds{pixel, pixel + 1, 7} : PixelIds{kNoHit, kNoHit, kNoHit};
+        if (!is_hit) continue;
+        add_channel(view, pixel, kFilmHits, 1);
+        for (uint32_t c = kFilmColorChannels; c < view.channels; ++c) add_channel(view, pixel, c, random.within(-2, 2));
+    }
+}
+
+void check_equal(const Film& a, const Film& b) {
+    for (const bool transparent : {false, true}) {
+        CHECK(a.picture(kSamples, transparent).pixels == b.picture(kSamples, transparent).pixels);
+    }
+    const std::vector<FilmLayer> layers_a = a.layers(kSamples), layers_b = b.layers(kSamples);
+    REQUIRE(layers_a.size() == 4);
+    REQUIRE(layers_b.size() == 4);
+    for (std::size_t i = 0; i < 4; ++i) CHECK(layers_a[i].image.pixels == layers_b[i].image.pixels);
+    const std::vector<PixelIds> ids_a = a.ids(), ids_b = b.ids();
+    REQUIRE(ids_a.size() == ids_b.size());
+    for (std::size_t i = 0; i < ids_a.size(); ++i) {
+        CHECK(ids_a[i].instance == ids_b[i].instance);
+        CHECK(ids_a[i].primitive == ids_b[i].primitive);
+        CHECK(ids_a[i].material == ids_b[i].material);
+    }
+    CHECK(a.invalid_samples() == b.invalid_samples());
+}
+
+} // namespace
+
+TEST_CASE("films that hold parts of the samples add up to the film that holds them all, whichever device they are on") {
+    Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Film whole(cpu, kWidth, kHeight, kAovs);
+    for (uint32_t sample = 0; sample < kSamples; ++sample) take_sample(whole, sample);
+    CHECK(whole.invalid_samples() == kSamples);
+    for (const uint32_t with_first : {0u, 1u}) { // which of the two parts holds sample 0
+        CAPTURE(with_first);
+        Film parts[2] = {Film(cpu, kWidth, kHeight, kAovs), Film(other_cpu, kWidth, kHeight, kAovs)};
+        for (uint32_t sample = 0; sample < kSamples; ++sample) take_sample(parts[(sample + with_first) % 2], sample);
+        Film sum(asked, kWidth, kHeight, kAovs);
+        sum.add(parts[0]);
+        sum.add(parts[1]);
+        check_equal(sum, whole);
+        parts[1].add(parts[0]); // between two queues
+        check_equal(parts[1], whole);
+        Film same_queue(other_cpu, kWidth, kHeight, kAovs);
+        same_queue.add(parts[1]);
+        check_equal(same_queue, whole);
+        Film back(cpu, kWidth, kHeight, kAovs); // from the device
+        back.add(sum);
+        check_equal(back, whole);
+    }
+}
+
+TEST_CASE("a film of another size or of other layers is refused") {
+    Queue queue = Queue::make_cpu();
+    Film film(queue, kWidth, kHeight, kAovDepth);
+    CHECK_THROWS_AS(film.add(Film(queue, kWidth, kHeight, kAovAlbedo)), std::logic_error);
+    CHECK_THROWS_AS(film.add(Film(queue, kWidth + 1, kHeight, kAovDepth)), std::logic_error);
+    CHECK_THROWS_AS(film.add(Film(queue, kWidth, kHeight + 1, kAovDepth)), std::logic_error);
+}
+
+TEST_CASE("what a film shows has the bytes of its picture tone-mapped on the host") {
+    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Film film(cpu, kWidth, kHeight, kAovs);
+    for (uint32_t sample = 0; sample < kSamples; ++sample) take_sample(film, sample);
+    Film on_device(asked, kWidth, kHeight, kAovs);
+    on_device.add(film);
+    for (const ToneMap kind : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {
+        for (const float stops : {0.0f, -2.5f, 1.3f}) {
+            for (const bool transparent : {false, true}) {
+                CAPTURE(name_of(kind));
+                CAPTURE(stops);
+                CAPTURE(transparent);
+                const Rgba8Image host = tone_map_image(film.picture(kSamples, transparent), kind, stops);
+                const Rgba8Image shown = on_device.display(kSamples, kind, stops, transparent);
+                CHECK(shown.width == kWidth);
+                CHECK(shown.height == kHeight);
+                CHECK(shown.pixels == host.pixels);
+            }
+        }
+    }
+    CHECK(film.display(kSamples, ToneMap::Srgb, 0, true).pixels !=
+          film.display(kSamples, ToneMap::Srgb, 0, false).pixels);
+}

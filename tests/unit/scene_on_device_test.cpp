@@ -1,0 +1,141 @@
+// A scene's parts in a device's memory, each updated on its own. With --device cuda on the GPU.
+
+#include <cstdint>
+
+#include <doctest/doctest.h>
+
+#include "image/picture_hash.h"
+#include "integrators/make_integrator.h"
+#include "render/part_arrays.h"
+#include "render/scene_on_device.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+struct Inner {
+    const float* values;
+};
+
+/// Of a picture, traced in the trees of `prepared`.
+Hash128 hash_of(Queue& queue, const SceneOnDevice& scene, const PreparedScene& prepared) {
+    Film film(queue, 40, 30, kAovAlbedo | kAovPosition);
+    SceneTracer tracer(queue, *prepared.structures, default_tracers(queue.is_cuda()));
+    tracer.set_surfaces(scene.view());
+    const PixelFilterView box = {PixelFilter::Box, 0.5f, nullptr};
+    const auto renderer = make_integrator(queue, {.path = {}, .body = PathBody::Wavefront, .batch = 2000});
+    renderer->begin({scene.view(), make_camera_rays(test::mixed_scene_camera(), box, 40, 30, scene.view().centre)},
+                    tracer, 2);
+    renderer->render(0, 2, film);
+    Hasher hasher;
+    hasher.add_values(std::span<const float>(film.picture(2, true).pixels));
+    for (const FilmLayer& layer : film.layers(2)) hasher.add_values(std::span<const float>(layer.image.pixels));
+    return hasher.result();
+}
+
+Hash128 hash_afresh(const PreparedScene& prepared) {
+    Queue queue = Queue::make_cpu();
+    return hash_of(queue, SceneOnDevice(queue, prepared), prepared);
+}
+
+PreparedScene prepare(const Scene& scene) {
+    Messages messages;
+    return prepare_scene(scene, {}, messages);
+}
+
+} // namespace
+
+TEST_CASE("arrays of a part lie in one buffer at multiples of 256 bytes, and arrays may hold pointers to others") {
+    Queue queue = Queue::make_cpu();
+    Buffer<std::byte> buffer;
+    const std::vector<float> numbers = {1, 2, 3}, none;
+    const std::vector<uint8_t> many(300, 7);
+    std::vector<Inner> inner(2);
+    const float* empty = numbers.data();
+    const uint8_t* bytes = nullptr;
+    const Inner* views = nullptr;
+    PartArrays arrays;
+    arrays.add(many, bytes);
+    arrays.add(none, empty);
+    arrays.add(numbers, inner[0].values);
+    arrays.add(none, inner[1].values);
+    arrays.add(inner, views);
+    CHECK(arrays.bytes() == 512 + 256 + 256);
+    arrays.upload(queue, buffer, "part");
+    CHECK(queue.allocated_bytes() == arrays.bytes());
+    CHECK(empty == nullptr);
+    REQUIRE(bytes != nullptr);
+    CHECK(bytes != many.data());
+    CHECK(bytes[299] == 7);
+    REQUIRE(views != nullptr);
+    CHECK(views[0].values[2] == 3);
+    CHECK(views[1].values == nullptr);
+    for (const void* pointer : {static_cast<const void*>(bytes), static_cast<const void*>(views),
+                                static_cast<const void*>(views[0].values)}) {
+        CHECK(reinterpret_cast<uintptr_t>(pointer) % 256 == 0);
+    }
+}
+
+TEST_CASE("a part's buffer is kept while it is large enough, and replaced, not doubled, when it is not") {
+    Queue queue = Queue::make_cpu();
+    Buffer<std::byte> buffer;
+    const auto upload = [&](std::size_t count) {
+        const std::vector<uint8_t> values(count, 1);
+        const uint8_t* target = nullptr;
+        PartArrays arrays;
+        arrays.add(values, target);
+        arrays.upload(queue, buffer, "part");
+        return target;
+    };
+    const uint8_t* const first = upload(5000);
+    CHECK(upload(5000) == first);
+    CHECK(upload(3) == first);
+    CHECK(upload(0) == nullptr);
+    CHECK(queue.allocated_bytes() == 5120);
+    CHECK(queue.peak_bytes() == 5120);
+    CHECK(upload(5121) != nullptr);
+    CHECK(queue.allocated_bytes() == 5376);
+    CHECK(queue.peak_bytes() == 5376);
+}
+
+TEST_CASE("a scene that was updated part by part gives the picture of the scene uploaded afresh, and takes no memory") {
+    const Scene before = test::make_mixed_scene();
+    Scene after = before;
+    for (Material& material : after.materials) material.base_color = 0.5f * material.base_color;
+    for (Light& light : after.lights) light.intensity = 2.0f * light.intensity;
+    for (Instance& instance : after.instances) instance.world_from_local.translation.x += 0.125f;
+    for (Mesh& mesh : after.meshes) {
+        for (Vec2& uv : mesh.uv[0]) uv = 2.0f * uv;
+    }
+    for (TextureImage& image : after.images) {
+        for (uint8_t& value : image.rgba8.pixels) value = static_cast<uint8_t>(value / 2);
+        for (float& value : image.rgba_float.pixels) value *= 0.5f;
+    }
+    const PreparedScene old_scene = prepare(before), new_scene = prepare(after);
+
+    Queue queue = test::queue_asked_for();
+    SceneOnDevice scene(queue, old_scene);
+    Hash128 last = hash_of(queue, scene, old_scene);
+    CHECK(last == hash_afresh(old_scene));
+    const std::size_t bytes = queue.allocated_bytes();
+    const auto changes = [&](const char* part, const PreparedScene* trees = nullptr) {
+        CAPTURE(part);
+        const Hash128 now = hash_of(queue, scene, trees == nullptr ? old_scene : *trees);
+        CHECK(now != last); // each update brings a change of its own
+        last = now;
+    };
+    scene.update_textures(queue, after);
+    changes("textures");
+    scene.update_materials(queue, after);
+    changes("materials");
+    scene.update_geometry(queue, after);
+    changes("geometry");
+    scene.update_lights(queue, new_scene);
+    changes("lights");
+    scene.update_instances(queue, new_scene);
+    changes("instances", &new_scene);
+    CHECK(last == hash_afresh(new_scene));
+    CHECK(queue.allocated_bytes() == bytes);
+}
