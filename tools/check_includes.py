@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 ORDER = ["base", "math", "image", "device", "scene", "formats", "accel", "trace", "shading", "render", "integrators",
-         "denoise", "lab"]
+         "denoise", "session", "lab"]
 
 # Modules that lie before but are still out of bounds.
 FORBIDDEN = {

@@ -26,7 +26,9 @@
 #include "image/write_image.h"
 #include "integrators/render_picture.h"
 #include "lab/record_scenes.h"
-#include "scene/defaults.h"
+#include "session/choose_camera.h"
+#include "session/open_scene.h"
+#include "session/survey/default_light.h"
 
 namespace pertev {
 namespace {
@@ -175,9 +177,9 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     SceneFigures figures{.scene = std::filesystem::path(file).stem().string(), .device = queue.device_name()};
     Messages messages;
     const Stopwatch watch;
-    Scene scene = read_scene(file, {}, messages);
+    Scene scene = read_scene_and_lamps(file, {}, messages);
     figures.load_s = watch.seconds();
-    add_default_environment(scene, messages);
+    add_default_light(scene, messages);
 
     const ScratchCache cache;
     PrepareOptions options;
@@ -191,11 +193,8 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     figures.tree_bytes_per_triangle =
         static_cast<double>(tree_bytes(prepared)) / static_cast<double>(std::max<uint64_t>(prepared.triangles, 1));
 
-    const Camera camera =
-        scene.cameras.empty()
-            ? make_default_camera(scene, static_cast<float>(settings.width) / static_cast<float>(settings.height),
-                                  messages)
-            : scene.cameras.front();
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    const Camera camera = choose_camera({}, scene, aspect, messages);
     RenderSettings warm_up = settings;
     warm_up.samples = 1;
     render_all(queue, prepared, camera, warm_up);

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
-#include "apps/cli/aim_camera.h"
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"

@@ -1,6 +1,7 @@
 #pragma once
 
-// What every verb that takes a scene shares: the scene itself, its camera and its environment, as flags.
+// What every verb that takes a scene shares: the scene itself, its camera and its environment, as flags: their texts,
+// and the session's functions for them.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,7 +22,7 @@ struct SceneOptions {
     std::vector<std::filesystem::path> allowed_paths;
     std::string camera; // name or number
     std::string eye, target, up;
-    bool is_aimed = false; // the target is made up (apps/cli/aim_camera.h)
+    bool is_aimed = false; // the target is made up (aim_eye)
     float fov_deg = 0;     // 0: the camera's own
     float aperture_m = -1, focus_m = 0;
     std::string projection; // "", "perspective", "orthographic"
@@ -41,20 +42,17 @@ void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders)
 /// What can be told before the scene is read. Throws Error(BadInput) for a flag that another one makes useless.
 void check_scene_options(const SceneOptions& options);
 
-/// A file, or a built-in scene by its name. Throws Error.
+/// A file, or a built-in scene by its name (session/open_scene.h's read_scene_and_lamps). Throws Error.
 Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
                      Messages& messages);
 
-/// The scene read, with the environment that the flags or the defaults give it. A flag that this scene makes useless is
-/// a warning. Throws Error.
+// The rest is session/open_scene.h and session/choose_camera.h for flags as they stand on the command line. Each throws
+// Error(BadInput) also for text that is no value.
+
 Scene load_scene(const SceneOptions& options, Messages& messages);
-
-/// The scene's own camera: the one that --camera names, else the first, else null. Throws Error(BadInput) that lists
-/// those there are when none is named so.
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene);
-
-/// The camera that the flags or the scene or the defaults give, for a picture of this width / height. A flag that this
-/// camera makes useless is a warning. Throws Error(BadInput).
+/// Gives `options` the target that an eye alone looks at.
+void aim_eye(SceneOptions& options, const Scene& scene, Messages& messages);
 Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages);
 
 } // namespace pertev

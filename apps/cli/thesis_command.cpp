@@ -17,7 +17,7 @@
 #include "integrators/render_picture.h"
 #include "lab/thesis.h"
 #include "lab/write_tables.h"
-#include "scene/defaults.h"
+#include "session/survey/default_light.h"
 
 namespace pertev {
 namespace {
@@ -47,13 +47,7 @@ ThesisScene load(SceneOptions options, const std::string& scene, const LabSettin
                  Messages& messages) {
     options.scene = scene;
     ThesisScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
-    if (has_pictures) {
-        const bool had_environment = thesis.scene.environment.has_value();
-        const std::size_t lights = thesis.scene.lights.size();
-        add_default_environment(thesis.scene, messages);
-        thesis.default_light =
-            thesis.scene.lights.size() != lights || thesis.scene.environment.has_value() != had_environment;
-    }
+    if (has_pictures) thesis.default_light = add_default_light(thesis.scene, messages) != DefaultLight::None;
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     thesis.camera = choose_camera(options, thesis.scene, aspect, messages);
     return thesis;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include "base/read_file.h"
+#include "formats/gltf/animations.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
+#include "formats/gltf/node_shapes.h"
 #include "formats/gltf/place_nodes.h"
 #include "formats/gltf/textures.h"
 #include "formats/load_textures.h"
@@ -21,13 +23,16 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     Scene scene;
     const gltf::Document document(path, std::move(bytes), messages);
     gltf::Buffers buffers(document, access);
-    const gltf::NodeGraph nodes(document, messages);
+    gltf::NodeGraph nodes(document, messages);
 
     TextureLoader loader(access, messages);
     gltf::Textures textures(document, buffers, loader, messages);
     gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, messages);
     gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, messages);
     gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
+    scene.nodes = nodes.take_nodes();
+    gltf::read_node_shapes(document, buffers, scene);
+    gltf::read_animations(document, buffers, scene, messages);
     loader.load_into(scene, buffers.file_bytes());
 
     if (document.root().find("animations")) {

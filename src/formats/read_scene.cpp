@@ -13,7 +13,6 @@
 #include "formats/read_gltf.h"
 #include "formats/read_obj.h"
 #include "formats/read_ply.h"
-#include "scene/lamp_fronts.h"
 #include "scene/validate.h"
 
 namespace pertev {
@@ -56,10 +55,13 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
     validate(scene, path.string(), messages);
     if (options.two_sided_lights) {
         for (Material& material : scene.materials) material.two_sided_emission = true;
-    } else if (const Reader* reader = find_reader(path); reader != nullptr && !reader->tells_sides) {
-        say_lamp_fronts(scene, path.string(), messages);
     }
     return scene;
+}
+
+bool tells_lamp_sides(const std::filesystem::path& path) {
+    const Reader* reader = find_reader(path);
+    return reader == nullptr || reader->tells_sides;
 }
 
 bool is_scene_name(const std::filesystem::path& path) {

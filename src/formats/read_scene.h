@@ -24,6 +24,9 @@ struct ReadOptions {
 /// in `messages`. The scene has been through validate().
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
+/// Whether files of this name's kind can say if a surface emits from one face or from both; so can built-in scenes.
+bool tells_lamp_sides(const std::filesystem::path& path);
+
 /// Whether a name could be a scene's: it has an extension from above or is that of a built-in scene.
 bool is_scene_name(const std::filesystem::path& path);
 /// What there is to be named, for messages: "a scene file (.obj ...) nor a built-in scene (...)".

@@ -64,10 +64,12 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
     uint64_t own_triangles = 0;
     for (const Mesh& mesh : scene.meshes) own_triangles += mesh.triangle_count();
     const uint64_t limit = kFreeBakedTriangles + kMaxBakedExpansion * own_triangles;
+    const std::vector<bool> moves = may_move(scene);
     placement.tree_of_mesh.assign(scene.meshes.size(), kBakedMesh);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        const bool baked = uses[instance.mesh] == 1 || !(condition_number(instance.world_from_local) <= kMaxCondition);
+        const bool stays_alone = uses[instance.mesh] == 1 && !moves[i];
+        const bool baked = stays_alone || !(condition_number(instance.world_from_local) <= kMaxCondition);
         placement.is_baked.push_back(baked);
         if (baked && uses[instance.mesh] > 1) {
             ++placement.copies;

@@ -31,10 +31,10 @@ struct MeshPlacement {
 /// exact but near 0. {0, 0, 0} without any triangle.
 Vec3 world_centre(const Scene& scene);
 
-/// An instance is baked when its mesh is used once, or when its transform's condition number is over 2^12: a local
-/// space so skewed would cost the boxes of a top level more than the triangles cost memory. Throws Error(OverLimit)
-/// that names the instance with which such copies are out of all proportion to the scene's own triangles.
-/// `centre`: the origin of the world they are placed in.
+/// An instance is baked when its mesh is used once and it may not move (scene/animation.h), or, moving or not, when its
+/// transform's condition number is over 2^12: a local space so skewed would cost the boxes of a top level more than the
+/// triangles cost memory. Throws Error(OverLimit) that names the instance with which such copies are out of all
+/// proportion to the scene's own triangles. `centre`: the origin of the world they are placed in.
 MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0});
 
 /// The triangles of all baked instances, in the moved world. Throws Error(OverLimit) for more than one tree can hold.

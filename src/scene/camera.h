@@ -6,6 +6,7 @@
 #include <string>
 
 #include "math/transform.h"
+#include "scene/node_number.h"
 
 namespace pertev {
 
@@ -20,6 +21,7 @@ struct Camera {
     float aspect = 0;            // width / height the file asks for; 0 = none
     float aperture_radius = 0;   // thin lens, metres; 0 = pinhole
     float focus_distance = 1;    // metres along -z to the plane in focus
+    uint32_t node = kNoNode;     // index into Scene::nodes
 };
 
 } // namespace pertev

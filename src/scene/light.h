@@ -8,6 +8,7 @@
 #include "image/image.h"
 #include "math/rgb.h"
 #include "math/transform.h"
+#include "scene/node_number.h"
 
 namespace pertev {
 
@@ -21,7 +22,8 @@ struct Light {
     Rgb intensity = {1, 1, 1};   // Point, Spot: W/sr; Directional: irradiance on a surface that faces it, W/m2
     float cos_inner = 1;         // Spot: full intensity within, falling to 0 at cos_outer (< cos_inner)
     float cos_outer = 0.70710678f;
-    float range = 0; // Point, Spot: metres past which it gives no light; 0 = no end
+    float range = 0;         // Point, Spot: metres past which it gives no light; 0 = no end
+    uint32_t node = kNoNode; // index into Scene::nodes
 };
 
 /// Light from infinitely far away. Image columns run with longitude: the middle column looks along -z, +x is a quarter

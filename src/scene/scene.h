@@ -10,22 +10,22 @@
 #include <vector>
 
 #include "math/transform.h"
+#include "scene/animation.h"
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
+#include "scene/node.h"
 #include "scene/texture.h"
 
 namespace pertev {
-
-inline constexpr uint32_t kNoNode = 0xffffffffu;
 
 struct Instance {
     std::string name;
     uint32_t mesh = 0;     // index into Scene::meshes
     uint32_t material = 0; // index into Scene::materials
     Transform world_from_local;
-    uint32_t node = kNoNode; // of a glTF file (origin_of). A number, for scenes of millions.
+    uint32_t node = kNoNode; // index into Scene::nodes: where it stands, and where the file has it (origin_of)
 };
 
 struct Scene {
@@ -36,6 +36,9 @@ struct Scene {
     std::vector<Light> lights;
     std::optional<Environment> environment;
     std::vector<Camera> cameras;
+    std::vector<Node> nodes; // a glTF file's, by their numbers there; also those that hold nothing
+    std::vector<Skin> skins;
+    std::vector<Animation> animations;
     std::string no_instances; // where there are none: what the file has instead, and what would be right
 };
 

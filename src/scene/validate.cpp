@@ -11,6 +11,7 @@
 #include "base/message_text.h"
 #include "scene/validate_materials.h"
 #include "scene/validate_mesh.h"
+#include "scene/validate_nodes.h"
 
 namespace pertev {
 namespace {
@@ -28,6 +29,7 @@ public:
 
     void run() {
         references();
+        validate_nodes(scene_, file_);
         validate_materials(scene_, file_, messages_);
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
             Mesh& mesh = scene_.meshes[i];

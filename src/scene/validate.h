@@ -1,7 +1,8 @@
 #pragma once
 
 // The gate between readers and the renderer: after it, every index is in range, every number finite and within
-// base/limits.h, every transform invertible. Readers may leave any of that wrong.
+// base/limits.h, every transform invertible, nodes without circles, key times rising. Readers may leave any of that
+// wrong.
 
 #include <string>
 

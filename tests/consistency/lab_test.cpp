@@ -11,7 +11,7 @@
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
-#include "scene/defaults.h"
+#include "session/survey/default_camera.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "scene/aim_camera.h"
+#include "session/survey/aim_camera.h"
 
 using namespace pertev;
 

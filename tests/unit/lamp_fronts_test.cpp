@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "formats/read_scene.h"
+#include "session/open_scene.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"
 
@@ -29,7 +29,7 @@ Messages read(const std::string& obj, bool two_sided_lights = false) {
     Messages messages;
     ReadOptions options;
     options.two_sided_lights = two_sided_lights;
-    const Scene scene = read_scene(test::write_text(folder / "a.obj", obj), options, messages);
+    const Scene scene = read_scene_and_lamps(test::write_text(folder / "a.obj", obj), options, messages);
     for (const Material& material : scene.materials) CHECK(material.two_sided_emission == two_sided_lights);
     return messages;
 }

@@ -3,9 +3,10 @@
 #include <array>
 
 #include "formats/read_scene.h"
-#include "scene/cast_rays.h"
-#include "scene/defaults.h"
-#include "scene/surroundings.h"
+#include "session/survey/cast_rays.h"
+#include "session/survey/default_camera.h"
+#include "session/survey/default_light.h"
+#include "session/survey/surroundings.h"
 #include "tests/support/options.h"
 
 using namespace pertev;
@@ -165,7 +166,7 @@ TEST_CASE("a scene without light gets a sky with a notice, one with any light ge
     Scene scene;
     add_box(scene, {}, {1, 1, 1}, kAll, false);
     Messages messages;
-    add_default_environment(scene, messages);
+    add_default_light(scene, messages);
     REQUIRE(scene.environment);
     const Image& sky = scene.environment->image;
     CHECK(sky.width == 2 * sky.height);
@@ -188,7 +189,7 @@ TEST_CASE("a scene without light gets a sky with a notice, one with any light ge
         if (kind == 2) lit.environment.emplace().scale = grey(0);
         const std::size_t lights = lit.lights.size();
         Messages silent;
-        add_default_environment(lit, silent);
+        add_default_light(lit, silent);
         CHECK(silent.all().empty());
         CHECK(lit.lights.size() == lights);
     }
@@ -203,7 +204,7 @@ TEST_CASE("what is unlit and a light of strength 0 light nothing; a scene that i
         scene.materials.emplace_back().kind = MaterialKind::Unlit;
         change(scene);
         Messages messages;
-        add_default_environment(scene, messages);
+        add_default_light(scene, messages);
         CHECK(messages.all().size() == (scene.environment ? 1 : 0)); // said where it is done
         return scene.environment.has_value();
     };
@@ -218,7 +219,7 @@ TEST_CASE("a closed room without light gets lamps inside it") {
     Scene scene;
     add_box(scene, {0, 0, 0}, {20, 6, 8}, kAll, true);
     Messages messages;
-    add_default_environment(scene, messages);
+    add_default_light(scene, messages);
     CHECK(!scene.environment);
     REQUIRE(!scene.lights.empty());
     for (const Light& light : scene.lights) CHECK(is_within(bounds_of(scene), light.position));

@@ -113,6 +113,7 @@ TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where
         scene.instances.push_back({.name = "hidden", .world_from_local = make_scale({0, 0, 0}), .node = node});
     };
     const Result result = validated([&](Scene& scene) {
+        scene.nodes.resize(7);
         add_hidden(scene, 5);
         scene.instances.push_back({.name = "last", .mesh = 0, .material = 0, .world_from_local = {}});
         add_hidden(scene, 6);
@@ -131,6 +132,7 @@ TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where
                   "other than 0",
                   ErrorCode::BadInput, [&](Scene& scene) {
                       scene.instances.clear();
+                      scene.nodes.resize(7);
                       add_hidden(scene, 5);
                   });
 }
@@ -153,6 +155,7 @@ TEST_CASE("what the file describes somewhere is named by that place") {
         s.meshes[0].indices[4] = 4;
     });
     check_refused("file: /nodes/7 one lies further", E::OverLimit, [](Scene& s) {
+        s.nodes.resize(8);
         s.instances[0].node = 7;
         s.instances[0].world_from_local = make_scale({1e30f, 1, 1});
     });

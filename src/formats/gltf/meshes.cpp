@@ -3,17 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "formats/gltf/node_shapes.h"
 #include "formats/gltf/skin.h"
 
 namespace pertev::gltf {
 namespace {
-
-std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh) {
-    const JsonValue& source = node.find("weights") ? node : mesh;
-    std::vector<float> weights;
-    for (const JsonValue& weight : source.elements_of("weights")) weights.push_back(weight.to_float());
-    return weights;
-}
 
 // Equal texts: equal members.
 std::string members_as_text(const JsonValue& object, std::initializer_list<std::string_view> members) {

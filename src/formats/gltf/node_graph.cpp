@@ -1,13 +1,15 @@
 #include "formats/gltf/node_graph.h"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <optional>
 
 #include <fmt/format.h>
 
 namespace pertev::gltf {
 namespace {
 
-Transform parent_from_node(const JsonValue& node) {
+std::variant<NodePose, Transform> pose_of(const JsonValue& node) {
     if (const std::optional<JsonValue> matrix = node.find("matrix")) {
         const std::array<float, 16> values = matrix->to_floats<16>();
         float columns[16];
@@ -18,21 +20,10 @@ Transform parent_from_node(const JsonValue& node) {
     const std::array<float, 4> r = node.floats_or<4>("rotation", {0, 0, 0, 1});
     const std::array<float, 3> s = node.floats_or<3>("scale", {1, 1, 1});
     if (r == std::array<float, 4>{0, 0, 0, 0}) throw node.at("rotation").error("expected a unit quaternion");
-    return transform_from_trs({t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}, {s[0], s[1], s[2]});
+    return NodePose{{t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}, {s[0], s[1], s[2]}};
 }
 
 } // namespace
-
-Transform transform_from_trs(Vec3 translation, Vec4 rotation, Vec3 scale) {
-    const auto squared = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
-    const double length =
-        std::sqrt(squared(rotation.x) + squared(rotation.y) + squared(rotation.z) + squared(rotation.w));
-    const auto unit = [&](float x) { return static_cast<float>(static_cast<double>(x) / length); };
-    Transform m = make_rotation(unit(rotation.x), unit(rotation.y), unit(rotation.z), unit(rotation.w));
-    for (Vec3* row : {&m.row0, &m.row1, &m.row2}) *row = {row->x * scale.x, row->y * scale.y, row->z * scale.z};
-    m.translation = translation;
-    return m;
-}
 
 NodeGraph::NodeGraph(const Document& document, Messages& messages) {
     read_children(document);
@@ -43,15 +34,15 @@ NodeGraph::NodeGraph(const Document& document, Messages& messages) {
 void NodeGraph::read_children(const Document& document) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
     children_.resize(nodes.size());
-    parents_.resize(nodes.size());
+    nodes_.resize(nodes.size());
     for (uint32_t node = 0; node < nodes.size(); ++node) {
         for (const JsonValue& reference : nodes[node].elements_of("children")) {
             const uint32_t child = document.index_into("nodes", reference);
-            if (parents_[child]) {
-                throw reference.error(
-                    fmt::format("node {} is already a child of node {}; expected one parent", child, *parents_[child]));
+            if (nodes_[child].parent != kNoNode) {
+                throw reference.error(fmt::format("node {} is already a child of node {}; expected one parent", child,
+                                                  nodes_[child].parent));
             }
-            parents_[child] = node;
+            nodes_[child].parent = node;
             children_[node].push_back(child);
         }
     }
@@ -61,13 +52,16 @@ void NodeGraph::place_nodes(const Document& document) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
     std::vector<uint32_t> roots;
     for (uint32_t node = 0; node < nodes.size(); ++node) {
-        if (!parents_[node]) roots.push_back(node);
+        if (nodes_[node].parent == kNoNode) roots.push_back(node);
     }
     world_from_node_.resize(nodes.size());
     std::vector<bool> is_placed(nodes.size());
     for_each_below(roots, [&](uint32_t node) {
-        const Transform local = parent_from_node(nodes[node]);
-        world_from_node_[node] = parents_[node] ? compose(world_from_node_[*parents_[node]], local) : local;
+        nodes_[node].name = nodes[node].string_or("name", "");
+        nodes_[node].pose = pose_of(nodes[node]);
+        const Transform local = parent_from_node(nodes_[node]);
+        const uint32_t parent = nodes_[node].parent;
+        world_from_node_[node] = parent == kNoNode ? local : compose(world_from_node_[parent], local);
         is_placed[node] = true;
     });
     // Each node has at most one parent, so what no root leads to goes round in a circle.
@@ -80,8 +74,8 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages&
     const std::vector<JsonValue>& scenes = document.table("scenes");
     std::vector<uint32_t> roots;
     if (scenes.empty()) { // a library of parts: show all of it
-        for (uint32_t node = 0; node < parents_.size(); ++node) {
-            if (!parents_[node]) roots.push_back(node);
+        for (uint32_t node = 0; node < nodes_.size(); ++node) {
+            if (nodes_[node].parent == kNoNode) roots.push_back(node);
         }
         return roots;
     }
@@ -91,10 +85,10 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages&
         messages.note(
             fmt::format("{}: the file has {} scenes; number {} is shown", document.file(), scenes.size(), scene));
     }
-    std::vector<bool> is_listed(parents_.size());
+    std::vector<bool> is_listed(nodes_.size());
     for (const JsonValue& reference : scenes[scene].elements_of("nodes")) {
         const uint32_t node = document.index_into("nodes", reference);
-        if (parents_[node] || is_listed[node]) {
+        if (nodes_[node].parent != kNoNode || is_listed[node]) {
             throw reference.error(fmt::format("node {} {}; expected each root once", node,
                                               is_listed[node] ? "is listed twice" : "is a child of another node"));
         }

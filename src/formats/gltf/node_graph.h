@@ -1,17 +1,17 @@
 #pragma once
 
-// The nodes of a document as a forest: parents, world transforms, and which of them the scene shows.
+// The nodes of a document as a forest: the Scene's nodes, world transforms, and which of them the scene shows.
 //
 // Source: glTF 2.0 section 3.5. Nothing here recurses: a chain of a million nodes is a loop.
 
 #include <cstdint>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/messages.h"
 #include "formats/gltf/document.h"
 #include "math/transform.h"
-#include "math/vec4.h"
+#include "scene/node.h"
 
 namespace pertev::gltf {
 
@@ -24,6 +24,8 @@ public:
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
     /// World from local of any node, in the scene or not.
     const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
+    /// All nodes of the document, by their numbers.
+    std::vector<Node> take_nodes() { return std::move(nodes_); }
 
 private:
     void read_children(const Document& document);
@@ -33,12 +35,9 @@ private:
     void for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const;
 
     std::vector<std::vector<uint32_t>> children_;
-    std::vector<std::optional<uint32_t>> parents_;
+    std::vector<Node> nodes_;
     std::vector<Transform> world_from_node_;
     std::vector<uint32_t> scene_nodes_;
 };
-
-/// Translation * rotation * scale, the rotation a quaternion (x, y, z, w) of any length but 0.
-Transform transform_from_trs(Vec3 translation, Vec4 rotation, Vec3 scale);
 
 } // namespace pertev::gltf

@@ -41,7 +41,7 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
     std::vector<Transform> placements;
     for (std::size_t i = 0; i < *count; ++i) {
         const Vec4 rotation = r.empty() || r[i] == Vec4{} ? Vec4{0, 0, 0, 1} : r[i];
-        placements.push_back(transform_from_trs(t.empty() ? Vec3{} : t[i], rotation, s.empty() ? Vec3{1, 1, 1} : s[i]));
+        placements.push_back(transform_of({t.empty() ? Vec3{} : t[i], rotation, s.empty() ? Vec3{1, 1, 1} : s[i]}));
     }
     return placements;
 }
@@ -92,6 +92,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             Camera camera = read_camera(document.item("cameras", *reference));
             if (camera.name.empty()) camera.name = node.string_or("name", "");
             camera.origin = node.pointer();
+            camera.node = index;
             if (const std::optional<Transform> rigid = without_scale(world_from_node)) {
                 camera.world_from_camera = *rigid;
                 scene.cameras.push_back(std::move(camera));
@@ -103,6 +104,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             Light light = read_light(document.item("lights", extension->at("light")), messages);
             if (light.name.empty()) light.name = node.string_or("name", "");
             light.origin = node.pointer();
+            light.node = index;
             if (place_light(world_from_node, light)) {
                 scene.lights.push_back(std::move(light));
             } else {

@@ -1,4 +1,4 @@
-#include "scene/cast_rays.h"
+#include "session/survey/cast_rays.h"
 
 #include <mutex>
 

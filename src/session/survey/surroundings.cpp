@@ -1,8 +1,8 @@
-#include "scene/surroundings.h"
+#include "session/survey/surroundings.h"
 
 #include <array>
 
-#include "scene/cast_rays.h"
+#include "session/survey/cast_rays.h"
 
 namespace pertev {
 namespace {

@@ -1,6 +1,6 @@
-#include "scene/aim_camera.h"
+#include "session/survey/aim_camera.h"
 
-#include "scene/cast_rays.h"
+#include "session/survey/cast_rays.h"
 
 namespace pertev {
 

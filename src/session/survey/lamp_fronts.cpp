@@ -1,4 +1,4 @@
-#include "scene/lamp_fronts.h"
+#include "session/survey/lamp_fronts.h"
 
 #include <algorithm>
 #include <vector>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
-#include "scene/cast_rays.h"
+#include "session/survey/cast_rays.h"
 
 namespace pertev {
 namespace {

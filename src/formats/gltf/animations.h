@@ -1,0 +1,18 @@
+#pragma once
+
+// Animations as key frames. Source: glTF 2.0 section 3.11. KHR_animation_pointer is not read: its channels, which name
+// no node, are left out with a note.
+
+#include "formats/gltf/accessor.h"
+#include "scene/scene.h"
+
+namespace pertev::gltf {
+
+/// Fills scene.animations; scene.nodes are there. Throws Error(BadInput) for what is no animation by the format (an
+/// index out of range, an accessor of the wrong type or out of its data, an unknown path or interpolation, a node or
+/// mesh that cannot be animated so, as many values as the interpolation does not take). A channel with numbers that
+/// mean nothing (times that do not rise, a quaternion of 0, a number that is not finite) is left out with a warning: a
+/// still picture does not need it.
+void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages);
+
+} // namespace pertev::gltf

@@ -1,0 +1,21 @@
+#pragma once
+
+// The part of validate() for nodes, skins and animations.
+
+#include <string>
+
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// Throws Error(BadInput) for an index out of range (of instances, cameras and lights into the nodes, too), nodes that
+/// go round in a circle, a number that is not finite, a quaternion of length 0, times that do not rise, and values that
+/// do not fit their times.
+void validate_nodes(const Scene& scene, const std::string& file);
+
+/// Numbers in a value of an animated part of this node.
+std::size_t numbers_in_value(AnimatedPart part, const Node& node);
+/// What is wrong with a channel of this node, for messages; empty where it is right.
+std::string fault_of(const AnimationChannel& channel, const Node& node);
+
+} // namespace pertev

@@ -1,0 +1,165 @@
+#include "session/choose_camera.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "math/portable_math.h"
+#include "session/survey/aim_camera.h"
+#include "session/survey/default_camera.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kRadiansPerDegree = kPi / 180.0f;
+
+std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+/// `x` as a notice writes it, and no more exactly: the flags that the notice shows make the same picture.
+float rounded(float x, int digits) {
+    const std::string text = fmt::format("{:.{}g}", x, digits);
+    float value = x;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+/// The number that `text` is from its first character to its last.
+std::optional<std::size_t> whole_number_in(const std::string& text) {
+    std::size_t value = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+void place_camera(const CameraChoice& choice, Camera& camera) {
+    if (!choice.eye && !choice.target && !choice.up) return;
+    const Transform& from = camera.world_from_camera;
+    const Vec3 eye = choice.eye.value_or(from.translation);
+    const Vec3 target = choice.target.value_or(eye - column(from, 2));
+    const Vec3 up = choice.up.value_or(Vec3{0, 1, 0});
+    Transform placed = look_at(eye, target, up);
+    if (!is_finite(placed.row0) && !choice.up) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
+    if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
+        const std::string of_up = choice.up ? fmt::format(" and not lie along --up {}", text_of(up)) : "";
+        throw Error(ErrorCode::BadInput, fmt::format("--eye {} --target {}: the target must differ from the eye{}",
+                                                     text_of(eye), text_of(target), of_up));
+    }
+    camera.world_from_camera = placed;
+    if (choice.target) camera.focus_distance = length(target - eye);
+}
+
+/// For a scene without a camera and a choice without an eye.
+Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect, Messages& messages) {
+    if (!choice.target) return make_default_camera(scene, aspect, messages);
+    Messages unsaid; // of a view that is not to be: it looks elsewhere
+    const Camera camera = make_default_camera(scene, aspect, unsaid);
+    const Vec3 eye = camera.world_from_camera.translation;
+    messages.note(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {:.4g},{:.4g},{:.4g} "
+                              "--target {})",
+                              eye.x, eye.y, eye.z, text_of(*choice.target)));
+    return camera;
+}
+
+/// Turns a perspective camera into an orthographic one that shows as much of what it looks at.
+void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
+    const Vec3 eye = camera.world_from_camera.translation, forward = -column(camera.world_from_camera, 2);
+    const Bounds3 bounds = bounds_of(scene);
+    const float distance =
+        choice.target ? length(*choice.target - eye) : dot(0.5f * (bounds.lo + bounds.hi) - eye, forward);
+    camera.projection = Projection::Orthographic;
+    if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
+}
+
+/// Where there is an aperture, but neither a focus nor a target that was said: focuses `camera`, which is placed, on
+/// what is in the middle of its picture, or else on the distance of the scene's middle, with a notice.
+void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera& camera, Messages& messages) {
+    const bool has_target = choice.target && !choice.is_aimed;
+    if (!(choice.aperture.value_or(0) > 0) || choice.focus || has_target) return;
+    const std::optional<float> seen = distance_in_the_middle(scene, camera);
+    const float away = length(bounds_of(scene).centre() - camera.world_from_camera.translation);
+    const float distance = seen.value_or(max(away, 0x1p-40f));
+    camera.focus_distance = rounded(distance, 4);
+    messages.note(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,
+                              seen ? "the distance of what is in the middle of the picture"
+                                   : "the distance of the scene's middle, for nothing is in that of the picture",
+                              distance));
+}
+
+/// `flattened`: the camera's angle of view has become a height.
+void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
+    const bool is_perspective = camera.projection == Projection::Perspective;
+    if (choice.view_height && is_perspective) {
+        messages.warn("--view-height: the camera is a perspective one; --projection orthographic makes use of it");
+    }
+    if (choice.fov_deg && !is_perspective && (!flattened || choice.view_height)) {
+        messages.warn("--fov: the camera is an orthographic one, whose view has a height; --view-height sets that");
+    }
+    if (choice.focus && camera.aperture_radius == 0) {
+        messages.warn("--focus: the lens has no aperture, so all is sharp; --aperture gives it one");
+    }
+}
+
+} // namespace
+
+void check_camera_choice(const CameraChoice& choice) {
+    if (choice.view_height && choice.projection == Projection::Perspective) {
+        throw Error(ErrorCode::BadInput, "--view-height: a perspective view has none; say --fov, or "
+                                         "--projection orthographic");
+    }
+    if (choice.focus && choice.aperture == 0.0f) {
+        throw Error(ErrorCode::BadInput, "--focus: with --aperture 0 all is sharp; give the lens a radius");
+    }
+}
+
+const Camera* scene_camera(const std::string& name, const Scene& scene) {
+    if (name.empty()) return scene.cameras.empty() ? nullptr : &scene.cameras.front();
+    for (const Camera& camera : scene.cameras) {
+        if (camera.name == name) return &camera;
+    }
+    if (const auto number = whole_number_in(name); number && *number < scene.cameras.size()) {
+        return &scene.cameras[*number];
+    }
+    std::string known;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        known += fmt::format("\n  {}  {}", i, scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
+    }
+    throw Error(ErrorCode::BadInput, fmt::format("--camera {}: the scene has no such camera; it has:{}", name,
+                                                 known.empty() ? "\n  none" : known));
+}
+
+void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
+    if (!choice.eye || choice.target) return;
+    const Target target = target_from(scene, *choice.eye);
+    const Vec3 at = target.position;
+    choice.target = Vec3{rounded(at.x, 6), rounded(at.y, 6), rounded(at.z, 6)};
+    choice.is_aimed = true;
+    messages.note(fmt::format("--eye without --target: it looks {} (--eye {} --target {:.6g},{:.6g},{:.6g})",
+                              target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
+                              text_of(*choice.eye), at.x, at.y, at.z));
+}
+
+Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {
+    aim_eye(choice, scene, messages);
+    Camera camera;
+    if (const Camera* given = scene_camera(choice.camera, scene)) {
+        camera = *given;
+    } else if (!choice.eye) {
+        camera = make_camera(choice, scene, aspect, messages);
+    }
+    place_camera(choice, camera);
+    if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
+    if (choice.aperture) camera.aperture_radius = *choice.aperture;
+    if (choice.focus) camera.focus_distance = *choice.focus;
+    if (choice.projection == Projection::Perspective) camera.projection = Projection::Perspective;
+    const bool flattened =
+        choice.projection == Projection::Orthographic && camera.projection == Projection::Perspective;
+    if (flattened) flatten(choice, scene, camera);
+    if (choice.view_height) camera.ortho_height = *choice.view_height;
+    focus_in_the_middle(choice, scene, camera, messages);
+    warn_of_useless_parts(choice, camera, flattened, messages);
+    return camera;
+}
+
+} // namespace pertev

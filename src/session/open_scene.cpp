@@ -1,0 +1,83 @@
+#include "session/open_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "formats/read_environment.h"
+#include "math/scalar.h"
+#include "session/survey/default_light.h"
+#include "session/survey/lamp_fronts.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kRadiansPerDegree = kPi / 180.0f;
+
+/// Nothing where the options give none.
+std::optional<Environment> environment_of(const OpenOptions& options, Messages& messages) {
+    Environment environment;
+    if (options.environment_radiance) {
+        const Rgb color = *options.environment_radiance;
+        if (!(is_finite(color) && color.r >= 0 && color.g >= 0 && color.b >= 0)) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--environment {},{},{}: radiance cannot be negative", color.r, color.g, color.b));
+        }
+        environment.scale = color;
+        return environment;
+    }
+    if (options.environment.empty()) return std::nullopt;
+    if (std::error_code fault; !std::filesystem::exists(options.environment, fault)) {
+        throw Error(ErrorCode::BadInput, fmt::format("--environment {}: neither a file nor a radiance R,G,B such as "
+                                                     "0.5,0.5,0.5",
+                                                     options.environment.string()));
+    }
+    environment.image = read_environment_image(options.environment, messages);
+    return environment;
+}
+
+void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages) {
+    if (scene.environment) {
+        scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
+        scene.environment->scale = options.environment_scale * scene.environment->scale;
+        return;
+    }
+    const auto warn = [&](const char* flag) {
+        messages.warn(fmt::format("{}: the scene has no environment; --environment gives it one", flag));
+    };
+    if (options.environment_rotation_deg != 0) warn("--environment-rotation");
+    if (options.environment_scale != 1) warn("--environment-scale");
+}
+
+void show_back_faces(Scene& scene, Messages& messages) {
+    bool any_hidden = false;
+    for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
+    if (!any_hidden) messages.warn("--show-back-faces: no surface of the scene hides its back");
+}
+
+} // namespace
+
+Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
+    Scene scene = read_scene(path, options, messages);
+    if (!options.two_sided_lights && !tells_lamp_sides(path)) say_lamp_fronts(scene, path.string(), messages);
+    return scene;
+}
+
+Scene open_scene(const OpenOptions& options, Messages& messages) {
+    ReadOptions read;
+    read.allowed_paths = options.allowed_paths;
+    read.two_sided_lights = options.two_sided_lights;
+    Scene scene = read_scene_and_lamps(options.scene, read, messages);
+    if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
+        messages.warn("--two-sided-lights: no surface of the scene gives light");
+    }
+    if (options.show_back_faces) show_back_faces(scene, messages);
+    if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
+    add_default_light(scene, messages);
+    turn_and_scale(options, scene, messages);
+    return scene;
+}
+
+} // namespace pertev

@@ -1,0 +1,37 @@
+#pragma once
+
+// From a name to a scene that is ready to be prepared: the file read, its environment, its light if it has none, and
+// which faces count. Whoever renders begins here, then with session/choose_camera.h. Messages name the command line's
+// flags, which the fields below are called after.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/messages.h"
+#include "formats/read_scene.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+struct OpenOptions {
+    std::string scene; // a file, or a built-in scene's name
+    std::vector<std::filesystem::path> allowed_paths;
+    std::filesystem::path environment;       // an .hdr or .exr panorama; empty: none
+    std::optional<Rgb> environment_radiance; // instead of a panorama: from everywhere, W/(sr m2), at least 0
+    float environment_rotation_deg = 0;      // about +y, added to the environment's own
+    float environment_scale = 1;             // times the environment's own
+    bool two_sided_lights = false;           // surfaces emit from both faces, whatever the file says
+    bool show_back_faces = false;            // the camera sees backs that a glTF file hides
+};
+
+/// The scene read, with the environment that the options give it or else, where it has no light, the default light. An
+/// option that this scene makes useless is a warning. The scene has been through validate(). Throws Error.
+Scene open_scene(const OpenOptions& options, Messages& messages);
+
+/// What `formats/read_scene.h` reads, with nothing added, and what there is to say of its lamps in files that cannot
+/// tell which faces of a lamp shine (session/survey/lamp_fronts.h). Throws Error.
+Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
+
+} // namespace pertev

@@ -1,0 +1,102 @@
+// A camera from what is said of it, and a scene with what it lacks, without a command line.
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "math/portable_math.h"
+#include "session/choose_camera.h"
+#include "session/open_scene.h"
+#include "tests/support/options.h"
+#include "tests/support/write_text.h"
+
+using namespace pertev;
+
+namespace {
+
+/// A square of side 2 in the plane z = 0, with two cameras.
+Scene make_scene() {
+    Scene scene;
+    Mesh square;
+    square.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    square.indices = {0, 1, 2, 0, 2, 3};
+    scene.meshes.push_back(square);
+    scene.materials.resize(1);
+    scene.instances.push_back({.name = "square", .mesh = 0, .material = 0, .world_from_local = {}});
+    scene.cameras.push_back({.name = "first", .world_from_camera = make_translation({0, 0, 5})});
+    scene.cameras.push_back({.name = "second", .world_from_camera = make_translation({0, 0, 9})});
+    return scene;
+}
+
+Camera choose(const CameraChoice& choice, const Scene& scene = make_scene()) {
+    Messages messages;
+    return choose_camera(choice, scene, 1, messages);
+}
+
+} // namespace
+
+TEST_CASE("the scene's first camera is taken, or the one that is named by name or number") {
+    CHECK(choose({}).name == "first");
+    CHECK(choose({.camera = "second"}).name == "second");
+    CHECK(choose({.camera = "1"}).name == "second");
+    CHECK_THROWS_WITH_AS(choose({.camera = "third"}),
+                         "--camera third: the scene has no such camera; it has:\n  0  first\n  1  second", Error);
+}
+
+TEST_CASE("an eye without a target looks at the middle of the scene, as the notice says it") {
+    Messages messages;
+    const Camera camera = choose_camera({.eye = Vec3{0, 0, -3}}, make_scene(), 1, messages);
+    CHECK(camera.world_from_camera == look_at({0, 0, -3}, {0, 0, 0}, {0, 1, 0}));
+    CHECK(camera.focus_distance == 3);
+    REQUIRE(messages.all().size() == 1);
+    CHECK(messages.all()[0].text ==
+          "--eye without --target: it looks at the middle of the scene (--eye 0,0,-3 --target 0,0,0)");
+}
+
+TEST_CASE("a lens without a focus is sharp at what is in the middle of the picture, unless a target is said") {
+    CHECK(choose({.eye = Vec3{0, 0, 4}, .aperture = 0.1f}).focus_distance == 4);
+    CHECK(choose({.camera = "second", .aperture = 0.1f}).focus_distance == 9);
+    CHECK(choose({.eye = Vec3{0, 0, 4}, .target = Vec3{0, 0, 2}, .aperture = 0.1f}).focus_distance == 2);
+    CHECK(choose({.aperture = 0.1f, .focus = 7.0f}).focus_distance == 7);
+}
+
+TEST_CASE("a perspective camera made orthographic shows as much of what it looks at") {
+    CameraChoice choice = {.eye = Vec3{0, 0, 4}, .target = Vec3{0, 0, 0}, .fov_deg = 90.0f};
+    choice.projection = Projection::Orthographic;
+    CHECK(choose(choice).projection == Projection::Orthographic);
+    CHECK(choose(choice).ortho_height == doctest::Approx(8));
+    choice.view_height = 3.0f;
+    CHECK(choose(choice).ortho_height == 3);
+}
+
+TEST_CASE("parts of a choice that exclude each other are refused before a scene is read") {
+    CHECK_NOTHROW(check_camera_choice({}));
+    CameraChoice choice = {.view_height = 2.0f};
+    choice.projection = Projection::Perspective;
+    CHECK_THROWS_AS(check_camera_choice(choice), Error);
+    CHECK_THROWS_AS(check_camera_choice({.aperture = 0.0f, .focus = 1.0f}), Error);
+}
+
+TEST_CASE("open_scene gives a scene without light a sky, or the environment it is told") {
+    const std::filesystem::path file =
+        test::write_text(test::scratch_folder() / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    Messages messages;
+    OpenOptions options = {.scene = file.string()};
+    options.environment_scale = 2;
+    const Scene sky = open_scene(options, messages);
+    REQUIRE(sky.environment.has_value());
+    CHECK(!sky.environment->image.pixels.empty());
+    CHECK(sky.environment->scale == Rgb{2, 2, 2});
+
+    options.environment_radiance = Rgb{0.5f, 0.25f, 0.125f};
+    options.environment_rotation_deg = 180;
+    const Scene even = open_scene(options, messages);
+    CHECK(even.environment->image.pixels.empty());
+    CHECK(even.environment->scale == Rgb{1, 0.5f, 0.25f});
+    CHECK(even.environment->rotation == doctest::Approx(kPi));
+
+    options.environment_radiance = Rgb{-1, 0, 0};
+    CHECK_THROWS_WITH_AS(open_scene(options, messages), "--environment -1,0,0: radiance cannot be negative", Error);
+    options.environment_radiance.reset();
+    options.environment = "nowhere.exr";
+    CHECK_THROWS_AS(open_scene(options, messages), Error);
+}

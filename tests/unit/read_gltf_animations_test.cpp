@@ -1,0 +1,157 @@
+// Nodes, skins and animations as the glTF reader leaves them, and files whose animations are wrong.
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "scene/validate_nodes.h"
+#include "tests/support/gltf_builder.h"
+
+using namespace pertev;
+using test::GltfBuilder;
+
+namespace {
+
+/// Accessors: 0 positions, 1 times 0 1 2, 2 three VEC3, 3 three VEC4, 4 nine VEC3, 5 six scalars, 6 times that fall,
+/// 7 normalized VEC4 of bytes, 8 VEC4 with a 0, 9 two VEC3.
+GltfBuilder numbers() {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("SCALAR", std::vector<float>{0, 1, 2});
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 2, 3, 4, 5, 6});
+    builder.add("VEC4", std::vector<float>{0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0});
+    builder.add("VEC3", std::vector<float>(27, 1.5f));
+    builder.add("SCALAR", std::vector<float>{0, 1, 0.5f, 0.5f, 1, 0});
+    builder.add("SCALAR", std::vector<float>{0, 2, 1});
+    builder.add("VEC4", std::vector<int8_t>{0, 0, 0, 127, 0, 0, 127, 0, 127, 0, 0, 0}, R"(,"normalized":true)");
+    builder.add("VEC4", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0});
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 2, 3});
+    return builder;
+}
+
+/// Node 0 holds node 2, node 1 has a matrix and the mesh's morph targets, node 2 the mesh with a skin of joint 0.
+std::string file(const std::string& samplers, const std::string& channels) {
+    return numbers().json(
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":2},{"POSITION":2}]}],)"
+        R"("weights":[0.25]},{"primitives":[{"attributes":{"POSITION":0}}]}],"skins":[{"joints":[0]}],"nodes":[)"
+        R"({"name":"root","children":[2],"translation":[1,2,3],"scale":[2,2,2]},)"
+        R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,7,8,9,1]},{"mesh":1,"skin":0}],)"
+        R"("animations":[{"name":"walk","samplers":[)" +
+        samplers + R"(],"channels":[)" + channels + "]}]");
+}
+
+std::string sampler(int input, int output, const std::string& more = "") {
+    return R"({"input":)" + std::to_string(input) + R"(,"output":)" + std::to_string(output) + more + "}";
+}
+
+std::string channel(int node, const std::string& path, int number = 0) {
+    return R"({"sampler":)" + std::to_string(number) + R"(,"target":{"node":)" + std::to_string(node) + R"(,"path":")" +
+           path + R"("}})";
+}
+
+} // namespace
+
+TEST_CASE("a glTF file's nodes keep their numbers, parents and poses") {
+    Messages messages;
+    const Scene scene = test::read_gltf_text(file("", ""), messages);
+    REQUIRE(scene.nodes.size() == 3);
+    CHECK(scene.nodes[0].name == "root");
+    CHECK(scene.nodes[0].parent == kNoNode);
+    CHECK(std::get<NodePose>(scene.nodes[0].pose).translation == Vec3{1, 2, 3});
+    CHECK(std::get<NodePose>(scene.nodes[0].pose).scale == Vec3{2, 2, 2});
+    CHECK(std::get<Transform>(scene.nodes[1].pose).translation == Vec3{7, 8, 9});
+    CHECK(scene.nodes[1].morph_weights == std::vector<float>{0.25f, 0});
+    CHECK(scene.nodes[2].parent == 0);
+    CHECK(scene.nodes[2].skin == 0);
+    CHECK(scene.skins.at(0).joints == std::vector<uint32_t>{0});
+    for (const Instance& instance : scene.instances) CHECK(instance.mesh == (instance.node == 1 ? 1u : 0u));
+}
+
+TEST_CASE("channels are read with their key frames") {
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        file(sampler(1, 2) + "," + sampler(1, 7, R"(,"interpolation":"STEP")") + "," +
+                 sampler(1, 4, R"(,"interpolation":"CUBICSPLINE")") + "," + sampler(1, 5),
+             channel(0, "translation") + "," + channel(0, "rotation", 1) + "," + channel(2, "scale", 2) + "," +
+                 channel(1, "weights", 3) + R"(,{"sampler":0,"target":{"path":"pointer"}})"),
+        messages);
+    REQUIRE(scene.animations.size() == 1);
+    CHECK(scene.animations[0].name == "walk");
+    CHECK(scene.animations[0].origin == "/animations/0");
+    const std::vector<AnimationChannel>& channels = scene.animations[0].channels;
+    REQUIRE(channels.size() == 4);
+    CHECK(channels[0].node == 0);
+    CHECK(channels[0].part == AnimatedPart::Translation);
+    CHECK(channels[0].interpolation == Interpolation::Linear);
+    CHECK(channels[0].times == std::vector<float>{0, 1, 2});
+    CHECK(channels[0].values == std::vector<float>{0, 0, 0, 1, 2, 3, 4, 5, 6});
+    CHECK(channels[1].part == AnimatedPart::Rotation);
+    CHECK(channels[1].interpolation == Interpolation::Step);
+    CHECK(channels[1].values == std::vector<float>{0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0});
+    CHECK(channels[2].interpolation == Interpolation::CubicSpline);
+    CHECK(channels[2].values.size() == 27);
+    CHECK(channels[3].part == AnimatedPart::Weights);
+    CHECK(channels[3].values.size() == 6);
+    CHECK(std::ranges::any_of(messages.all(), [](const Message& message) {
+        return message.text.find("/animations/0/channels/4/target: the channel names no node") != std::string::npos;
+    }));
+    CHECK_NOTHROW(validate_nodes(scene, "file"));
+}
+
+TEST_CASE("numbers that mean nothing leave their channel out with a warning that points at it") {
+    const auto left_out = [](const std::string& samplers, const std::string& channels, const std::string& why) {
+        Messages messages;
+        const Scene scene = test::read_gltf_text(file(samplers, channels), messages);
+        CHECK(scene.animations.at(0).channels.empty());
+        CHECK(test::has_warning(messages, {"/animations/0/channels/0", why, "the channel is left out"}));
+    };
+    left_out(sampler(6, 2), channel(0, "translation"), "key time 2 is 1; expected seconds");
+    left_out(sampler(1, 8), channel(0, "rotation"), "the rotation of key 1 is 0");
+}
+
+TEST_CASE("an animation that the format does not allow is an error with its pointer") {
+    const auto check = [](const std::string& samplers, const std::string& channels, const std::string& message) {
+        CAPTURE(message);
+        const std::string error = test::gltf_error(file(samplers, channels));
+        CAPTURE(error);
+        CHECK(error.find(message) != std::string::npos);
+    };
+    const std::string at = "model.gltf: /animations/0/channels/0";
+    check(sampler(1, 2), channel(3, "translation"), at + "/target/node: 3; expected an index");
+    check(sampler(1, 2), channel(0, "colour"), at + "/target/path: \"colour\"; expected translation");
+    check(sampler(1, 2), channel(1, "translation"), at + "/target: node 1 has a matrix");
+    check(sampler(1, 5), channel(0, "weights"), at + "/target: the mesh of node 0 has no morph targets");
+    check(sampler(1, 2), channel(0, "translation", 1), at + "/sampler: 1; expected an index into \"samplers\"");
+    check(sampler(1, 2), channel(0, "scale") + "," + channel(0, "scale"), "channels/1/target: an earlier channel");
+    const std::string of = "model.gltf: /animations/0/samplers/0";
+    check(sampler(99, 2), channel(0, "scale"), of + "/input: 99; expected an index into \"accessors\"");
+    check(sampler(2, 2), channel(0, "scale"), of + "/input: the accessor's type is VEC3; expected SCALAR");
+    check(sampler(1, 3), channel(0, "scale"), of + "/output: the accessor's type is VEC4; expected VEC3");
+    check(sampler(1, 9), channel(0, "scale"), of + "/output: 2 elements for 3 key times");
+    check(sampler(1, 2, R"(,"interpolation":"CUBICSPLINE")"), channel(0, "scale"), of + "/output: 3 elements");
+    check(sampler(1, 2, R"(,"interpolation":"SMOOTH")"), channel(0, "scale"), of + "/interpolation: \"SMOOTH\"");
+}
+
+TEST_CASE("validate_nodes refuses what no reader may leave") {
+    const auto refused = [](auto&& spoil, const std::string& message) {
+        Messages messages;
+        Scene scene = test::read_gltf_text(file(sampler(1, 2), channel(0, "translation")), messages);
+        spoil(scene);
+        CHECK_THROWS_WITH_AS(validate_nodes(scene, "file"), doctest::Contains(message.c_str()), Error);
+    };
+    refused([](Scene& s) { s.nodes[1].parent = 3; }, "node 3 is out of range; there are 3");
+    refused([](Scene& s) { s.nodes[0].parent = 2; }, "2 of 3 nodes are their own ancestors");
+    refused([](Scene& s) { s.nodes[2].skin = 1; }, "skin 1 is out of range");
+    refused([](Scene& s) { s.skins[0].joints = {3}; }, "joint 3 is out of range");
+    refused([](Scene& s) { s.instances[0].node = 3; }, "node 3 is out of range");
+    refused([](Scene& s) { s.lights.push_back({.name = "lamp", .node = 9}); }, "lamp: node 9 is out of range");
+    refused([](Scene& s) { s.cameras.push_back({.name = "eye", .node = 9}); }, "eye: node 9 is out of range");
+    refused([](Scene& s) { std::get<NodePose>(s.nodes[0].pose).scale.y = kInfinity; }, "its transform is not finite");
+    refused([](Scene& s) { s.nodes[1].morph_weights[0] = kInfinity; }, "a morph weight is not finite");
+    refused([](Scene& s) { s.animations[0].channels[0].node = 3; }, "channel 0: node 3 is out of range");
+    refused([](Scene& s) { s.animations[0].channels[0].times[1] = 0; }, "channel 0: key time 1 is 0");
+    refused([](Scene& s) { s.animations[0].channels[0].values.pop_back(); }, "8 numbers for 3 key times; expected 9");
+    refused([](Scene& s) { s.animations[0].channels[0].values[4] = kInfinity; }, "number 4 of its values");
+    refused([](Scene& s) { s.animations[0].channels[0].times.clear(); }, "it has no key times");
+}
