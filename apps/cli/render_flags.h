@@ -8,7 +8,7 @@
 #include "apps/cli/choose_device.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
-#include "integrators/render_picture.h"
+#include "session/render_settings.h"
 
 namespace pertev {
 

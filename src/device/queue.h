@@ -34,6 +34,7 @@ public:
     void* allocate(std::size_t bytes, const std::string& name);
     void free(void* memory) noexcept;
     void copy_to_device(void* device, const void* host, std::size_t bytes) {
+        uploaded_ += bytes;
         backend_->copy_to_device(device, host, bytes);
     }
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
@@ -45,6 +46,9 @@ public:
 
     std::size_t allocated_bytes() const { return allocated_; }
     std::size_t peak_bytes() const { return peak_; }
+    /// How often memory was taken, and what was copied to the device, since the queue was made.
+    uint64_t allocation_count() const { return allocation_count_; }
+    uint64_t uploaded_bytes() const { return uploaded_; }
     std::size_t free_bytes() const { return backend_->free_bytes(); }
 
     /// Names the stage being launched, for errors.
@@ -66,6 +70,7 @@ private:
     const char* stage_ = "start";
     std::vector<Allocation> allocations_;
     std::size_t allocated_ = 0, peak_ = 0;
+    uint64_t allocation_count_ = 0, uploaded_ = 0;
 };
 
 } // namespace pertev

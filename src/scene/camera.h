@@ -20,6 +20,8 @@ struct Camera {
     float aspect = 0;            // width / height the file asks for; 0 = none
     float aperture_radius = 0;   // thin lens, metres; 0 = pinhole
     float focus_distance = 1;    // metres along -z to the plane in focus
+
+    bool operator==(const Camera&) const = default;
 };
 
 } // namespace pertev

@@ -32,6 +32,8 @@ public:
     RayCounts rays() const override { return rays_; }
     std::size_t bytes() const override { return kBytesPerPath * capacity_; }
 
+    /// Counts from the next begin().
+    void set_settings(const PathSettings& settings) { settings_ = settings; }
     /// From now on the wavefront's stages are timed, each on its own; slower than a render that is not looked at.
     void time_stages(StageSeconds& seconds) { seconds_ = &seconds; }
 
