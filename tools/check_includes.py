@@ -2,7 +2,8 @@
 """Holds src/ to the module order: fails on each include that points where it must not, with file and line.
 
 A module may include only itself and modules before it in ORDER. Beyond that order: scene and formats never see a GPU
-type, accel and trace never see a material, and only device/cuda and .cu files include CUDA's headers.
+type, accel and trace never see a material, only device/cuda and .cu files include CUDA's headers, and no integrator includes
+another.
 
 `check_includes.py [ROOT]` checks ROOT/src; `--self-test` makes trees that break each rule and must be caught.
 """
@@ -46,6 +47,9 @@ def fault_of(path, module, quoted, target):
         return f"{module} comes before {owner}"
     if owner in FORBIDDEN.get(module, ()):
         return f"{module} must not see {owner}"
+    parts = pathlib.PurePath(target).parts
+    if owner == "integrators" and len(parts) > 2 and path.parts[:2] != parts[:2] and path.stem != "make_integrator":
+        return "an integrator's folder is seen by itself and integrators/make_integrator alone"
     return None
 
 
@@ -90,6 +94,14 @@ CASES = [
     ("device/queue.cpp", "#include <cuda_runtime.h>", False),
     ("render/film.h", '#include "../math/vec3.h"', False),
     ("render/film.h", '#include "film_sum.h"', False),
+    ("integrators/path/stages.h", '#include "integrators/path/state.h"', True),
+    ("integrators/path/stages.h", '#include "integrators/integrator.h"', True),
+    ("integrators/make_integrator.h", '#include "integrators/path/stages.h"', True),
+    ("integrators/photon_map/gather.h", '#include "integrators/path/state.h"', False),
+    ("integrators/integrator.h", '#include "integrators/path/state.h"', False),
+    ("session/session.h", '#include "integrators/path/state.h"', False),
+    ("session/session.h", '#include "integrators/integrator.h"', True),
+    ("integrators/integrator.h", '#include "session/session.h"', False),
     ("helpers/film.h", "#include <cstdint>", False),
 ]
 

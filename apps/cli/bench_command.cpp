@@ -24,10 +24,10 @@
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
-#include "integrators/render_picture.h"
 #include "lab/record_scenes.h"
 #include "session/choose_camera.h"
 #include "session/open_scene.h"
+#include "session/session.h"
 #include "session/survey/default_light.h"
 
 namespace pertev {
@@ -41,14 +41,12 @@ struct BenchFlags {
     ReportFlags report;
 };
 
-/// The whole picture. Throws Error(Interrupted) where it is asked to end before.
-RenderResult render_all(Queue& queue, const PreparedScene& prepared, const Camera& camera,
-                        const RenderSettings& settings) {
+/// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
+void render_anew(Session& session, uint32_t samples) {
     throw_if_interrupted();
-    RenderResult result =
-        render_picture(queue, prepared, camera, settings, [](const RenderProgress&) { return !interrupted(); });
+    session.cut();
+    session.render(samples, [](const RenderProgress&) { return !interrupted(); });
     throw_if_interrupted();
-    return result;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -108,11 +106,10 @@ int bench_job(const BenchFlags& flags) {
     reporter.say_messages();
     const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
 
-    RenderSettings warm_up = settings; // clocks, caches, the driver's first launch
-    warm_up.samples = 1;
-    const Camera camera = record_camera(*find_record_scene("sponza"));
-    render_all(*queue, prepared, camera, warm_up);
-    const RenderResult result = render_all(*queue, prepared, camera, settings);
+    Session session(*queue, prepared, record_camera(*find_record_scene("sponza")), settings);
+    render_anew(session, 1); // clocks, caches, the driver's first launch
+    render_anew(session, settings.samples);
+    const RenderResult result = session.result();
     const std::string hash = picture_hash(result.picture).hex();
     if (!flags.output.empty()) {
         write_image(flags.output, result.picture);
@@ -195,10 +192,13 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
 
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const Camera camera = choose_camera({}, scene, aspect, messages);
-    RenderSettings warm_up = settings;
-    warm_up.samples = 1;
-    render_all(queue, prepared, camera, warm_up);
-    const RenderResult whole = render_all(queue, prepared, camera, settings);
+    {
+        Session warm_up(queue, prepared, camera, settings);
+        render_anew(warm_up, 1);
+    }
+    Session session(queue, prepared, camera, settings);
+    render_anew(session, settings.samples);
+    const RenderStats whole = session.stats();
     figures.first_pixel_s = whole.upload_seconds + whole.first_pixel_seconds;
     figures.render_s = whole.render_seconds;
     figures.msamples =
@@ -206,7 +206,9 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
 
     settings.time_kinds = true; // once more, each kind of ray on its own
     settings.body = PathBody::Wavefront;
-    const RenderResult staged = render_all(queue, prepared, camera, settings);
+    session.set_settings(settings);
+    render_anew(session, settings.samples);
+    const RenderStats staged = session.stats();
     figures.camera_mrays = millions_a_second(staged.rays.camera, staged.kind_seconds.camera);
     figures.bounce_mrays = millions_a_second(staged.rays.bounce, staged.kind_seconds.bounce);
     figures.shadow_mrays = millions_a_second(staged.rays.shadow, staged.kind_seconds.shadow);

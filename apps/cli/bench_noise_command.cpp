@@ -11,6 +11,7 @@
 #include "apps/cli/render_flags.h"
 #include "base/limits.h"
 #include "image/metrics.h"
+#include "session/session.h"
 
 namespace pertev {
 namespace {
@@ -44,9 +45,10 @@ struct Comparison {
 };
 
 /// `done` pictures of both samplers are there already.
-Pictures render_pictures(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
-                         SamplerKind sampler, const NoiseFlags& flags, uint32_t done, Reporter& reporter) {
+Pictures render_pictures(Session& session, SamplerKind sampler, const NoiseFlags& flags, uint32_t done,
+                         Reporter& reporter) {
     Pictures pictures;
+    RenderSettings settings = session.settings();
     settings.path.sampler = sampler;
     const uint32_t of = 2 * flags.seeds;
     for (uint32_t i = 0; i < flags.seeds; ++i) {
@@ -56,14 +58,17 @@ Pictures render_pictures(Queue& queue, const PreparedScene& prepared, const Came
         throw_if_interrupted();
         report(0);
         settings.path.seed = flags.render.seed + i;
-        const RenderResult result = render_picture(queue, prepared, camera, settings, [&](const RenderProgress& now) {
+        session.set_settings(settings);
+        session.cut();
+        session.render(settings.samples, [&](const RenderProgress& now) {
             report(static_cast<double>(now.samples_done) / now.samples);
             return !interrupted();
         });
         throw_if_interrupted();
-        pictures.seconds += result.render_seconds / flags.seeds;
-        pictures.invalid_samples += result.invalid_samples;
-        pictures.variance.add(result.picture);
+        const RenderStats stats = session.stats();
+        pictures.seconds += stats.render_seconds / flags.seeds;
+        pictures.invalid_samples += stats.invalid_samples;
+        pictures.variance.add(session.picture());
     }
     return pictures;
 }
@@ -122,11 +127,10 @@ int bench_noise(const NoiseFlags& flags) {
 
     throw_if_interrupted();
     reporter.set_work("warming up"); // clocks, caches, the driver's first launch
-    RenderSettings warm_up = settings;
-    warm_up.samples = 1;
-    render_picture(*queue, prepared, camera, warm_up);
+    Session session(*queue, prepared, camera, settings);
+    session.render(1);
     const auto render = [&](SamplerKind sampler, uint32_t done) {
-        return render_pictures(*queue, prepared, camera, settings, sampler, flags, done, reporter);
+        return render_pictures(session, sampler, flags, done, reporter);
     };
     const Pictures sobol = render(SamplerKind::Sobol, 0);
     const Pictures independent = render(SamplerKind::Independent, flags.seeds);

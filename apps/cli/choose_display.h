@@ -4,19 +4,13 @@
 
 #include "apps/cli/render_flags.h"
 #include "apps/cli/reporter.h"
-#include "image/tone_map.h"
+#include "session/picture_metadata.h"
+#include "session/session.h"
 
 namespace pertev {
 
-struct Display {
-    ToneMap tone_map = ToneMap::Agx;
-    float exposure_stops = 0;
-    bool is_used = false; // a PNG or JPEG is among the outputs
-};
-
-/// Renders the meter's small picture where the exposure is not given and some output needs it; a notice then tells the
-/// flags that fix what was found. With --json, an object of the exposure. Throws Error.
-Display choose_display(const RenderFlags& flags, Queue& queue, const PreparedScene& prepared, const Camera& camera,
-                       const RenderSettings& settings, Reporter& reporter);
+/// None where no PNG or JPEG is among the outputs. Where the exposure is not given, the meter looks at the scene; a
+/// notice then tells the flags that fix what was found. With --json, an object of the exposure. Throws Error.
+std::optional<Display> choose_display(const RenderFlags& flags, Session& session, Reporter& reporter);
 
 } // namespace pertev

@@ -9,8 +9,9 @@
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
+#include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
-#include "apps/cli/write_result.h"
+#include "apps/cli/report_result.h"
 #include "base/byte_units.h"
 #include "base/error.h"
 #include "base/message_text.h"
@@ -73,6 +74,24 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
                     settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
 }
 
+SceneSource scene_source(const SceneOptions& options, const Scene& scene) {
+    return {.scene = options.scene,
+            .environment = options.environment,
+            .environment_scale = options.environment_scale,
+            .environment_rotation_deg = options.environment_rotation_deg,
+            .has_environment = scene.environment.has_value(),
+            .two_sided_lights = options.two_sided_lights,
+            .show_back_faces = options.show_back_faces};
+}
+
+CameraSource camera_source(const SceneOptions& options, const Camera& camera) {
+    CameraSource source = {
+        .camera = camera, .name = options.camera, .target = {}, .up = {}, .fov_deg = options.fov_deg};
+    if (!options.target.empty()) source.target = parse_position("--target", options.target);
+    if (!options.up.empty()) source.up = parse_vec3("--up", options.up);
+    return source;
+}
+
 int render(RenderFlags flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
@@ -97,32 +116,35 @@ int render(RenderFlags flags) {
     reporter.say_messages();
     listen_for_interrupt();
     report_start(flags, scene, prepared, settings, *queue, load_s, reporter);
-    report_camera(flags.scene, camera, reporter);
+    PictureRecord record = {.scene = scene_source(flags.scene, scene),
+                            .camera = camera_source(flags.scene, camera),
+                            .settings = settings,
+                            .device = queue->device_name(),
+                            .display = {}};
+    record.scene.load_seconds = load_s;
+    record.scene.build_seconds = prepared.build_seconds;
+    report_camera(record.camera, reporter);
     reporter.set_work("metering");
-    const Display display = choose_display(flags, *queue, prepared, camera, settings, reporter);
-    RenderResult result = render_picture(*queue, prepared, camera, settings, [&](const RenderProgress& now) {
-        return report_progress(now, settings.time_limit_s, reporter);
-    });
+    std::optional<Session> session(std::in_place, *queue, prepared, camera, settings);
+    record.display = choose_display(flags, *session, reporter);
+    session->render(settings.samples,
+                    [&](const RenderProgress& now) { return report_progress(now, settings.time_limit_s, reporter); });
+    RenderResult result = session->result();
+    session.reset(); // writing takes memory too
     reporter.end_progress();
     const bool cut_short = interrupted() && result.samples < settings.samples;
     if (cut_short) reporter.say(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
     say_hidden_backs(result.hidden_back_share, messages);
     reporter.say_messages();
     reporter.set_work("writing");
-    const RenderRecord record = {.device = queue->device_name(),
-                                 .is_cuda = queue->is_cuda(),
-                                 .has_environment = scene.environment.has_value(),
-                                 .filter_radius = filter_radius_of(settings),
-                                 .camera = camera,
-                                 .display = display,
-                                 .load_seconds = load_s,
-                                 .build_seconds = prepared.build_seconds,
-                                 .interrupted = cut_short};
-    const WrittenResult written = write_result(flags, record, result, reporter);
-    report_result(record, result, written.hash, watch.seconds(), reporter);
-    if (!written.failures.empty()) {
-        throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(written.failures, "; ")));
+    const WrittenPicture written = write_picture(flags.outputs, record, result);
+    std::vector<std::string> failures;
+    for (const WrittenFile& file : written.files) {
+        reporter.output(file.path, file.failure);
+        if (!file.failure.empty()) failures.push_back(file.failure);
     }
+    report_result(result, written.hash, *queue, watch.seconds(), cut_short, reporter);
+    if (!failures.empty()) throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(failures, "; ")));
     if (flags.strict && result.invalid_samples > 0) {
         throw Error(ErrorCode::BadInput, fmt::format("--strict: {} not finite; the picture is written",
                                                      counted(result.invalid_samples, "sample")));

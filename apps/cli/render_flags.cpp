@@ -13,30 +13,10 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "image/write_image.h"
+#include "session/settings_text.h"
 
 namespace pertev {
 namespace {
-
-template <class T>
-T choice(const std::vector<std::pair<std::string, T>>& names, const std::string& name) {
-    return std::ranges::find(names, name, &std::pair<std::string, T>::first)->second; // CLI11 has checked it
-}
-
-const std::vector<std::pair<std::string, PathLight>> kIntegrators = {
-    {"path", PathLight::Path}, {"direct", PathLight::Direct}, {"indirect", PathLight::Indirect}};
-const std::vector<std::pair<std::string, SamplerKind>> kSamplers = {{"sobol", SamplerKind::Sobol},
-                                                                    {"independent", SamplerKind::Independent}};
-const std::vector<std::pair<std::string, PixelFilter>> kFilters = {{"box", PixelFilter::Box},
-                                                                   {"tent", PixelFilter::Tent},
-                                                                   {"gaussian", PixelFilter::Gaussian},
-                                                                   {"blackman-harris", PixelFilter::BlackmanHarris}};
-
-template <class T>
-std::vector<std::string> names_of(const std::vector<std::pair<std::string, T>>& choices) {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : choices) names.push_back(name);
-    return names;
-}
 
 bool keeps_alpha(const std::string& output) {
     const ImageFormat format = image_format_for(output);
@@ -79,7 +59,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->group(group);
     verb.add_option("--integrator", flags.integrator, "path, or its parts direct and indirect")
         ->type_name("NAME")
-        ->check(one_of(names_of(kIntegrators)))
+        ->check(one_of(integrator_names()))
         ->capture_default_str()
         ->group(group);
     verb.add_option("--max-depth", flags.max_depth, "most scatterings of a path: 0 emission, 1 direct light")
@@ -94,7 +74,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->group(group);
     verb.add_option("--filter", flags.filter, "of pixels: box, tent, gaussian or blackman-harris")
         ->type_name("NAME")
-        ->check(one_of(names_of(kFilters)))
+        ->check(one_of(filter_names()))
         ->capture_default_str()
         ->group(group);
     verb.add_option("--filter-radius", flags.filter_radius, "at most 64 (the filter's own)")
@@ -116,7 +96,7 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->group(group);
     verb.add_option("--tone-map", flags.tone_map, "of PNG and JPEG: srgb, agx, aces or neutral (agx)")
         ->type_name("NAME")
-        ->check(one_of({"srgb", "agx", "aces", "neutral"}))
+        ->check(one_of(tone_map_names()))
         ->group(group);
     verb.add_option("--exposure", flags.exposure,
                     "of PNG and JPEG: stops, or auto, which looks at a small\npicture of its own (auto)")
@@ -137,7 +117,7 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->group(group);
     verb.add_option("--sampler", flags.sampler, "sobol or independent")
         ->type_name("NAME")
-        ->check(one_of(names_of(kSamplers)))
+        ->check(one_of(sampler_names()))
         ->capture_default_str()
         ->group(group);
     verb.add_option("--clamp", flags.clamp,
@@ -190,7 +170,7 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
 }
 
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
-    RenderSettings settings;
+    RenderSettings settings; // CLI11 has checked all names
     if (!flags.size.empty()) {
         std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
     } else if (const Camera* camera = scene_camera(flags.scene, scene); camera != nullptr && camera->aspect > 0) {
@@ -198,16 +178,16 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
         settings.width = static_cast<uint32_t>(to_int(720 * camera->aspect + 0.5f, 1, 8192));
     }
     settings.samples = flags.samples;
-    settings.filter = choice(kFilters, flags.filter);
+    settings.filter = *filter_named(flags.filter);
     settings.filter_radius = flags.filter_radius;
     settings.transparent = flags.transparent;
     settings.time_limit_s = flags.time_s;
     for (const std::string& name : flags.aovs) settings.aovs |= *aov_named(name);
     settings.path = {.max_depth = flags.max_depth,
-                     .light = choice(kIntegrators, flags.integrator),
                      .clamp = flags.clamp,
-                     .sampler = choice(kSamplers, flags.sampler),
+                     .sampler = *sampler_named(flags.sampler),
                      .seed = flags.seed};
+    set_integrator(settings, flags.integrator);
     return settings;
 }
 

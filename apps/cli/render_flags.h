@@ -9,7 +9,7 @@
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/tracer_flags.h"
-#include "integrators/render_picture.h"
+#include "session/render_settings.h"
 
 namespace pertev {
 

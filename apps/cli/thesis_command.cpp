@@ -14,9 +14,9 @@
 #include "image/auto_exposure.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
-#include "integrators/render_picture.h"
 #include "lab/thesis.h"
 #include "lab/write_tables.h"
+#include "session/session.h"
 #include "session/survey/default_light.h"
 
 namespace pertev {
@@ -53,22 +53,25 @@ ThesisScene load(SceneOptions options, const std::string& scene, const LabSettin
     return thesis;
 }
 
-RenderResult render(Queue& queue, const PreparedScene& prepared, const Camera& camera, const LabSettings& lab,
-                    PathLight light) {
-    RenderSettings settings;
-    settings.width = lab.width, settings.height = lab.height;
-    settings.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
-    settings.path.max_depth = static_cast<uint32_t>(lab.depth);
+RenderResult render(Session& session, PathLight light) {
+    RenderSettings settings = session.settings();
     settings.path.light = light;
-    return render_picture(queue, prepared, camera, settings, [](const RenderProgress&) { return !interrupted(); });
+    session.set_settings(settings);
+    session.render(settings.samples, [](const RenderProgress&) { return !interrupted(); });
+    return session.result();
 }
 
 /// Local and global illumination, at one exposure: they are compared.
 void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& settings, Messages& messages,
                   ThesisReport& thesis) {
     const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
-    const RenderResult local = render(queue, prepared, scene.camera, settings, PathLight::Direct);
-    const RenderResult global = render(queue, prepared, scene.camera, settings, PathLight::Path);
+    RenderSettings picture;
+    picture.width = settings.width, picture.height = settings.height;
+    picture.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
+    picture.path.max_depth = static_cast<uint32_t>(settings.depth);
+    Session session(queue, prepared, scene.camera, picture);
+    const RenderResult local = render(session, PathLight::Direct);
+    const RenderResult global = render(session, PathLight::Path);
     const float stops = scene.default_light ? auto_exposure_stops(global.picture, ToneMap::Srgb) : 0;
     const auto caption = [&](const char* light, const RenderResult& result) {
         return fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result.samples,

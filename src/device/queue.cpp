@@ -82,6 +82,7 @@ void* Queue::allocate(std::size_t bytes, const std::string& name) {
     }
     allocations_.push_back({memory, bytes, name});
     allocated_ += bytes;
+    ++allocation_count_;
     peak_ = std::max(peak_, allocated_);
     return memory;
 }

@@ -37,6 +37,7 @@ public:
     void* allocate(std::size_t bytes, const std::string& name);
     void free(void* memory) noexcept;
     void copy_to_device(void* device, const void* host, std::size_t bytes) {
+        uploaded_ += bytes;
         backend_->copy_to_device(device, host, bytes);
     }
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
@@ -48,6 +49,9 @@ public:
 
     std::size_t allocated_bytes() const { return allocated_; }
     std::size_t peak_bytes() const { return peak_; }
+    /// How often memory was taken, and what was copied to the device, since the queue was made.
+    uint64_t allocation_count() const { return allocation_count_; }
+    uint64_t uploaded_bytes() const { return uploaded_; }
     std::size_t free_bytes() const { return backend_->free_bytes(); }
 
     /// Made before each launch: names its stage, for errors, and makes the queue's device the thread's current one.
@@ -72,6 +76,7 @@ private:
     const char* stage_ = "start";
     std::vector<Allocation> allocations_;
     std::size_t allocated_ = 0, peak_ = 0;
+    uint64_t allocation_count_ = 0, uploaded_ = 0;
 };
 
 } // namespace pertev

@@ -10,6 +10,16 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
     return std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
 }
 
+bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to) {
+    if (from.kind != to.kind || from.body != to.body || from.batch != to.batch) return false;
+    switch (to.kind) {
+    case IntegratorKind::Path:
+        static_cast<PathIntegrator&>(integrator).set_settings(to.path);
+        break;
+    }
+    return true;
+}
+
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool walks_itself) {
     switch (settings.kind) {
     case IntegratorKind::Path:

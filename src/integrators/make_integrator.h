@@ -22,6 +22,10 @@ struct IntegratorSettings {
 /// `queue` outlives it.
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings);
 
+/// Gives `integrator`, which has the settings `from`, the settings `to`, and lets it keep its memory; begin() must come
+/// next. False, and nothing done, where that takes another integrator.
+bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to);
+
 /// Bytes of the device's memory that it takes for `samples` of each of `pixels`. `walks_itself`: its tracers are such
 /// that a loop may walk them ray by ray (can_walk_on_host).
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool walks_itself);

@@ -9,8 +9,8 @@
 
 #include "math/random.h"
 #include "math/sampler.h"
-#include "render/make_bsdf.h"
 #include "render/scene_view.h"
+#include "render/textured_factor.h"
 
 namespace pertev {
 

@@ -2,15 +2,10 @@
 
 // From a material and a place on a mesh to the BSDF there: textures and vertex colours applied.
 
-#include "render/scene_view.h"
+#include "render/textured_factor.h"
 #include "shading/bsdf.h"
 
 namespace pertev {
-
-HD inline Vec2 texture_coordinate(const MeshView& mesh, const TextureRef& ref, TriangleIndices i, float u, float v) {
-    const Vec2* uv = mesh.uv[ref.uv_set];
-    return uv != nullptr ? interpolate(uv, i, u, v) : Vec2{0, 0};
-}
 
 /// The material's base colour there, [0, 1] per channel.
 HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh,
@@ -26,14 +21,6 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material
         color = color * Rgb{vertex.x, vertex.y, vertex.z};
     }
     return {clamp(color.r, 0.0f, 1.0f), clamp(color.g, 0.0f, 1.0f), clamp(color.b, 0.0f, 1.0f)};
-}
-
-/// `factor` times the one channel that `ref` reads.
-HD inline float textured_factor(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
-                                TriangleIndices i, float u, float v) {
-    if (!ref.has_image()) return factor;
-    return factor *
-           lookup_texture_channel(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
 }
 
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialView& material, const MeshView& mesh, TriangleIndices i,

@@ -47,6 +47,7 @@ struct SceneTriangles {
     std::vector<BvhTriangle> baked;
     std::vector<std::vector<BvhTriangle>> meshes; // of each mesh that keeps a tree of its own
 
+    SceneTriangles() = default;
     SceneTriangles(const Scene& scene, const MeshPlacement& placement);
     uint64_t count() const;
     /// 0 the baked ones, then those of the meshes.

@@ -56,7 +56,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.triangles = triangles.count();
     prepared.trees.parts = trees;
     prepared.build_seconds = prepared.trees.build_s = watch.seconds();
-    prepared.structures = std::make_shared<SceneStructures>(scene, prepared.centre, prepared.trees, prepared.top_level);
+    prepared.structures = std::make_shared<SceneStructures>(prepared.trees, prepared.top_level);
 
     prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages, prepared.centre);
     balance_lights(prepared, srgb_decode_table().data());

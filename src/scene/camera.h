@@ -22,6 +22,8 @@ struct Camera {
     float aperture_radius = 0;   // thin lens, metres; 0 = pinhole
     float focus_distance = 1;    // metres along -z to the plane in focus
     uint32_t node = kNoNode;     // index into Scene::nodes
+
+    bool operator==(const Camera&) const = default;
 };
 
 } // namespace pertev

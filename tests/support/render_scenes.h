@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "integrators/render_picture.h"
 #include "scene/scene.h"
+#include "session/render_picture.h"
 
 namespace pertev::test {
 

@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "image/tone_map_image.h"
-#include "integrators/meter_exposure.h"
 #include "math/portable_math.h"
+#include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -15,7 +15,7 @@ namespace {
 float stops_of(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                ToneMap tone_map = ToneMap::Agx) {
     Messages messages;
-    return meter_exposure(queue, prepare_scene(scene, {}, messages), camera, settings, tone_map);
+    return Session(queue, prepare_scene(scene, {}, messages), camera, settings).meter(tone_map);
 }
 
 void add_quad(Scene& scene, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {

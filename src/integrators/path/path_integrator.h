@@ -29,6 +29,9 @@ public:
     RayCounts rays() const override { return rays_; }
     std::size_t bytes() const override;
 
+    /// Counts from the next begin().
+    void set_settings(const PathSettings& settings) { settings_ = settings; }
+
 private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);

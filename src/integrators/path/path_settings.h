@@ -30,6 +30,8 @@ struct PathSettings {
     float clamp = 0; // largest channel of one contribution, W/(sr m2), of light scattered twice or more; 0 = off
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
+
+    bool operator==(const PathSettings&) const = default;
 };
 
 } // namespace pertev

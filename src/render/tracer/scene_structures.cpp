@@ -1,11 +1,31 @@
 #include "render/tracer/scene_structures.h"
 
+#include <algorithm>
 #include <set>
 
 namespace pertev {
 
-SceneStructures::SceneStructures(const Scene& scene, Vec3 centre, BinaryTrees binned, TopLevelBvh top_level)
-    : scene_(scene), centre_(centre), top_level_(std::move(top_level)) {
+namespace {
+
+/// In the order of the scene, as whoever prepared it gave them to the builder.
+SceneTriangles triangles_of(const BinaryTrees& trees) {
+    SceneTriangles triangles;
+    for (std::size_t part = 0; part < trees.parts->size(); ++part) {
+        std::vector<BvhTriangle> list = (*trees.parts)[part].triangles;
+        for (BvhTriangle& triangle : list) triangle.flags = 0;
+        std::ranges::sort(list, {}, [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); });
+        if (part == 0) {
+            triangles.baked = std::move(list);
+        } else {
+            triangles.meshes.push_back(std::move(list));
+        }
+    }
+    return triangles;
+}
+
+} // namespace
+
+SceneStructures::SceneStructures(BinaryTrees binned, TopLevelBvh top_level) : top_level_(std::move(top_level)) {
     for (const Bvh& bvh : *binned.parts) triangle_count_ += bvh.triangles.size();
     binary_.emplace(BvhBuilder::Binned, std::move(binned));
 }
@@ -13,7 +33,7 @@ SceneStructures::SceneStructures(const Scene& scene, Vec3 centre, BinaryTrees bi
 const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {
     const auto at = binary_.find(builder);
     if (at != binary_.end()) return at->second;
-    const SceneTriangles triangles(scene_, place_meshes(scene_, centre_));
+    const SceneTriangles triangles = triangles_of(binary_.at(BvhBuilder::Binned));
     return binary_.emplace(builder, build_binary_trees(triangles, builder)).first->second;
 }
 
@@ -26,7 +46,7 @@ std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& co
     if (const auto builder = builder_of(kind)) {
         built = std::make_shared<const BuiltStructure>(top_level_, kind, layout, binary_trees(*builder));
     } else {
-        const SceneTriangles triangles(scene_, place_meshes(scene_, centre_));
+        const SceneTriangles triangles = triangles_of(binary_.at(BvhBuilder::Binned));
         built = std::make_shared<const BuiltStructure>(top_level_, kind, triangles);
     }
     return built;

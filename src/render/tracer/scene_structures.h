@@ -11,15 +11,13 @@
 
 #include "render/tracer/built_structure.h"
 #include "render/tracer/tracer_choice.h"
-#include "scene/scene.h"
 
 namespace pertev {
 
 class SceneStructures {
 public:
-    /// `scene` outlives it. `centre`: the origin of the world that its trees are in. `binned`: its trees by the builder
-    /// that pictures are made with.
-    SceneStructures(const Scene& scene, Vec3 centre, BinaryTrees binned, TopLevelBvh top_level);
+    /// `binned`: trees by the builder that pictures are made with, each triangle once; others are made from theirs.
+    SceneStructures(BinaryTrees binned, TopLevelBvh top_level);
 
     /// For the walk of `combination`. May be called from several threads. Throws Error(OverLimit), std::bad_alloc.
     std::shared_ptr<const BuiltStructure> get(const Combination& combination);
@@ -32,8 +30,6 @@ public:
 private:
     const BinaryTrees& binary_trees(BvhBuilder builder);
 
-    const Scene& scene_;
-    Vec3 centre_;
     TopLevelBvh top_level_;
     uint64_t triangle_count_ = 0; // in all trees
     std::mutex mutex_;

@@ -36,11 +36,15 @@ public:
     const TracerChoice& choice() const { return choice_; }
     const Tracer& tracer(RayKind kind) const { return *tracers_[static_cast<std::size_t>(kind)]; }
 
-    /// Rays of each kind are timed from now on, by waiting before and after: slower. Seconds since then.
+    /// Whether rays of each kind are timed from now on, by waiting before and after, which is slower. Seconds since
+    /// then.
     struct Seconds {
         double camera = 0, bounce = 0, shadow = 0;
     };
-    void time_kinds() { is_timed_ = true; }
+    void time_kinds(bool is_timed) {
+        is_timed_ = is_timed;
+        seconds_ = {};
+    }
     const Seconds& seconds() const { return seconds_; }
 
 private:

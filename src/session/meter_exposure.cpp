@@ -1,4 +1,4 @@
-#include "integrators/meter_exposure.h"
+#include "session/meter_exposure.h"
 
 #include <algorithm>
 #include <numeric>
@@ -10,30 +10,24 @@ namespace {
 
 constexpr double kFewestThatCount = 0.01; // share of the picture; with less there is nothing but lamps and sky
 
-/// The meter's settings: the picture's light paths and shape, all else fixed.
+/// The meter's settings: the picture's light paths and shape, and the same device; all else fixed.
 RenderSettings meter_settings(const RenderSettings& picture) {
     // Of the ratio in lowest terms, so that 1280x720 and 640x360 have one meter.
     const uint32_t common = std::gcd(picture.width, picture.height);
     const float width = static_cast<float>(picture.width / common),
                 height = static_cast<float>(picture.height / common);
     const float scale = sqrt(static_cast<float>(kMeterPixels) / (width * height));
-    RenderSettings meter;
+    RenderSettings meter = picture;
     meter.width = static_cast<uint32_t>(to_int(scale * width + 0.5f, 1, kMeterPixels));
     meter.height = static_cast<uint32_t>(to_int(scale * height + 0.5f, 1, kMeterPixels));
-    meter.samples = meter.pass_samples = kMeterSamples;
+    meter.samples = kMeterSamples;
     meter.filter = PixelFilter::Box;
-    meter.body = picture.body;
-    meter.path = picture.path;
+    meter.filter_radius = 0;
+    meter.aovs = 0;
+    meter.time_kinds = false;
     meter.path.sampler = SamplerKind::Sobol;
     meter.path.seed = 0;
     return meter;
-}
-
-Image render_light(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
-                   uint32_t max_depth, bool with_sky) {
-    settings.path.max_depth = max_depth;
-    settings.transparent = !with_sky;
-    return render_picture(queue, prepared, camera, settings).picture;
 }
 
 Rgb light_of(const float* pixel) { return {pixel[0], pixel[1], pixel[2]}; }
@@ -64,14 +58,17 @@ double share_that_counts(const Image& scattered) {
 
 } // namespace
 
-float meter_exposure(Queue& queue, const PreparedScene& prepared, const Camera& camera, const RenderSettings& settings,
-                     ToneMap tone_map) {
-    const RenderSettings meter = meter_settings(settings);
-    const uint32_t depth = meter.path.max_depth;
-    const Image emitted = render_light(queue, prepared, camera, meter, 0, false);
-    const Image scattered = scattered_light(render_light(queue, prepared, camera, meter, depth, false), emitted);
+float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
+                     const std::function<Image(const RenderSettings&)>& render) {
+    RenderSettings meter = meter_settings(settings);
+    meter.transparent = true; // without the sky
+    const Image light = render(meter);
+    RenderSettings lamps = meter;
+    lamps.path.max_depth = 0;
+    const Image scattered = scattered_light(light, render(lamps));
     if (share_that_counts(scattered) >= kFewestThatCount) return auto_exposure_stops(scattered, tone_map);
-    return auto_exposure_stops(render_light(queue, prepared, camera, meter, depth, !settings.transparent), tone_map);
+    meter.transparent = settings.transparent;
+    return auto_exposure_stops(settings.transparent ? light : render(meter), tone_map);
 }
 
 } // namespace pertev

@@ -1,0 +1,64 @@
+#include "apps/cli/report_result.h"
+
+#include <sys/resource.h>
+
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "base/byte_units.h"
+#include "base/message_text.h"
+
+namespace pertev {
+namespace {
+
+uint64_t peak_memory_bytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Of a value of an EXR's metadata.
+template <class Value>
+std::string json_of(const Value& value) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+        return json_string(value);
+    } else {
+        return json_number(static_cast<double>(value));
+    }
+}
+
+} // namespace
+
+void report_camera(const CameraSource& camera, Reporter& reporter) {
+    std::string object = R"({"event":"camera")";
+    for (const auto& [name, value] : camera_metadata(camera)) {
+        object += fmt::format(",{}:{}", json_string(name.substr(std::string_view("pertev.").size())),
+                              std::visit([](const auto& v) { return json_of(v); }, value));
+    }
+    reporter.event(object + '}');
+}
+
+void report_result(const RenderResult& result, const std::string& hash, const Queue& queue, double total_seconds,
+                   bool interrupted, Reporter& reporter) {
+    const double samples = static_cast<double>(result.picture.width) * result.picture.height * result.samples;
+    const double samples_per_second = samples / result.render_seconds;
+    const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
+    const uint64_t host_bytes = peak_memory_bytes();
+    reporter.say(fmt::format(
+        "{} spp in {:.2f} s ({:.2f} s in all), {:.2f} Msamples/s, {:.1f} Mrays/s, peak {:.0f} MiB{}, "
+        "{}, picture {}",
+        result.samples, result.render_seconds, total_seconds, samples_per_second * 1e-6, rays_per_second * 1e-6,
+        mebibytes(host_bytes),
+        queue.is_cuda() ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
+        counted(result.invalid_samples, "invalid sample"), hash));
+    reporter.event(fmt::format(
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{},"interrupted":{}}})",
+        result.samples, result.render_seconds, total_seconds, json_number(samples_per_second),
+        json_number(rays_per_second), host_bytes, result.device_peak_bytes, result.invalid_samples, hash,
+        json_string(queue.device_name()), interrupted));
+}
+
+} // namespace pertev

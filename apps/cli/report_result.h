@@ -1,0 +1,19 @@
+#pragma once
+
+// What a render says: the camera at its start, files, time and rates at its end.
+
+#include "apps/cli/reporter.h"
+#include "session/write_picture.h"
+
+namespace pertev {
+
+/// With --json, an object of the flags that place this camera, under the names and with the values that they have in an
+/// EXR's metadata.
+void report_camera(const CameraSource& camera, Reporter& reporter);
+
+/// Says time, rates, memory, invalid samples and hash. `total_seconds` since the scene began to load; `queue`: that
+/// it was rendered on; `interrupted`: before all samples were done.
+void report_result(const RenderResult& result, const std::string& hash, const Queue& queue, double total_seconds,
+                   bool interrupted, Reporter& reporter);
+
+} // namespace pertev

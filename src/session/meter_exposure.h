@@ -1,0 +1,25 @@
+#pragma once
+
+// The light meter: how a picture that is yet to be rendered should be exposed. It looks at small pictures of its own,
+// with samples of its own, so that neither the samples of the picture nor their noise, nor its size, move the exposure.
+// Session::meter is the meter over a scene that lies on a device.
+
+#include <functional>
+
+#include "image/tone_map.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// Of the meter's pictures: about 6400 pixels of the picture's shape, 16 samples each, whatever the picture has.
+inline constexpr uint32_t kMeterPixels = 6400, kMeterSamples = 16;
+
+/// Stops for the picture that `settings` ask for, shown by `tone_map` (image/auto_exposure.h says which): a multiple of
+/// 1/100 within [-60, 60]. Judged by what surfaces scatter towards the camera. Lamps and sky that are seen directly do
+/// not count, unless there is nothing else. A function of scene, camera and what `settings` say of light paths and of
+/// width : height, not of their seed, samples or filter; the same on every device, to the bit. `render` gives the
+/// picture of the scene by the settings that it gets; it is asked for two or three, some 10^5 samples each.
+float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
+                     const std::function<Image(const RenderSettings&)>& render);
+
+} // namespace pertev

@@ -1,0 +1,83 @@
+#include "session/picture_metadata.h"
+
+#include <fmt/format.h>
+
+#include "base/version.h"
+#include "image/tone_map_image.h"
+#include "session/settings_text.h"
+
+namespace pertev {
+namespace {
+
+std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+void append(ExrMetadata& metadata, const ExrMetadata& more) {
+    metadata.insert(metadata.end(), more.begin(), more.end());
+}
+
+ExrMetadata environment_metadata(const SceneSource& source) {
+    const std::string not_asked_for = source.has_environment ? "made up" : "none";
+    return {{"pertev.environment", source.environment.empty() ? not_asked_for : source.environment},
+            {"pertev.environment_scale", source.environment_scale},
+            {"pertev.environment_rotation", source.environment_rotation_deg}};
+}
+
+} // namespace
+
+ExrMetadata camera_metadata(const CameraSource& source) {
+    const Camera& camera = source.camera;
+    const Transform& from = camera.world_from_camera;
+    const Vec3 eye = from.translation;
+    const Vec3 target = source.target.value_or(eye - camera.focus_distance * column(from, 2));
+    Vec3 up = source.up.value_or(column(from, 1));
+    for (const Vec3 unsaid : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
+        if (!source.up && look_at(eye, target, unsaid) == from) up = unsaid;
+    }
+    const std::string matrix =
+        fmt::format("{} {} {} {}", comma_separated(column(from, 0)), comma_separated(column(from, 1)),
+                    comma_separated(column(from, 2)), comma_separated(eye));
+    ExrMetadata metadata = {{"pertev.camera", source.name},       {"pertev.world_from_camera", matrix},
+                            {"pertev.eye", comma_separated(eye)}, {"pertev.target", comma_separated(target)},
+                            {"pertev.up", comma_separated(up)},   {"pertev.aperture", camera.aperture_radius}};
+    if (camera.aperture_radius > 0) metadata.emplace_back("pertev.focus", camera.focus_distance);
+    if (camera.projection == Projection::Orthographic) {
+        append(metadata, {{"pertev.projection", "orthographic"}, {"pertev.view_height", camera.ortho_height}});
+    } else {
+        const float fov_deg = source.fov_deg > 0 ? source.fov_deg : camera.fov_y * (180 / kPi);
+        append(metadata, {{"pertev.projection", "perspective"}, {"pertev.fov", fov_deg}});
+    }
+    return metadata;
+}
+
+ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash) {
+    const SceneSource& scene = record.scene;
+    const RenderSettings& settings = record.settings;
+    ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
+                            {"pertev.scene", scene.scene},
+                            {"pertev.spp", static_cast<int32_t>(stats.samples)},
+                            {"pertev.max_depth", static_cast<int32_t>(settings.path.max_depth)},
+                            {"pertev.integrator", std::string(integrator_name(settings))},
+                            {"pertev.sampler", std::string(name_of(settings.path.sampler))},
+                            {"pertev.filter", std::string(name_of(settings.filter))},
+                            {"pertev.filter_radius", filter_radius_of(settings)},
+                            {"pertev.seed", fmt::format("{}", settings.path.seed)},
+                            {"pertev.clamp", settings.path.clamp},
+                            {"pertev.two_sided_lights", static_cast<int32_t>(scene.two_sided_lights)},
+                            {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)},
+                            {"pertev.device", record.device},
+                            {"pertev.hash", hash},
+                            {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
+                            {"pertev.load_seconds", scene.load_seconds},
+                            {"pertev.build_seconds", scene.build_seconds},
+                            {"pertev.render_seconds", stats.render_seconds},
+                            {"pertev.rays", static_cast<double>(stats.rays.total())}};
+    append(metadata, camera_metadata(record.camera));
+    append(metadata, environment_metadata(scene));
+    if (record.display) {
+        append(metadata, {{"pertev.tone_map", std::string(name_of(record.display->tone_map))},
+                          {"pertev.exposure", record.display->exposure_stops}});
+    }
+    return metadata;
+}
+
+} // namespace pertev

@@ -1,0 +1,54 @@
+#pragma once
+
+// How a picture was made, in the words that an EXR holds of it (pertev.*): all that is needed to make it again.
+
+#include <optional>
+#include <string>
+
+#include "image/exr_file.h"
+#include "image/tone_map.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// How the scene was opened.
+struct SceneSource {
+    std::string scene;           // file, or name of a built-in scene
+    std::string environment;     // asked for: file or colour; empty: none was
+    float environment_scale = 1; // factor
+    float environment_rotation_deg = 0;
+    bool has_environment = false; // the scene has one: asked for, its own or the default
+    bool two_sided_lights = false, show_back_faces = false;
+    double load_seconds = 0, build_seconds = 0; // of reading; of the trees
+};
+
+/// A camera, and what was asked for of it in words that say the same.
+struct CameraSource {
+    Camera camera;
+    std::string name;               // or number, of the scene's cameras; empty: none was asked for
+    std::optional<Vec3> target, up; // position and direction
+    float fov_deg = 0;              // 0: none was asked for
+};
+
+/// How PNG and JPEG show the picture.
+struct Display {
+    ToneMap tone_map = ToneMap::Agx;
+    float exposure_stops = 0;
+};
+
+struct PictureRecord {
+    SceneSource scene;
+    CameraSource camera;
+    RenderSettings settings;
+    std::string device;
+    std::optional<Display> display; // none: the picture is shown nowhere
+};
+
+/// What places this camera again: to the bit where words have placed it or none are given, else as near as their
+/// numbers go. And its matrix, column by column.
+ExrMetadata camera_metadata(const CameraSource& source);
+
+/// `hash`: of the picture.
+ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash);
+
+} // namespace pertev

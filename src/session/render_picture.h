@@ -1,0 +1,15 @@
+#pragma once
+
+// One picture from a prepared scene, and nothing kept: a session (session/session.h) that renders once.
+
+#include "session/session.h"
+
+namespace pertev {
+
+/// Renders `settings.samples` samples, or fewer where time is over or `keep_going` (called after each pass) returns
+/// false; at least one sample. Throws Error(OutOfMemory, DeviceFault).
+RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
+                            const RenderSettings& settings,
+                            const std::function<bool(const RenderProgress&)>& keep_going = {});
+
+} // namespace pertev

@@ -1,0 +1,11 @@
+#include "session/render_settings.h"
+
+namespace pertev {
+
+bool same_picture(const RenderSettings& a, const RenderSettings& b) {
+    return a.width == b.width && a.height == b.height && a.filter == b.filter &&
+           filter_radius_of(a) == filter_radius_of(b) && a.aovs == b.aovs && a.transparent == b.transparent &&
+           a.integrator == b.integrator && a.path == b.path;
+}
+
+} // namespace pertev

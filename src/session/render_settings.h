@@ -1,0 +1,69 @@
+#pragma once
+
+// What a render is asked for beside scene and camera, how far it is, and what came of it.
+
+#include <cstdint>
+#include <vector>
+
+#include "integrators/make_integrator.h"
+#include "render/film.h"
+#include "render/pixel_filter.h"
+
+namespace pertev {
+
+struct RenderSettings {
+    // What the picture is a function of, beside scene, camera and number of samples.
+    uint32_t width = 1280, height = 720;
+    PixelFilter filter = PixelFilter::BlackmanHarris;
+    float filter_radius = 0;  // pixels; 0 = the filter's default
+    uint32_t aovs = 0;        // AovBits
+    bool transparent = false; // RGBA: the background is left out, alpha says how much of the pixel is covered
+    IntegratorKind integrator = IntegratorKind::Path;
+    PathSettings path;
+
+    // How many, and until when.
+    uint32_t samples = 64;     // a pixel, of render_picture
+    double time_limit_s = 0;   // of one call that renders; 0 = none; ends at a whole sample
+    uint32_t pass_samples = 0; // samples a pass; 0 = as many as fit a fraction of a second
+
+    // How the device does it: the picture stays the same.
+    PathBody body = PathBody::Loop;      // CUDA always takes Wavefront
+    uint32_t batch = 1u << 22;           // paths in flight of the wavefront
+    std::optional<TracerChoice> tracers; // none: the device's default
+    bool time_kinds = false;             // fills RenderStats::kind_seconds; the wavefront is then slower
+};
+
+/// Pixels: the one asked for, or the filter's default.
+inline float filter_radius_of(const RenderSettings& settings) {
+    return settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
+}
+
+/// Whether both ask for the same picture of the same scene, camera and number of samples.
+bool same_picture(const RenderSettings& a, const RenderSettings& b);
+
+struct RenderProgress {
+    uint32_t samples_done = 0, samples = 0; // in the film now, and when the call is done
+    double seconds = 0;                     // since the call's first pass began
+    RayCounts rays;                         // of the call
+};
+
+/// Of the samples in the film.
+struct RenderStats {
+    uint32_t samples = 0; // whole samples of all pixels
+    RayCounts rays;
+    SceneTracer::Seconds kind_seconds; // of the last call that renders
+    uint64_t invalid_samples = 0;
+    double hidden_back_share = 0; // of the camera's rays: see render/hidden_back_share.h
+    double upload_seconds = 0;    // of the scene
+    double render_seconds = 0;
+    double first_pixel_seconds = 0; // until one sample of all pixels was there, with the time to take memory for it
+    std::size_t device_peak_bytes = 0;
+};
+
+struct RenderResult : RenderStats {
+    Image picture; // RGB or RGBA, linear
+    std::vector<FilmLayer> layers;
+    std::vector<PixelIds> ids; // empty unless asked for
+};
+
+} // namespace pertev

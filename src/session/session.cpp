@@ -1,0 +1,198 @@
+#include "session/session.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/stopwatch.h"
+#include "render/hidden_back_share.h"
+#include "session/meter_exposure.h"
+
+namespace pertev {
+namespace {
+
+/// Samples of the next pass: aims at a third of a second, so that progress moves and Ctrl-C is heard, at no cost that
+/// shows. Never past the time that is left. `done` samples took `seconds`, `left` are to come.
+uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
+    if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
+    if (done == 0) return 1;
+    const double a_sample = std::max(seconds / done, 1e-9);
+    double budget = 1.0 / 3;
+    if (settings.time_limit_s > 0) budget = std::min(budget, settings.time_limit_s - seconds);
+    return std::min(left, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0)));
+}
+
+IntegratorSettings integrator_of(const RenderSettings& settings) {
+    return {.kind = settings.integrator, .path = settings.path, .body = settings.body, .batch = settings.batch};
+}
+
+TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
+    return settings.tracers.value_or(default_tracers(on_cuda));
+}
+
+RayCounts operator+(const RayCounts& a, const RayCounts& b) {
+    return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
+}
+
+bool same_film(const Film& film, const RenderSettings& settings) {
+    return film.width() == settings.width && film.height() == settings.height && film.view().aovs == settings.aovs;
+}
+
+} // namespace
+
+Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings)
+    : queue_(queue), camera_(camera), settings_(settings), filter_(queue) {
+    set_scene(scene);
+    history_.cuts = 0;
+}
+
+void Session::set_scene(const PreparedScene& scene) {
+    const Stopwatch watch;
+    cut();
+    hidden_back_share_.reset();
+    scene_.reset();
+    tracer_.reset();
+    structures_ = scene.structures;
+    scene_.emplace(queue_, scene);
+    take_tracer();
+    queue_.wait();
+    stats_.upload_seconds = watch.seconds();
+}
+
+void Session::set_camera(const Camera& camera) {
+    if (camera == camera_) return;
+    if (history_.samples > 0) history_.previous_camera = camera_;
+    camera_ = camera;
+    hidden_back_share_.reset();
+    begin_film();
+}
+
+void Session::set_settings(const RenderSettings& settings) {
+    const bool same = same_picture(settings_, settings);
+    if (settings.width != settings_.width || settings.height != settings_.height) hidden_back_share_.reset();
+    settings_ = settings;
+    if (film_ && !same_film(*film_, settings_)) film_.reset();
+    if (!same) cut();
+    if (scene_) take_tracer();
+}
+
+void Session::cut() {
+    history_.previous_camera.reset();
+    ++history_.cuts;
+    begin_film();
+}
+
+/// The tracer that the settings ask for; the one there is where that is the same.
+void Session::take_tracer() {
+    const TracerChoice choice = tracers_of(settings_, queue_.is_cuda());
+    if (!tracer_ || tracer_->choice() != choice) {
+        tracer_.reset(); // before the new one, so that both need not fit
+        tracer_.emplace(queue_, *structures_, choice);
+        tracer_->set_surfaces(scene_->view());
+    }
+    tracer_->time_kinds(settings_.time_kinds);
+}
+
+/// Forgets the samples. The film itself is cleared when it is next looked at.
+void Session::begin_film() {
+    history_.samples = 0;
+    stats_ = {.upload_seconds = stats_.upload_seconds};
+    film_is_old_ = true;
+}
+
+/// `film` as `settings` need it: the one there is, or a new one without samples.
+Film& Session::fit(std::optional<Film>& film, const RenderSettings& settings) {
+    if (film && same_film(*film, settings)) return *film;
+    film.reset(); // before the new one, so that both need not fit
+    return film.emplace(queue_, settings.width, settings.height, settings.aovs);
+}
+
+Film& Session::current_film() {
+    if (film_ && film_is_old_) film_->clear();
+    film_is_old_ = false;
+    return fit(film_, settings_);
+}
+
+PictureView Session::view_of(const RenderSettings& settings) {
+    PERTEV_CHECK(scene_.has_value()); // the last set_scene threw
+    const SceneView& scene = scene_->view();
+    return {scene,
+            make_camera_rays(camera_, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
+                             settings.height, scene.centre),
+            settings.transparent};
+}
+
+/// Makes the integrator ready to add `samples` samples of the picture of `settings`.
+void Session::begin(const RenderSettings& settings, uint32_t samples) {
+    const IntegratorSettings wanted = integrator_of(settings);
+    const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
+    if (!stays) {
+        integrator_.reset(); // with its queues
+        integrator_ = make_integrator(queue_, wanted);
+    }
+    integrator_settings_ = wanted;
+    integrator_->begin(view_of(settings), *tracer_, samples);
+    queue_.wait();
+}
+
+uint32_t Session::render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going) {
+    const uint32_t first = history_.samples, count = std::min(samples, kMaxSamplesPerPixel - first);
+    if (count == 0) return 0;
+    const Stopwatch since_call;
+    Film& film = current_film();
+    begin(settings_, count);
+    const RayCounts rays_before = stats_.rays;
+    const double seconds_before = stats_.render_seconds;
+    const Stopwatch watch;
+    for (uint32_t done = 0; done < count;) {
+        const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
+        integrator_->render(first + done, pass, film);
+        done += pass;
+        const double seconds = watch.seconds();
+        history_.samples = first + done;
+        stats_.rays = rays_before + integrator_->rays();
+        stats_.render_seconds = seconds_before + seconds;
+        if (first == 0 && done == pass) stats_.first_pixel_seconds = since_call.seconds();
+        if (keep_going && !keep_going({first + done, first + count, seconds, integrator_->rays()})) break;
+        if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
+    }
+    return history_.samples - first;
+}
+
+Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
+    return current_film().display(history_.samples, tone_map, exposure_stops, settings_.transparent);
+}
+
+RenderStats Session::stats() {
+    if (!hidden_back_share_) hidden_back_share_ = hidden_back_share(queue_, *tracer_, view_of(settings_));
+    RenderStats stats = stats_;
+    stats.samples = history_.samples;
+    stats.invalid_samples = current_film().invalid_samples();
+    stats.hidden_back_share = *hidden_back_share_;
+    stats.kind_seconds = tracer_->seconds();
+    stats.device_peak_bytes = queue_.peak_bytes();
+    return stats;
+}
+
+RenderResult Session::result() { return {stats(), picture(), layers(), current_film().ids()}; }
+
+float Session::meter(ToneMap tone_map) {
+    return meter_exposure(settings_, tone_map, [this](const RenderSettings& settings) {
+        Film& film = fit(meter_film_, settings);
+        film.clear();
+        begin(settings, settings.samples);
+        integrator_->render(0, settings.samples, film);
+        return film.picture(settings.samples, settings.transparent);
+    });
+}
+
+std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
+    const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
+    const TracerChoice tracers = tracers_of(settings, on_cuda);
+    const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
+    return predicted_bytes(scene) + structures + film +
+           predicted_bytes(integrator_of(settings), uint64_t(settings.width) * settings.height, settings.samples,
+                           can_walk_on_host(tracers, on_cuda));
+}
+
+} // namespace pertev

@@ -1,0 +1,106 @@
+#pragma once
+
+// Rendering that lives over time: one object for as long as there is something to render. It keeps the scene on the
+// device, the film and the integrator with its queues; what does not change is not uploaded, allocated or built again.
+//
+// Samples gather in the film until something changes the picture: then the film begins anew. These calls do that:
+//   set_scene     always. Uploads the scene; takes no memory for film and queues.
+//   set_camera    where the camera is another. Uploads and takes nothing.
+//   set_settings  where the picture is another (same_picture). Another size or other layers take a new film at the next
+//                 render, and larger queues where they must be larger. All else takes nothing.
+//   cut           always.
+// Whatever came before, the picture of n samples is what a fresh session gives, to the byte; so is one of a samples
+// with b added. One thread at a time.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "image/tone_map_image.h"
+#include "render/filter_table.h"
+#include "render/picture_view.h"
+#include "render/prepare_scene.h"
+#include "render/scene_on_device.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// What later frames may know of earlier ones.
+struct History {
+    uint32_t samples = 0; // whole samples of all pixels in the film, since it began
+    /// The camera of the last samples before the present camera's; none since the last cut.
+    std::optional<Camera> previous_camera;
+    /// Changes after which nothing that was seen before can be used: all that begin the film anew, but set_camera.
+    uint64_t cuts = 0;
+};
+
+class Session {
+public:
+    /// Uploads `scene`, which may go away afterwards, as may the Scene it was made from. `queue` outlives the session.
+    /// Throws Error(OutOfMemory, DeviceFault).
+    Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings);
+
+    /// As the constructor. The scene before is freed first, so that two need not fit; when this throws there is none,
+    /// and the next set_scene must come before anything is rendered or metered.
+    void set_scene(const PreparedScene& scene);
+    void set_camera(const Camera& camera);
+    void set_settings(const RenderSettings& settings);
+    /// What was seen before tells nothing of what comes (a camera that jumps, a measurement that begins again).
+    void cut();
+
+    /// Adds `samples` samples to each pixel, or fewer: it ends where the time of the settings is over, where
+    /// `keep_going`, called after each pass, returns false, and at kMaxSamplesPerPixel in the film; always at a whole
+    /// sample of all pixels. Returns how many were added: at least one where one was asked for and fits. Throws
+    /// Error(OutOfMemory, DeviceFault), and what `keep_going` throws; the film then holds all passes done before.
+    uint32_t render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going = {});
+
+    /// Of the present picture; without samples, all zero.
+    const Film& film() { return current_film(); }
+    Image picture() { return current_film().picture(history_.samples, settings_.transparent); }
+    std::vector<FilmLayer> layers() { return current_film().layers(history_.samples); }
+    /// The picture as a display shows it, times 2^exposure_stops: tone_map_image of picture().
+    Rgba8Image display(float exposure_stops, ToneMap tone_map);
+    /// Reads two numbers back. The share of hidden backs is counted once for each scene, camera and size that is asked
+    /// about.
+    RenderStats stats();
+    /// Picture, layers, ids and stats together.
+    RenderResult result();
+
+    /// Stops for the present picture (session/meter_exposure.h), found over the scene as it lies on the device: nothing
+    /// is uploaded. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
+    float meter(ToneMap tone_map);
+
+    const History& history() const { return history_; }
+    const Camera& camera() const { return camera_; }
+    const RenderSettings& settings() const { return settings_; }
+
+private:
+    Film& fit(std::optional<Film>& film, const RenderSettings& settings);
+    Film& current_film();
+    void begin_film();
+    void take_tracer();
+    PictureView view_of(const RenderSettings& settings);
+    void begin(const RenderSettings& settings, uint32_t samples);
+
+    Queue& queue_;
+    Camera camera_;
+    RenderSettings settings_;
+    History history_;
+    RenderStats stats_; // but for what stats() reads from the device
+    std::optional<double> hidden_back_share_;
+
+    std::shared_ptr<SceneStructures> structures_;
+    std::optional<SceneOnDevice> scene_; // none after a set_scene that threw
+    std::optional<SceneTracer> tracer_;
+    FilterTable filter_;
+    std::optional<Film> film_, meter_film_;
+    bool film_is_old_ = false; // holds samples of a picture that is no more asked for
+    std::unique_ptr<Integrator> integrator_;
+    IntegratorSettings integrator_settings_; // that it has
+};
+
+/// Bytes of the device's memory that a session asks for by the time it has rendered `settings.samples` in one call.
+std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda);
+
+} // namespace pertev

@@ -1,0 +1,94 @@
+#include "session/settings_text.h"
+
+#include "image/tone_map_image.h"
+
+namespace pertev {
+namespace {
+
+// A switch names each value, so that the compiler tells of one that was forgotten; these list them.
+constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
+constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
+constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
+                                    PixelFilter::BlackmanHarris};
+constexpr ToneMap kToneMaps[] = {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral};
+
+std::string_view name_of(PathLight light) {
+    switch (light) {
+    case PathLight::Path:
+        return "path";
+    case PathLight::Direct:
+        return "direct";
+    case PathLight::Indirect:
+        return "indirect";
+    }
+    return "";
+}
+
+template <class T, std::size_t kCount>
+std::optional<T> value_named(const T (&values)[kCount], std::string_view name) {
+    for (const T value : values) {
+        if (name_of(value) == name) return value;
+    }
+    return std::nullopt;
+}
+
+template <class T, std::size_t kCount>
+std::vector<std::string> names_of(const T (&values)[kCount]) {
+    std::vector<std::string> names;
+    for (const T value : values) names.emplace_back(name_of(value));
+    return names;
+}
+
+} // namespace
+
+std::string_view integrator_name(const RenderSettings& settings) {
+    switch (settings.integrator) {
+    case IntegratorKind::Path:
+        break;
+    }
+    return name_of(settings.path.light);
+}
+
+bool set_integrator(RenderSettings& settings, std::string_view name) {
+    const std::optional<PathLight> light = value_named(kLights, name);
+    if (!light) return false;
+    settings.integrator = IntegratorKind::Path;
+    settings.path.light = *light;
+    return true;
+}
+
+std::vector<std::string> integrator_names() { return names_of(kLights); }
+
+std::string_view name_of(SamplerKind sampler) {
+    switch (sampler) {
+    case SamplerKind::Sobol:
+        return "sobol";
+    case SamplerKind::Independent:
+        return "independent";
+    }
+    return "";
+}
+
+std::optional<SamplerKind> sampler_named(std::string_view name) { return value_named(kSamplers, name); }
+std::vector<std::string> sampler_names() { return names_of(kSamplers); }
+
+std::string_view name_of(PixelFilter filter) {
+    switch (filter) {
+    case PixelFilter::Box:
+        return "box";
+    case PixelFilter::Tent:
+        return "tent";
+    case PixelFilter::Gaussian:
+        return "gaussian";
+    case PixelFilter::BlackmanHarris:
+        return "blackman-harris";
+    }
+    return "";
+}
+
+std::optional<PixelFilter> filter_named(std::string_view name) { return value_named(kFilters, name); }
+std::vector<std::string> filter_names() { return names_of(kFilters); }
+
+std::vector<std::string> tone_map_names() { return names_of(kToneMaps); }
+
+} // namespace pertev

@@ -1,0 +1,32 @@
+#pragma once
+
+// The names of settings' values, as they stand on the command line, in metadata, and wherever else a setting is text.
+// Those of auxiliary layers are in render/film_channels.h.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// "path", "direct" or "indirect": the integrator and which part of the light it shows.
+std::string_view integrator_name(const RenderSettings& settings);
+/// False, and nothing done, where there is no such integrator.
+bool set_integrator(RenderSettings& settings, std::string_view name);
+std::vector<std::string> integrator_names();
+
+std::string_view name_of(SamplerKind sampler);
+std::optional<SamplerKind> sampler_named(std::string_view name);
+std::vector<std::string> sampler_names();
+
+std::string_view name_of(PixelFilter filter);
+std::optional<PixelFilter> filter_named(std::string_view name);
+std::vector<std::string> filter_names();
+
+/// Of image/tone_map_image.h, which has name_of and tone_map_named.
+std::vector<std::string> tone_map_names();
+
+} // namespace pertev

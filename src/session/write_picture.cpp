@@ -1,0 +1,46 @@
+#include "session/write_picture.h"
+
+#include "base/error.h"
+#include "image/picture_hash.h"
+#include "image/write_image.h"
+
+namespace pertev {
+namespace {
+
+std::vector<ExrLayer> take_layers(RenderResult& result) {
+    std::vector<ExrLayer> layers;
+    for (FilmLayer& layer : result.layers) {
+        layers.push_back({layer.name, layer.channels, std::move(layer.image.pixels)});
+    }
+    if (!result.ids.empty()) {
+        std::vector<uint32_t> ids;
+        for (const PixelIds& id : result.ids) ids.insert(ids.end(), {id.instance, id.primitive, id.material});
+        const AovGroup& group = aov_group(kAovIds);
+        layers.push_back({group.layer, channel_names(group), std::move(ids)});
+    }
+    return layers;
+}
+
+} // namespace
+
+WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
+    WrittenPicture written = {picture_hash(result.picture).hex(), {}};
+    const Display display = record.display.value_or(Display{});
+    const std::vector<ExrLayer> layers = take_layers(result);
+    const WriteImageOptions options = {.tone_map = display.tone_map,
+                                       .exposure_stops = display.exposure_stops,
+                                       .transparent = record.settings.transparent,
+                                       .layers = layers,
+                                       .metadata = picture_metadata(record, result, written.hash)};
+    for (const std::string& path : paths) {
+        WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
+        try {
+            write_image(path, result.picture, options);
+        } catch (const Error& error) {
+            file.failure = error.what();
+        }
+    }
+    return written;
+}
+
+} // namespace pertev

@@ -1,0 +1,27 @@
+#pragma once
+
+// The files of a finished picture: what each format can hold of its layers, its display and how it was made.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "session/picture_metadata.h"
+
+namespace pertev {
+
+struct WrittenFile {
+    std::string path;
+    std::string failure; // why it could not be written; empty where it was
+};
+
+struct WrittenPicture {
+    std::string hash; // of the picture (image/picture_hash.h)
+    std::vector<WrittenFile> files;
+};
+
+/// Writes `result` to each of `paths`, whose extensions say the format (image/write_image.h), each all or nothing; one
+/// that fails does not keep the others from being written. Takes the layers out of `result`.
+WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result);
+
+} // namespace pertev

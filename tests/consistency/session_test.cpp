@@ -1,0 +1,209 @@
+// A session's picture is a function of what it shows now, not of what it has shown: after any changes, and however the
+// samples came about, it has the bytes that a fresh render on the CPU gives. With --device cuda the session is a GPU's.
+
+#include <array>
+
+#include <doctest/doctest.h>
+
+#include "image/picture_hash.h"
+#include "session/render_picture.h"
+#include "tests/support/direction_integrator.h"
+#include "tests/support/options.h"
+#include "tests/support/random.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+Hash128 hash_of(const RenderResult& result) {
+    Hasher hasher;
+    hasher.add_value(picture_hash(result.picture).high);
+    hasher.add_value(picture_hash(result.picture).low);
+    for (const FilmLayer& layer : result.layers) {
+        hasher.add_values(std::span<const char>(layer.name));
+        hasher.add_values(std::span<const float>(layer.image.pixels));
+    }
+    for (const PixelIds& ids : result.ids) {
+        for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
+    }
+    hasher.add_value(result.hidden_back_share);
+    hasher.add_value(result.rays.total());
+    hasher.add_value(result.invalid_samples);
+    return hasher.result();
+}
+
+Camera camera_from(Vec3 eye) {
+    Camera camera = test::mixed_scene_camera();
+    camera.world_from_camera = look_at(eye, {0, 0.5f, 0}, {0, 1, 0});
+    return camera;
+}
+
+constexpr uint32_t kAllAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+
+/// Two scenes, and what else a session can be asked for.
+struct World {
+    std::array<Scene, 2> scenes = {test::make_mixed_scene(), test::make_furnace_scene(0.5f)};
+    std::array<PreparedScene, 2> prepared;
+    std::array<Camera, 3> cameras = {test::mixed_scene_camera(), camera_from({4, 1, 1}), camera_from({-2, 3, -3})};
+
+    World() {
+        Messages messages;
+        for (std::size_t i = 0; i < scenes.size(); ++i) prepared[i] = prepare_scene(scenes[i], {}, messages);
+        cameras[2].aperture_radius = 0.1f;
+    }
+};
+
+RenderSettings small_settings() {
+    RenderSettings settings;
+    settings.width = 23, settings.height = 14, settings.samples = 3;
+    settings.aovs = kAovAlbedo;
+    return settings;
+}
+
+/// One setting changed, the picture's or the machine's.
+void change_a_setting(RenderSettings& settings, test::Random& random) {
+    switch (random.below(9)) {
+    case 0:
+        settings.width = 9 + random.below(20), settings.height = 9 + random.below(20);
+        break;
+    case 1:
+        settings.aovs = random.below(2) == 0 ? kAllAovs : random.below(8);
+        break;
+    case 2:
+        settings.transparent = !settings.transparent;
+        break;
+    case 3:
+        settings.filter = static_cast<PixelFilter>(random.below(4));
+        break;
+    case 4:
+        settings.path.seed = random.below(3);
+        break;
+    case 5:
+        settings.path.max_depth = random.below(5);
+        break;
+    case 6:
+        settings.path.light = static_cast<PathLight>(random.below(3));
+        break;
+    case 7:
+        settings.body = random.below(2) == 0 ? PathBody::Loop : PathBody::Wavefront;
+        break;
+    case 8:
+        settings.batch = random.below(2) == 0 ? 100 : 1u << 20;
+        break;
+    }
+}
+
+} // namespace
+
+TEST_CASE("a session that has changed scene, camera, size and settings gives the bytes of a fresh render") {
+    const World world;
+    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    std::size_t scene = 0, camera = 0;
+    RenderSettings settings = small_settings();
+    Session session(queue, world.prepared[scene], world.cameras[camera], settings);
+    test::Random random(12);
+    const uint64_t steps = test::effort(120, 2000);
+    for (uint64_t step = 0; step < steps; ++step) {
+        CAPTURE(step);
+        for (uint32_t changes = random.below(3); changes > 0; --changes) {
+            const uint32_t what = random.below(4);
+            if (what == 0) session.set_scene(world.prepared[scene = random.below(2)]);
+            if (what == 1) session.set_camera(world.cameras[camera = random.below(3)]);
+            if (what >= 2) change_a_setting(settings, random);
+            if (what >= 2) session.set_settings(settings);
+            if (random.below(4) == 0) session.render(1); // of what is changed before it is looked at
+            if (random.below(4) == 0) session.meter(ToneMap::Agx);
+            if (random.below(4) == 0) session.stats();
+        }
+        session.render(1 + random.below(3)); // more, where nothing has changed
+        settings.samples = session.history().samples;
+        const RenderResult fresh = render_picture(cpu, world.prepared[scene], world.cameras[camera], settings);
+        const RenderResult lived = session.result();
+        CHECK(lived.samples == settings.samples);
+        CHECK(hash_of(lived) == hash_of(fresh));
+    }
+}
+
+TEST_CASE("samples that are added later give the bytes of samples rendered at once") {
+    const World world;
+    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    RenderSettings settings = small_settings();
+    settings.aovs = kAllAovs;
+    settings.samples = 8;
+    const Hash128 at_once = hash_of(render_picture(cpu, world.prepared[0], world.cameras[0], settings));
+    for (const uint32_t first : {1u, 4u, 7u}) {
+        for (const uint32_t pass : {0u, 1u, 3u}) {
+            CAPTURE(first);
+            CAPTURE(pass);
+            settings.pass_samples = pass;
+            Session session(queue, world.prepared[0], world.cameras[0], settings);
+            CHECK(session.render(first) == first);
+            session.result(); // looking does not change what is seen
+            CHECK(session.render(8 - first) == 8 - first);
+            CHECK(hash_of(session.result()) == at_once);
+        }
+    }
+}
+
+TEST_CASE("settings of the machine go on with the film that another body began") {
+    const World world;
+    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    RenderSettings settings = small_settings();
+    settings.samples = 6;
+    const Hash128 at_once = hash_of(render_picture(cpu, world.prepared[0], world.cameras[0], settings));
+    Session session(queue, world.prepared[0], world.cameras[0], settings);
+    session.render(2);
+    settings.body = PathBody::Wavefront;
+    session.set_settings(settings);
+    session.render(2);
+    settings.batch = 100;
+    session.set_settings(settings);
+    session.render(2);
+    CHECK(hash_of(session.result()) == at_once);
+}
+
+TEST_CASE("two sessions on one queue do not see each other") {
+    const World world;
+    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    RenderSettings settings = small_settings(), other = small_settings();
+    other.width = 31;
+    other.filter = PixelFilter::Gaussian;
+    Session a(queue, world.prepared[0], world.cameras[0], settings);
+    Session b(queue, world.prepared[1], world.cameras[1], other);
+    for (int i = 0; i < 3; ++i) {
+        a.render(1);
+        b.render(1);
+    }
+    CHECK(hash_of(a.result()) == hash_of(render_picture(cpu, world.prepared[0], world.cameras[0], settings)));
+    CHECK(hash_of(b.result()) == hash_of(render_picture(cpu, world.prepared[1], world.cameras[1], other)));
+}
+
+TEST_CASE("an integrator that knows nothing of the path tracer renders through the same seam") {
+    const World world;
+    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    const Camera camera = camera_from({0, 0.5f, 5}); // along -z
+    const auto render = [&](Queue& on, uint32_t in_first_call) {
+        const SceneOnDevice scene(on, world.prepared[1]);
+        FilterTable filter(on);
+        Film film(on, 15, 9, 0);
+        const std::unique_ptr<Integrator> integrator = std::make_unique<test::DirectionIntegrator>(on);
+        const CameraRays rays =
+            make_camera_rays(camera, filter.set(PixelFilter::Box, 0.5f), 15, 9, scene.view().centre);
+        SceneTracer tracer(on, *world.prepared[1].structures, default_tracers(on.is_cuda()));
+        integrator->begin({scene.view(), rays, false}, tracer, 8);
+        integrator->render(0, in_first_call, film);
+        integrator->render(in_first_call, 8 - in_first_call, film);
+        CHECK(integrator->rays().camera == 15 * 9 * 8);
+        return film.picture(8, false);
+    };
+    const Image picture = render(queue, 7);
+    CHECK(picture_hash(picture) == picture_hash(render(queue, 3)));
+    CHECK(picture_hash(picture) == picture_hash(render(cpu, 7)));
+    const float* middle = picture.at(7, 4); // looks along -z
+    CHECK(middle[0] == doctest::Approx(0.5).epsilon(0.02));
+    CHECK(middle[1] == doctest::Approx(0.5).epsilon(0.02));
+    CHECK(middle[2] < 0.01f);
+    CHECK(picture.at(0, 4)[0] < 0.4f);  // left
+    CHECK(picture.at(7, 0)[1] > 0.55f); // up
+}

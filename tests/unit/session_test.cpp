@@ -1,0 +1,363 @@
+// What a session keeps, what it does anew, and what it says of itself. tests/consistency/session_test.cpp holds its
+// pictures to fresh ones.
+
+#include <unistd.h>
+
+#include <fstream>
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "formats/read_scene.h"
+#include "image/picture_hash.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+struct Prepared {
+    Scene scene;
+    PreparedScene prepared;
+    explicit Prepared(Scene made) : scene(std::move(made)) {
+        Messages messages;
+        prepared = prepare_scene(scene, {}, messages);
+    }
+    Prepared(const Prepared&) = delete;
+    Prepared& operator=(const Prepared&) = delete;
+};
+
+Camera camera_at(float x) {
+    Camera camera = test::mixed_scene_camera();
+    camera.world_from_camera = look_at({x, 2.2f, 6}, {0, 0.9f, 0}, {0, 1, 0});
+    return camera;
+}
+
+RenderSettings small_settings() {
+    RenderSettings settings;
+    settings.width = 24, settings.height = 16;
+    settings.body = PathBody::Wavefront; // which has queues, on the CPU too
+    return settings;
+}
+
+/// Of this process in the machine's memory.
+std::size_t resident_bytes() {
+    std::ifstream file("/proc/self/statm");
+    std::size_t pages = 0, resident = 0;
+    file >> pages >> resident;
+    return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+} // namespace
+
+TEST_CASE("a new camera takes no memory and copies nothing to the device; so do most settings") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings settings = small_settings();
+    Session session(queue, mixed.prepared, camera_at(0), settings);
+    session.render(4);
+    const uint64_t allocations = queue.allocation_count(), uploaded = queue.uploaded_bytes();
+    for (int i = 1; i < 20; ++i) {
+        session.set_camera(camera_at(0.1f * static_cast<float>(i)));
+        session.render(4);
+    }
+    settings.path.max_depth = 3;
+    settings.path.seed = 9;
+    settings.path.light = PathLight::Indirect;
+    session.set_settings(settings);
+    session.render(3);
+    settings.time_limit_s = 100;
+    settings.transparent = true;
+    settings.filter_radius = 2;
+    session.set_settings(settings);
+    session.render(3);
+    CHECK(queue.allocation_count() == allocations);
+    CHECK(queue.uploaded_bytes() == uploaded);
+    settings.filter = PixelFilter::Gaussian; // has a table of its own, for which there is room
+    session.set_settings(settings);
+    session.render(1);
+    CHECK(queue.allocation_count() == allocations);
+    CHECK(queue.uploaded_bytes() == uploaded + (kFilterTableSize + 1) * sizeof(float));
+}
+
+TEST_CASE("a smaller picture takes a new film and no more; a larger one takes larger queues as well") {
+    Queue queue = test::queue_asked_for();
+    const Prepared furnace(test::make_furnace_scene(0.5f));
+    RenderSettings settings = small_settings();
+    Session session(queue, furnace.prepared, camera_at(0), settings);
+    session.render(1);
+    const std::size_t bytes = queue.allocated_bytes();
+    const uint64_t uploaded = queue.uploaded_bytes();
+    uint64_t allocations = queue.allocation_count();
+    settings.width = 12;
+    session.set_settings(settings);
+    session.render(1);
+    CHECK(queue.allocated_bytes() == bytes - Film::predicted_bytes(24, 16, 0) + Film::predicted_bytes(12, 16, 0));
+    CHECK(queue.allocation_count() - allocations <= 3); // the film's buffers
+    allocations = queue.allocation_count();
+    settings.width = 48;
+    session.set_settings(settings);
+    session.render(1);
+    CHECK(queue.allocated_bytes() > bytes - Film::predicted_bytes(24, 16, 0) + Film::predicted_bytes(48, 16, 0));
+    CHECK(queue.allocation_count() - allocations > 3);
+    CHECK(queue.uploaded_bytes() == uploaded);
+}
+
+TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and scene") {
+    Queue queue = test::queue_asked_for();
+    const Prepared a(test::make_furnace_scene(0.5f)), b(test::make_mixed_scene());
+    RenderSettings settings = small_settings();
+    Session session(queue, a.prepared, camera_at(0), settings);
+    std::size_t bytes = 0, resident = 0;
+    constexpr int kCycles = 100, kWarm = 20; // of 10 changes each
+    for (int cycle = 0; cycle < kCycles; ++cycle) {
+        for (const float x : {0.5f, -0.5f}) {
+            session.set_camera(camera_at(x));
+            session.render(1);
+            settings.width = x > 0 ? 40 : 24;
+            settings.aovs = x > 0 ? uint32_t(kAovNormal | kAovIds) : 0u;
+            session.set_settings(settings);
+            session.render(1);
+            settings.path.seed += 1;
+            session.set_settings(settings);
+            session.render(1);
+            session.set_scene(x > 0 ? b.prepared : a.prepared);
+            session.render(1);
+            settings.batch = x > 0 ? 1000 : 5000; // other queues
+            session.set_settings(settings);
+            session.render(1);
+        }
+        session.meter(ToneMap::Agx);
+        session.result();
+        if (cycle == 0) bytes = queue.allocated_bytes();
+        CHECK(queue.allocated_bytes() == bytes);
+        if (cycle == kWarm) resident = resident_bytes();
+    }
+#if !defined(__SANITIZE_ADDRESS__) // which keeps freed memory
+    CHECK(resident > 0);
+    CHECK(resident_bytes() < resident + (4u << 20)); // a film of each change would be ten times that
+#endif
+}
+
+TEST_CASE("nothing of a session is left on the device when it ends") {
+    Queue queue = test::queue_asked_for();
+    const Prepared furnace(test::make_furnace_scene(0.5f));
+    {
+        Session session(queue, furnace.prepared, camera_at(0), small_settings());
+        session.render(1);
+        session.meter(ToneMap::Agx);
+    }
+    CHECK(queue.allocated_bytes() == 0);
+}
+
+TEST_CASE("the bytes that are predicted are those that a session takes for its film and its queues") {
+    Queue queue = test::queue_asked_for();
+    const Prepared furnace(test::make_furnace_scene(0.5f));
+    RenderSettings settings = small_settings();
+    settings.samples = 3;
+    settings.aovs = kAovAlbedo | kAovIds;
+    Session session(queue, furnace.prepared, camera_at(0), settings);
+    const std::size_t of_scene = queue.allocated_bytes();
+    session.render(settings.samples);
+    const std::size_t predicted = predicted_bytes(furnace.prepared, settings, true) - predicted_bytes(furnace.prepared);
+    CHECK(queue.allocated_bytes() - of_scene >= predicted);
+    CHECK(queue.allocated_bytes() - of_scene <= predicted + 1024);
+}
+
+TEST_CASE("a render ends at a whole sample when it is told to, and goes on from there") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings settings = small_settings();
+    settings.pass_samples = 2;
+    Session whole(queue, mixed.prepared, camera_at(0), settings);
+    whole.render(9);
+    Session session(queue, mixed.prepared, camera_at(0), settings);
+    int calls = 0;
+    const uint32_t added = session.render(9, [&](const RenderProgress& now) {
+        ++calls;
+        CHECK(now.samples_done == 2 * static_cast<uint32_t>(calls));
+        CHECK(now.samples == 9);
+        CHECK(now.rays.camera == uint64_t(24) * 16 * now.samples_done);
+        return calls < 2;
+    });
+    CHECK(calls == 2);
+    CHECK(added == 4);
+    CHECK(session.history().samples == 4);
+    Session four(queue, mixed.prepared, camera_at(0), settings);
+    four.render(4);
+    CHECK(picture_hash(session.picture()) == picture_hash(four.picture()));
+    // What the callback throws leaves whole samples too.
+    CHECK_THROWS_AS(session.render(4, [](const RenderProgress&) -> bool { throw Error(ErrorCode::Interrupted, ""); }),
+                    Error);
+    CHECK(session.history().samples == 6);
+    session.render(3, [](const RenderProgress& now) {
+        CHECK(now.samples == 9);
+        return true;
+    });
+    CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
+    CHECK(session.stats().rays.total() == whole.stats().rays.total());
+}
+
+TEST_CASE("a call's time is over at a whole sample, and the next call has its own") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings settings = small_settings();
+    settings.time_limit_s = 1e-9;
+    Session session(queue, mixed.prepared, camera_at(0), settings);
+    CHECK(session.render(100) == 1);
+    CHECK(session.render(100) == 1);
+    CHECK(session.history().samples == 2);
+}
+
+TEST_CASE("what does not change the picture lets the film be; what does begins it anew") {
+    Queue queue = test::queue_asked_for();
+    const Prepared furnace(test::make_furnace_scene(0.5f));
+    RenderSettings settings = small_settings();
+    Session session(queue, furnace.prepared, camera_at(0), settings);
+    session.render(2);
+    settings.samples = 1000;
+    settings.time_limit_s = 50;
+    settings.pass_samples = 1;
+    settings.batch = 77;
+    settings.filter_radius = default_filter_radius(settings.filter); // said, where it was the default before
+    session.set_settings(settings);
+    session.set_camera(camera_at(0));
+    CHECK(session.history().samples == 2);
+    CHECK(session.history().cuts == 0);
+
+    const auto begins_anew = [&](const auto& change) {
+        session.render(1);
+        change(settings);
+        session.set_settings(settings);
+        CHECK(session.history().samples == 0);
+        for (const float value : session.picture().pixels) CHECK(value == 0); // of no samples
+    };
+    begins_anew([](RenderSettings& s) { s.width = 25; });
+    begins_anew([](RenderSettings& s) { s.height = 5; });
+    begins_anew([](RenderSettings& s) { s.filter = PixelFilter::Box; });
+    begins_anew([](RenderSettings& s) { s.filter_radius = 3; });
+    begins_anew([](RenderSettings& s) { s.aovs = kAovDepth; });
+    begins_anew([](RenderSettings& s) { s.transparent = true; });
+    begins_anew([](RenderSettings& s) { s.path.max_depth = 2; });
+    begins_anew([](RenderSettings& s) { s.path.seed = 2; });
+    begins_anew([](RenderSettings& s) { s.path.sampler = SamplerKind::Independent; });
+    begins_anew([](RenderSettings& s) { s.path.clamp = 1; });
+    begins_anew([](RenderSettings& s) { s.path.roulette_depth = 1; });
+    CHECK(session.history().cuts == 11);
+}
+
+TEST_CASE("the history knows the camera of the last samples, until a cut") {
+    Queue queue = test::queue_asked_for();
+    const Prepared furnace(test::make_furnace_scene(0.5f));
+    Session session(queue, furnace.prepared, camera_at(0), small_settings());
+    CHECK(!session.history().previous_camera);
+    session.set_camera(camera_at(1)); // nothing was seen by the one before
+    CHECK(!session.history().previous_camera);
+    session.render(1);
+    session.set_camera(camera_at(2));
+    CHECK(session.history().previous_camera == camera_at(1));
+    session.set_camera(camera_at(3)); // no samples by camera 2
+    CHECK(session.history().previous_camera == camera_at(1));
+    session.render(1);
+    session.render(1);
+    CHECK(session.history().previous_camera == camera_at(1));
+    CHECK(session.history().samples == 2);
+    CHECK(session.history().cuts == 0);
+    session.set_scene(furnace.prepared);
+    CHECK(!session.history().previous_camera);
+    CHECK(session.history().samples == 0);
+    CHECK(session.history().cuts == 1);
+    session.render(1);
+    session.set_camera(camera_at(4));
+    session.cut();
+    CHECK(!session.history().previous_camera);
+    CHECK(session.history().cuts == 2);
+}
+
+TEST_CASE("a display shows the picture's tones") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings settings = small_settings();
+    for (const bool transparent : {false, true}) {
+        settings.transparent = transparent;
+        Session session(queue, mixed.prepared, camera_at(0), settings);
+        session.render(2);
+        for (const ToneMap tone_map : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {
+            const Rgba8Image shown = session.display(-0.7f, tone_map);
+            CHECK(shown.width == 24);
+            CHECK(shown.pixels == tone_map_image(session.picture(), tone_map, -0.7f).pixels);
+        }
+    }
+}
+
+TEST_CASE("the meter looks at the scene on the device, uploads nothing, and leaves the film as it is") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings settings = small_settings();
+    Session session(queue, mixed.prepared, camera_at(0), settings);
+    session.render(3);
+    const Hash128 before = picture_hash(session.picture());
+    const uint64_t uploaded = queue.uploaded_bytes();
+    const float stops = session.meter(ToneMap::Agx);
+    CHECK(queue.uploaded_bytes() == uploaded);
+    CHECK(picture_hash(session.picture()) == before);
+    CHECK(session.history().samples == 3);
+    CHECK(session.stats().rays.camera == uint64_t(24) * 16 * 3);
+    const uint64_t allocations = queue.allocation_count();
+    CHECK(session.meter(ToneMap::Agx) == stops);
+    CHECK(queue.allocation_count() == allocations); // its film and queues stay
+    session.render(2);
+    CHECK(queue.uploaded_bytes() == uploaded);
+    Session whole(queue, mixed.prepared, camera_at(0), settings);
+    CHECK(whole.meter(ToneMap::Agx) == stops); // before anything is rendered
+    whole.render(5);
+    CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
+}
+
+TEST_CASE("the meter shows what it showed when each look of it was a render of its own") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Prepared box(read_scene("cornell-box", {}, messages));
+    RenderSettings settings;
+    settings.width = 160, settings.height = 120;
+    Session session(queue, box.prepared, box.scene.cameras.front(), settings);
+    CHECK(session.meter(ToneMap::Agx) == 1.84f);
+    settings.width = 161, settings.height = 90;
+    settings.transparent = true;
+    settings.path.light = PathLight::Indirect;
+    settings.path.clamp = 3;
+    settings.path.max_depth = 4;
+    session.set_settings(settings);
+    CHECK(session.meter(ToneMap::Aces) == 3.07f);
+}
+
+TEST_CASE("the share of hidden backs follows scene, camera and size") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene()), furnace(test::make_furnace_scene(0.5f));
+    RenderSettings settings = small_settings();
+    const auto fresh = [&](const Prepared& scene, const Camera& camera) {
+        return Session(queue, scene.prepared, camera, settings).stats().hidden_back_share;
+    };
+    Session session(queue, mixed.prepared, camera_at(0.3f), settings);
+    const double share = session.stats().hidden_back_share;
+    CHECK(share > 0.001);
+    const uint64_t allocations = queue.allocation_count();
+    session.render(1);
+    const uint64_t after_render = queue.allocation_count();
+    CHECK(after_render > allocations);
+    CHECK(session.stats().hidden_back_share == share);
+    CHECK(queue.allocation_count() == after_render); // it is not counted again
+    session.set_camera(camera_at(-3));
+    CHECK(session.stats().hidden_back_share == fresh(mixed, camera_at(-3)));
+    CHECK(session.stats().hidden_back_share != share);
+    settings.width = 60;
+    const double narrow = session.stats().hidden_back_share;
+    session.set_settings(settings);
+    CHECK(session.stats().hidden_back_share == fresh(mixed, camera_at(-3)));
+    CHECK(session.stats().hidden_back_share != narrow);
+    session.set_scene(furnace.prepared);
+    CHECK(session.stats().hidden_back_share == fresh(furnace, camera_at(-3)));
+}

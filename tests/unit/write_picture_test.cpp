@@ -1,0 +1,117 @@
+// A finished picture's files: layers, display, metadata, and what happens when one of them cannot be written.
+
+#include <doctest/doctest.h>
+
+#include "image/picture_hash.h"
+#include "image/read_exr.h"
+#include "image/read_image.h"
+#include "image/tone_map_image.h"
+#include "session/render_picture.h"
+#include "session/write_picture.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+RenderResult small_result(RenderSettings& settings) {
+    Queue queue = Queue::make_cpu();
+    settings.width = 12, settings.height = 8, settings.samples = 2;
+    settings.aovs = kAovAlbedo | kAovIds;
+    settings.path.light = PathLight::Direct;
+    settings.path.seed = 4000000000u;
+    return test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings);
+}
+
+PictureRecord small_record(const RenderSettings& settings) {
+    PictureRecord record;
+    record.scene.scene = "mixed";
+    record.camera.camera = test::mixed_scene_camera();
+    record.settings = settings;
+    record.device = "CPU";
+    return record;
+}
+
+std::string text_of(const ExrMetadata& metadata, const std::string& name) {
+    for (const auto& [key, value] : metadata) {
+        if (key == name && std::holds_alternative<std::string>(value)) return std::get<std::string>(value);
+    }
+    return "(none)";
+}
+
+} // namespace
+
+TEST_CASE("an EXR holds the picture, its layers and how it was made") {
+    RenderSettings settings;
+    RenderResult result = small_result(settings);
+    const std::vector<float> albedo = result.layers[0].image.pixels;
+    const std::vector<PixelIds> ids = result.ids;
+    const std::vector<std::string> paths = {test::scratch_folder() / "picture.exr"};
+    PictureRecord record = small_record(settings);
+    const WrittenPicture written = write_picture(paths, record, result);
+    REQUIRE(written.files.size() == 1);
+    CHECK(written.files[0].path == paths[0]);
+    CHECK(written.files[0].failure.empty());
+    CHECK(written.hash == picture_hash(result.picture).hex());
+
+    const ExrFile file = read_exr(paths[0]);
+    REQUIRE(file.find("albedo.G") != nullptr);
+    CHECK(std::get<std::vector<float>>(file.find("albedo.G")->values)[5] == albedo[3 * 5 + 1]);
+    REQUIRE(file.find("id.material") != nullptr);
+    CHECK(std::get<std::vector<uint32_t>>(file.find("id.material")->values)[7] == ids[7].material);
+    CHECK(text_of(file.metadata, "pertev.scene") == "mixed");
+    CHECK(text_of(file.metadata, "pertev.integrator") == "direct");
+    CHECK(text_of(file.metadata, "pertev.sampler") == "sobol");
+    CHECK(text_of(file.metadata, "pertev.filter") == "blackman-harris");
+    CHECK(text_of(file.metadata, "pertev.seed") == "4000000000");
+    CHECK(text_of(file.metadata, "pertev.hash") == written.hash);
+    CHECK(text_of(file.metadata, "pertev.environment") == "none");
+    CHECK(text_of(file.metadata, "pertev.tone_map") == "(none)"); // it is shown nowhere
+}
+
+TEST_CASE("a PNG shows the picture by the display that was chosen, which the EXR beside it names") {
+    RenderSettings settings;
+    RenderResult result = small_result(settings);
+    const std::filesystem::path folder = test::scratch_folder();
+    const std::vector<std::string> paths = {folder / "a.png", folder / "a.exr"};
+    PictureRecord record = small_record(settings);
+    record.display = Display{ToneMap::Aces, 1.25f};
+    write_picture(paths, record, result);
+    const Rgba8Image shown = tone_map_image(result.picture, ToneMap::Aces, 1.25f);
+    const Image read = read_image(paths[0]); // linear
+    CHECK(tone_map_image(read, ToneMap::Srgb).pixels == shown.pixels);
+    const ExrMetadata metadata = read_exr(paths[1]).metadata;
+    CHECK(text_of(metadata, "pertev.tone_map") == "aces");
+}
+
+TEST_CASE("a file that cannot be written is named, and keeps no other from being written") {
+    RenderSettings settings;
+    RenderResult result = small_result(settings);
+    const std::filesystem::path folder = test::scratch_folder();
+    const std::vector<std::string> paths = {folder / "no" / "such" / "folder.exr", folder / "good.exr",
+                                            folder / "a.txt"};
+    const WrittenPicture written = write_picture(paths, small_record(settings), result);
+    REQUIRE(written.files.size() == 3);
+    CHECK(written.files[0].failure.find("folder.exr") != std::string::npos);
+    CHECK(written.files[1].failure.empty());
+    CHECK(read_exr(paths[1]).width == 12);
+    CHECK(!written.files[2].failure.empty());
+    CHECK(!std::filesystem::exists(paths[0]));
+}
+
+TEST_CASE("what a camera's metadata says places that camera again") {
+    CameraSource source;
+    source.camera = test::mixed_scene_camera();
+    source.target = Vec3{0, 0.9f, 0}; // that it was made with
+    const ExrMetadata plain = camera_metadata(source);
+    CHECK(text_of(plain, "pertev.up") == "0,1,0"); // found, as nobody has said it
+    CHECK(text_of(plain, "pertev.projection") == "perspective");
+    source.up = Vec3{0, 2, 0};
+    source.target = Vec3{1, 2, 3};
+    source.camera.projection = Projection::Orthographic;
+    const ExrMetadata asked_for = camera_metadata(source);
+    CHECK(text_of(asked_for, "pertev.up") == "0,2,0");
+    CHECK(text_of(asked_for, "pertev.target") == "1,2,3");
+    CHECK(text_of(asked_for, "pertev.projection") == "orthographic");
+}
