@@ -268,15 +268,23 @@ HD inline float alpha_from_roughness(float roughness) { return square(clamp(roug
 
 HD inline Bsdf make_absorber() { return {}; }
 /// `albedo` in [0, 1].
-HD inline Bsdf make_diffuse(Rgb albedo) { return {.base = DiffuseLobe{albedo, 1}}; }
+HD inline Bsdf make_diffuse(Rgb albedo) {
+    Bsdf bsdf;
+    bsdf.base = DiffuseLobe{albedo, 1};
+    return bsdf;
+}
 /// Complex index eta + i k, both >= 0; roughness in [0, 1].
 HD inline Bsdf make_conductor(Rgb eta, Rgb k, float roughness) {
-    return {.base = ConductorLobe{eta, k, alpha_from_roughness(roughness)}};
+    Bsdf bsdf;
+    bsdf.base = ConductorLobe{eta, k, alpha_from_roughness(roughness)};
+    return bsdf;
 }
 /// `ior` > 0, inside over outside; a rough one's is moved into [1.1, 3] (or its inverse). `tint` in [0, 1].
 HD inline Bsdf make_dielectric(float ior, float roughness, Rgb tint) {
     const float alpha = alpha_from_roughness(roughness);
-    return {.base = DielectricLobe{tint, alpha, DielectricLobe::usable_ior(ior, alpha)}};
+    Bsdf bsdf;
+    bsdf.base = DielectricLobe{tint, alpha, DielectricLobe::usable_ior(ior, alpha)};
+    return bsdf;
 }
 /// `base_color`, `metallic` and `roughness` in [0, 1]; `ior` >= 1 of the coat.
 HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float roughness, float ior) {
