@@ -1,13 +1,17 @@
 #pragma once
 
 // HD marks a function that runs on the host and in CUDA device code alike: no allocation, exceptions, globals,
-// virtual calls or recursion in it. PERTEV_HAS_KERNELS is 1 where kernels are compiled, PERTEV_ON_DEVICE in the device
-// pass. Both are where a test emulates the device (PERTEV_EMULATED_WARPS, tests/support/emulated_device.h).
+// virtual calls or recursion in it. HD_CALL marks one that is rarely needed: kept out of line in device code, so that
+// its registers do not count where it is not called. PERTEV_HAS_KERNELS is 1 where kernels are compiled,
+// PERTEV_ON_DEVICE in the device pass. Both are where a test emulates the device (PERTEV_EMULATED_WARPS,
+// tests/support/emulated_device.h).
 
 #if defined(__CUDACC__)
 #define HD __host__ __device__
+#define HD_CALL __host__ __device__ __noinline__
 #else
 #define HD
+#define HD_CALL
 #endif
 
 // A function that is called in device code rather than inlined: it is seldom run and would cost its callers registers.

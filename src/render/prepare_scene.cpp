@@ -20,7 +20,7 @@ void warn_of_indices(const Scene& scene, Messages& messages) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         if (material.kind != MaterialKind::Dielectric) continue;
-        const float used = DielectricBsdf::usable_ior(material.ior, alpha_from_roughness(material.roughness));
+        const float used = DielectricLobe::usable_ior(material.ior, alpha_from_roughness(material.roughness));
         if (used == material.ior) continue;
         messages.warn(
             fmt::format("{}: rough glass of index {} is rendered with {}; its energy is tabulated for 1.1 to 3",

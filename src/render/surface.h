@@ -35,15 +35,15 @@ struct Surface {
         return same_side(wo, wi) == (wo_local.z * wi_local.z > 0);
     }
 
-    /// The BSDF as it scatters from this triangle: light along wi to wo (unit, world space). Not reciprocal:
-    /// docs/conventions.md has its adjoint.
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi) const {
+    /// The BSDF as it scatters from this triangle: light along wi to wo (unit, world space), by the lobes of `classes`.
+    /// Not reciprocal: render/particle_scatter.h has its adjoint.
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
         const Vec3 wo_local = frame.to_local(wo), wi_local = frame.to_local(wi);
         if (!is_consistent(wo, wi, wo_local, wi_local)) return {};
-        if (!(tilt > 0)) return bsdf.evaluate(wo_local, wi_local);
+        if (!(tilt > 0)) return bsdf.evaluate(wo_local, wi_local, classes);
         const RaisedDirection from = lower_direction(wi_local, tilt);
         if (!(from.slope > 0)) return {};
-        const BsdfValue value = bsdf.evaluate(wo_local, from.direction);
+        const BsdfValue value = bsdf.evaluate(wo_local, from.direction, classes);
         return {(1.0f / from.slope) * value.f, value.pdf / from.slope};
     }
 
@@ -52,7 +52,7 @@ struct Surface {
         const Vec3 wo_local = frame.to_local(wo);
         BsdfSample sample = bsdf.sample(wo_local, u_lobe, u);
         if (!(sample.pdf > 0) || is_black(sample.weight)) return {};
-        if (tilt > 0 && !sample.is_delta) {
+        if (tilt > 0 && !sample.is_delta()) {
             const RaisedDirection raised = raise_direction(sample.wi, tilt);
             sample.wi = raised.direction;
             sample.pdf = sample.pdf / raised.slope;
@@ -63,7 +63,7 @@ struct Surface {
         if (goes_on) return sample;
         // A mirror or smooth glass needs no soft horizon: its direction is the right one but here, where it is folded
         // back at the triangle's plane, so that no light is lost.
-        if (!sample.is_delta || frame.normal == geometric_normal) return {};
+        if (!sample.is_delta() || frame.normal == geometric_normal) return {};
         sample.wi = wi - (2.0f * dot(wi, geometric_normal)) * geometric_normal;
         return sample;
     }

@@ -1,104 +1,265 @@
 #pragma once
 
-// The closed set of BSDFs as one small plain struct, so that a path keeps any of them in registers. Adding a kind:
-// a file of its own, a case in each switch here (the compiler names the missing ones), a make function, and a line in
-// tests/statistical/bsdf_cases.h.
+// A BSDF: a base with layers on it, each a lobe (lobes/passage.h), as one plain struct that a path keeps by itself.
+// Adding a lobe: a file in lobes/, a kind, a member and a case in each switch of Lobe (the compiler names the missing
+// ones), a make function, and a line in tests/statistical/bsdf_cases.h.
 
 #include <cstdint>
 
 #include "base/host_device.h"
 #include "shading/bsdf_sample.h"
-#include "shading/conductor_bsdf.h"
-#include "shading/dielectric_bsdf.h"
-#include "shading/diffuse_bsdf.h"
-#include "shading/metallic_roughness_bsdf.h"
+#include "shading/lobes/coat_lobe.h"
+#include "shading/lobes/conductor_lobe.h"
+#include "shading/lobes/dielectric_lobe.h"
+#include "shading/lobes/diffuse_lobe.h"
+#include "shading/lobes/schlick_lobe.h"
+#include "shading/lobes/sheen_lobe.h"
 
 namespace pertev {
 
-enum class BsdfKind : uint8_t {
-    Absorber, // scatters nothing: unlit surfaces, pure emitters
-    Diffuse,
-    Conductor,
-    Dielectric,
-    MetallicRoughness,
+enum class LobeKind : uint8_t {
+    None,       // base that absorbs all
+    Diffuse,    // base
+    Conductor,  // base
+    Dielectric, // base
+    Schlick,    // layer on a base that is diffuse or None
+    Coat,       // layer on anything
+    Sheen,      // layer on anything
+};
+
+/// One lobe of any kind.
+struct Lobe {
+    LobeKind kind;
+    float beneath; // of a layer: energy of all that it lies on, [0, 1]
+    union {
+        DiffuseLobe diffuse;
+        ConductorLobe conductor;
+        DielectricLobe dielectric;
+        SchlickLobe schlick;
+        CoatLobe coat;
+        SheenLobe sheen;
+    };
+
+    HD Lobe() : kind(LobeKind::None) {} // NOLINT(cppcoreguidelines-pro-type-member-init): nothing else is looked at
+    HD Lobe(const DiffuseLobe& lobe) : kind(LobeKind::Diffuse), beneath(0), diffuse(lobe) {}
+    HD Lobe(const ConductorLobe& lobe) : kind(LobeKind::Conductor), beneath(0), conductor(lobe) {}
+    HD Lobe(const DielectricLobe& lobe) : kind(LobeKind::Dielectric), beneath(0), dielectric(lobe) {}
+    HD Lobe(const SchlickLobe& lobe) : kind(LobeKind::Schlick), beneath(0), schlick(lobe) {}
+    HD Lobe(const CoatLobe& lobe) : kind(LobeKind::Coat), beneath(0), coat(lobe) {}
+    HD Lobe(const SheenLobe& lobe) : kind(LobeKind::Sheen), beneath(0), sheen(lobe) {}
+
+    HD LobeClass lobe_class() const {
+        switch (kind) {
+        case LobeKind::None:
+            break;
+        case LobeKind::Diffuse:
+            return diffuse.lobe_class();
+        case LobeKind::Conductor:
+            return conductor.lobe_class();
+        case LobeKind::Dielectric:
+            return dielectric.lobe_class();
+        case LobeKind::Schlick:
+            return schlick.lobe_class();
+        case LobeKind::Coat:
+            return coat.lobe_class();
+        case LobeKind::Sheen:
+            return sheen.lobe_class();
+        }
+        return LobeClass::Diffuse;
+    }
+    HD float energy() const {
+        switch (kind) {
+        case LobeKind::None:
+            break;
+        case LobeKind::Diffuse:
+            return diffuse.energy();
+        case LobeKind::Conductor:
+            return conductor.energy();
+        case LobeKind::Dielectric:
+            return dielectric.energy();
+        case LobeKind::Schlick:
+            return schlick.energy();
+        case LobeKind::Coat:
+            return coat.energy();
+        case LobeKind::Sheen:
+            return sheen.energy();
+        }
+        return 0;
+    }
+    /// What it adds under `way`, which a layer then moves to beneath itself.
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, Passage& way) const {
+        switch (kind) {
+        case LobeKind::None:
+            break;
+        case LobeKind::Diffuse:
+            return diffuse.evaluate(wo, wi, way);
+        case LobeKind::Conductor:
+            return conductor.evaluate(wo, wi, way);
+        case LobeKind::Dielectric:
+            return dielectric.evaluate(wo, wi, way);
+        case LobeKind::Schlick:
+            return schlick.evaluate(wo, wi, beneath, way);
+        case LobeKind::Coat:
+            return coat.evaluate(wo, wi, beneath, way);
+        case LobeKind::Sheen:
+            return sheen.evaluate(wo, wi, beneath, way);
+        }
+        return {};
+    }
+    HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
+        switch (kind) {
+        case LobeKind::None:
+            break;
+        case LobeKind::Diffuse:
+            return diffuse.draw(wo, u);
+        case LobeKind::Conductor:
+            return conductor.draw(wo, u_lobe, u);
+        case LobeKind::Dielectric:
+            return dielectric.draw(wo, u_lobe, u);
+        case LobeKind::Schlick:
+            return schlick.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Coat:
+            return coat.draw(wo, beneath, u_lobe, u);
+        case LobeKind::Sheen:
+            return sheen.draw(wo, beneath, u_lobe, u);
+        }
+        return {};
+    }
 };
 
 struct Bsdf {
-    BsdfKind kind = BsdfKind::Absorber;
-    float alpha = 0;    // all but Diffuse: GGX width
-    float metallic = 0; // MetallicRoughness
-    float ior = 1;      // Dielectric: index of refraction; MetallicRoughness: reflectance at normal incidence
-    Rgb color = {};     // Diffuse: albedo; Conductor: eta; Dielectric: tint; MetallicRoughness: base colour
-    Rgb k = {};         // Conductor
+    static constexpr int kMaxLayers = 3; // reflection, coat, sheen
 
-    HD DiffuseBsdf diffuse() const { return {color}; }
-    HD ConductorBsdf conductor() const { return {color, k, alpha}; }
-    HD DielectricBsdf dielectric() const { return {color, alpha, ior}; }
-    HD MetallicRoughnessBsdf metallic_roughness() const { return {color, metallic, alpha, ior}; }
+    Lobe base;
+    int layer_count = 0;
+    Lobe layers[kMaxLayers]; // the innermost first; a Schlick is the innermost
+    // There are layers that may lie on anything. The functions of these are apart (HD_CALL), so that a BSDF without
+    // them does not pay, neither time nor registers.
+    bool is_stacked = false;
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi) const {
-        switch (kind) {
-        case BsdfKind::Absorber:
-            return {};
-        case BsdfKind::Diffuse:
-            return diffuse().evaluate(wo, wi);
-        case BsdfKind::Conductor:
-            return conductor().evaluate(wo, wi);
-        case BsdfKind::Dielectric:
-            return dielectric().evaluate(wo, wi);
-        case BsdfKind::MetallicRoughness:
-            return metallic_roughness().evaluate(wo, wi);
-        }
-        return {};
+    /// Puts the reflection on the base: the innermost layer.
+    HD void add(const SchlickLobe& lobe) {
+        layers[0] = lobe;
+        layers[0].beneath = base.energy();
+        layer_count = 1;
+    }
+    /// Puts a layer on all that there is; at most kMaxLayers in all.
+    HD void add(const CoatLobe& lobe) { stack(lobe); }
+    HD void add(const SheenLobe& lobe) { stack(lobe); }
+
+    /// Value of the lobes of `classes`, density of all.
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
+        if (is_diffuse()) return masked(LobeClass::Diffuse, base.diffuse.evaluate(wo, wi, {}), classes);
+        return evaluate_lobes(wo, wi, classes);
     }
     HD Rgb eval(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).f; }
     HD float pdf(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).pdf; }
 
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
-        switch (kind) {
-        case BsdfKind::Absorber:
-            return {};
-        case BsdfKind::Diffuse:
-            return diffuse().sample(wo, u_lobe, u);
-        case BsdfKind::Conductor:
-            return conductor().sample(wo, u_lobe, u);
-        case BsdfKind::Dielectric:
-            return dielectric().sample(wo, u_lobe, u);
-        case BsdfKind::MetallicRoughness:
-            return metallic_roughness().sample(wo, u_lobe, u);
+        if (wo.z == 0) return {};
+        if (is_diffuse()) {
+            const Vec3 wi = base.diffuse.draw(wo, u).sample.wi;
+            return make_bsdf_sample(wi, base.diffuse.evaluate(wo, wi, {}), LobeClass::Diffuse);
         }
-        return {};
+        return sample_lobes(wo, u_lobe, u);
     }
 
     /// sample() looks at u_lobe.
-    HD bool draws_lobe() const {
-        switch (kind) {
-        case BsdfKind::Absorber:
-        case BsdfKind::Diffuse:
-            return false;
-        case BsdfKind::Conductor:
-        case BsdfKind::Dielectric:
-        case BsdfKind::MetallicRoughness:
-            break;
-        }
-        return true;
-    }
+    HD bool draws_lobe() const { return !is_diffuse() && (layer_count != 0 || base.kind != LobeKind::None); }
 
+    HD bool has_delta() const {
+        if (base.kind != LobeKind::None && base.lobe_class() == LobeClass::Specular) return true;
+        for (int i = 0; i < layer_count; ++i)
+            if (layers[i].lobe_class() == LobeClass::Specular) return true;
+        return false;
+    }
     /// eval() is black for every pair of directions: light sampling is of no use here.
     HD bool has_delta_only() const {
-        switch (kind) {
-        case BsdfKind::Absorber:
-            return true;
-        case BsdfKind::Diffuse:
-            return false;
-        case BsdfKind::Conductor:
-            return conductor().is_smooth();
-        case BsdfKind::Dielectric:
-            return dielectric().is_smooth();
-        case BsdfKind::MetallicRoughness:
-            return metallic_roughness().is_smooth() && !metallic_roughness().has_base();
+        if (is_stacked && !has_delta_layers_only(*this)) return false;
+        if (!is_stacked && layer_count == 1 && !layers[0].schlick.is_smooth()) return false;
+        return base.kind == LobeKind::None || base.lobe_class() == LobeClass::Specular;
+    }
+
+private:
+    /// The short way of most surfaces.
+    HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
+
+    HD void stack(const Lobe& layer) {
+        float beneath = base.energy();
+        for (int i = 0; i < layer_count; ++i) beneath += layers[i].energy();
+        layers[layer_count] = layer;
+        layers[layer_count++].beneath = min(beneath, 1.0f);
+        is_stacked = true;
+    }
+    HD static BsdfValue masked(LobeClass lobe_class, BsdfValue value, LobeClasses classes) {
+        if (!classes.has(lobe_class)) value.f = {};
+        return value;
+    }
+    HD BsdfValue evaluate_diffuse(Vec3 wo, Vec3 wi, const Passage& way) const {
+        return base.kind == LobeKind::Diffuse ? base.diffuse.evaluate(wo, wi, way) : BsdfValue{};
+    }
+    HD BsdfValue evaluate_lobes(Vec3 wo, Vec3 wi, LobeClasses classes) const {
+        if (is_stacked) return evaluate_stack(*this, wo, wi, classes);
+        Passage way;
+        if (layer_count == 0) return masked(base.lobe_class(), base.evaluate(wo, wi, way), classes);
+        const BsdfValue layer = layers[0].schlick.evaluate(wo, wi, layers[0].beneath, way);
+        const LobeClass layer_class = layers[0].schlick.lobe_class();
+        return masked(layer_class, layer, classes) + masked(LobeClass::Diffuse, evaluate_diffuse(wo, wi, way), classes);
+    }
+    HD BsdfSample sample_lobes(Vec3 wo, float u_lobe, Vec2 u) const {
+        if (is_stacked) return sample_stack(*this, wo, u_lobe, u);
+        LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
+        if (layer_count == 1) draw = layers[0].schlick.draw(wo, layers[0].beneath, u_lobe, u);
+        const LobeClass lobe_class = draw.is_beneath ? base.lobe_class() : layers[0].schlick.lobe_class();
+        if (draw.is_beneath) draw = base.draw(wo, draw.u_lobe, u);
+        return finish(draw, lobe_class, wo);
+    }
+
+    HD BsdfSample finish(const LobeDraw& draw, LobeClass lobe_class, Vec3 wo) const {
+        if (!(draw.sample.pdf > 0)) return {};
+        if (lobe_class != LobeClass::Specular) {
+            return make_bsdf_sample(draw.sample.wi, evaluate_lobes(wo, draw.sample.wi, kAllLobeClasses), lobe_class,
+                                    draw.sample.is_transmission);
         }
+        BsdfSample sample = draw.sample;
+        sample.lobe_class = lobe_class;
+        return sample;
+    }
+
+    /// The layers from `last` on inwards from the outermost; way is then that beneath them.
+    HD BsdfValue evaluate_layers(int last, Vec3 wo, Vec3 wi, LobeClasses classes, Passage& way) const {
+        BsdfValue sum;
+        for (int i = layer_count - 1; i >= last; --i)
+            sum = sum + masked(layers[i].lobe_class(), layers[i].evaluate(wo, wi, way), classes);
+        return sum;
+    }
+    HD_CALL static BsdfValue evaluate_stack(Bsdf bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
+        Passage way;
+        const BsdfValue layers = bsdf.evaluate_layers(0, wo, wi, classes, way);
+        return layers + masked(bsdf.base.lobe_class(), bsdf.base.evaluate(wo, wi, way), classes);
+    }
+    HD_CALL static bool has_delta_layers_only(Bsdf bsdf) {
+        for (int i = 0; i < bsdf.layer_count; ++i)
+            if (bsdf.layers[i].lobe_class() != LobeClass::Specular) return false;
         return true;
+    }
+    HD_CALL static BsdfSample sample_stack(Bsdf bsdf, Vec3 wo, float u_lobe, Vec2 u) {
+        LobeDraw draw = {.u_lobe = u_lobe, .is_beneath = true};
+        int i = bsdf.layer_count;
+        while (draw.is_beneath && i > 0) draw = bsdf.layers[--i].draw(wo, draw.u_lobe, u);
+        const LobeClass lobe_class = draw.is_beneath ? bsdf.base.lobe_class() : bsdf.layers[i].lobe_class();
+        if (draw.is_beneath) {
+            draw = bsdf.base.draw(wo, draw.u_lobe, u);
+        } else {
+            ++i; // layers from i on lie above
+        }
+        BsdfSample sample = bsdf.finish(draw, lobe_class, wo);
+        if (!sample.is_delta()) return sample;
+        Passage way;
+        bsdf.evaluate_layers(i, wo, sample.wi, kAllLobeClasses, way);
+        sample.weight = (way.light / way.reach) * sample.weight;
+        sample.pdf = way.reach * sample.pdf;
+        return sample;
     }
 };
 
@@ -107,23 +268,43 @@ HD inline float alpha_from_roughness(float roughness) { return square(clamp(roug
 
 HD inline Bsdf make_absorber() { return {}; }
 /// `albedo` in [0, 1].
-HD inline Bsdf make_diffuse(Rgb albedo) { return {.kind = BsdfKind::Diffuse, .color = albedo}; }
+HD inline Bsdf make_diffuse(Rgb albedo) {
+    Bsdf bsdf;
+    bsdf.base = DiffuseLobe{albedo, 1};
+    return bsdf;
+}
 /// Complex index eta + i k, both >= 0; roughness in [0, 1].
 HD inline Bsdf make_conductor(Rgb eta, Rgb k, float roughness) {
-    return {.kind = BsdfKind::Conductor, .alpha = alpha_from_roughness(roughness), .color = eta, .k = k};
+    Bsdf bsdf;
+    bsdf.base = ConductorLobe{eta, k, alpha_from_roughness(roughness)};
+    return bsdf;
 }
 /// `ior` > 0, inside over outside; a rough one's is moved into [1.1, 3] (or its inverse). `tint` in [0, 1].
 HD inline Bsdf make_dielectric(float ior, float roughness, Rgb tint) {
     const float alpha = alpha_from_roughness(roughness);
-    return {.kind = BsdfKind::Dielectric, .alpha = alpha, .ior = DielectricBsdf::usable_ior(ior, alpha), .color = tint};
+    Bsdf bsdf;
+    bsdf.base = DielectricLobe{tint, alpha, DielectricLobe::usable_ior(ior, alpha)};
+    return bsdf;
 }
 /// `base_color`, `metallic` and `roughness` in [0, 1]; `ior` >= 1 of the coat.
 HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float roughness, float ior) {
-    return {.kind = BsdfKind::MetallicRoughness,
-            .alpha = alpha_from_roughness(roughness),
-            .metallic = clamp(metallic, 0.0f, 1.0f),
-            .ior = f0_from_ior(ior),
-            .color = base_color};
+    const float metal = clamp(metallic, 0.0f, 1.0f);
+    Bsdf bsdf;
+    if (metal < 1 && !is_black(base_color)) bsdf.base = DiffuseLobe{base_color, 1.0f - metal};
+    bsdf.add(SchlickLobe{base_color, metal, alpha_from_roughness(roughness), f0_from_ior(ior)});
+    return bsdf;
+}
+
+/// `bsdf`, of at most kMaxLayers - 1 layers, under a clear coat: `strength` and `roughness` in [0, 1], `ior` >= 1 (1.5
+/// in KHR_materials_clearcoat).
+HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior) {
+    bsdf.add(CoatLobe{strength, alpha_from_roughness(roughness), f0_from_ior(ior)});
+    return bsdf;
+}
+/// Likewise under sheen (KHR_materials_sheen): `color` and `roughness` in [0, 1].
+HD inline Bsdf make_sheen(Bsdf bsdf, Rgb color, float roughness) {
+    bsdf.add(SheenLobe{color, SheenLobe::usable_alpha(roughness)});
+    return bsdf;
 }
 
 } // namespace pertev

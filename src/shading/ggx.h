@@ -44,4 +44,22 @@ HD inline Vec3 sample_ggx_visible_normal(Vec3 wo, float alpha, Vec2 u) {
     return (1.0f / sqrt(length2)) * m;
 }
 
+/// Mirror image of `wo` about the unit normal `m`.
+HD inline Vec3 reflect(Vec3 wo, Vec3 m) { return 2.0f * dot(wo, m) * m - wo; }
+
+/// The single-scattering lobe of reflection, without Fresnel's factor: what all GGX reflectors share.
+struct GgxReflection {
+    float f = 0;     // D G2 / (4 |cos(wo)|), 1/sr
+    float pdf = 0;   // of reflecting wo about a visible normal
+    float cos_h = 0; // wo . h
+};
+/// wo.z > 0, wi.z > 0.
+HD inline GgxReflection evaluate_ggx_reflection(Vec3 wo, Vec3 wi, float alpha) {
+    const Vec3 sum = wo + wi;
+    const Vec3 h = (1.0f / sqrt(length_squared(sum))) * sum;
+    const float d = ggx_normals(h, alpha);
+    const float so = ggx_slope_length(wo.z, alpha), si = ggx_slope_length(wi.z, alpha);
+    return {d * wi.z / (2.0f * (so * wi.z + si * wo.z)), d / (2.0f * (wo.z + so)), min(abs(dot(wo, h)), 1.0f)};
+}
+
 } // namespace pertev

@@ -27,6 +27,18 @@ std::vector<BsdfCase> extreme_bsdf_cases() {
         cases.push_back({"black plastic" + at, make_metallic_roughness(grey(0), 0, r, 1)});
         cases.push_back({"black metal" + at, make_metallic_roughness(grey(0), 1, r, 1.5f)});
         cases.push_back({"white metal" + at, make_metallic_roughness(grey(1), 1, r, 1.5f)});
+        for (const float strength : {0.0f, 0.5f, 1.0f}) {
+            const Bsdf varnish = make_coated(make_absorber(), strength, r, 1.5f);
+            cases.push_back({"varnish on nothing" + at, varnish});
+            cases.push_back({"sheen on varnish" + at, make_sheen(varnish, grey(strength), r)});
+            for (const float under : {0.0f, 0.3f}) {
+                const Bsdf glass = make_dielectric(1.5f, under, grey(1));
+                cases.push_back({"varnished glass" + at, make_coated(glass, strength, r, 1.5f)});
+                cases.push_back({"dusty glass" + at, make_sheen(glass, grey(strength), r)});
+                const Bsdf plastic = make_metallic_roughness({1, 0, 0.5f}, 0.3f, under, 1.5f);
+                cases.push_back({"varnished plastic" + at, make_coated(plastic, strength, r, 2.5f)});
+            }
+        }
     }
     cases.push_back({"absorber", make_absorber()});
     return cases;

@@ -19,7 +19,35 @@ struct BsdfCase {
 
 inline constexpr Rgb kGoldEta = {0.2f, 0.92f, 1.1f}, kGoldK = {3.9f, 2.45f, 2.14f};
 
-/// One of each kind at several roughnesses; lobes that are not delta.
+/// GGX width of the narrowest lobe that is not delta; 1 where there is none.
+inline float narrowest_alpha(const Bsdf& bsdf) {
+    float least = 1;
+    const auto add = [&](float alpha) { least = alpha < kSmoothAlpha ? least : std::fmin(least, alpha); };
+    if (bsdf.base.kind == LobeKind::Conductor) add(bsdf.base.conductor.alpha);
+    if (bsdf.base.kind == LobeKind::Dielectric) add(bsdf.base.dielectric.alpha);
+    for (int i = 0; i < bsdf.layer_count; ++i) {
+        if (bsdf.layers[i].kind == LobeKind::Schlick) add(bsdf.layers[i].schlick.alpha);
+        if (bsdf.layers[i].kind == LobeKind::Coat) add(bsdf.layers[i].coat.alpha);
+    }
+    return least;
+}
+
+/// Layers on each other and on every base.
+inline std::vector<BsdfCase> layered_bsdf_cases() {
+    const Bsdf plastic = make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, 0.6f, 1.5f);
+    const Bsdf half_metal = make_metallic_roughness({0.9f, 0.5f, 0.1f}, 0.5f, 0.4f, 1.5f);
+    const Bsdf gold = make_conductor(kGoldEta, kGoldK, 0.4f), glass = make_dielectric(1.5f, 0.5f, {1.0f, 0.9f, 0.7f});
+    return {{"varnished plastic", make_coated(plastic, 1, 0.35f, 1.5f)},
+            {"half varnished gold", make_coated(gold, 0.5f, 0.3f, 1.8f)},
+            {"varnished glass", make_coated(glass, 1, 0.6f, 1.5f)},
+            {"half metal under a mirror of varnish", make_coated(half_metal, 0.8f, 0, 1.5f)},
+            {"velvet", make_sheen(make_diffuse({0.8f, 0.2f, 0.3f}), {0.6f, 0.7f, 1.0f}, 0.5f)},
+            {"sheen alone", make_sheen(make_absorber(), {1.0f, 0.7f, 0.4f}, 0.35f)},
+            {"dust on varnished half metal",
+             make_sheen(make_coated(half_metal, 0.5f, 0.3f, 1.5f), {0.5f, 0.4f, 0.3f}, 0.3f)}};
+}
+
+/// One of each kind at several roughnesses, and layers; lobes that are not delta, but for one.
 inline std::vector<BsdfCase> rough_bsdf_cases() {
     std::vector<BsdfCase> cases = {{"diffuse", make_diffuse({0.8f, 0.5f, 0.2f})}};
     for (const float r : {0.1f, 0.3f, 0.6f, 1.0f}) {
@@ -33,6 +61,7 @@ inline std::vector<BsdfCase> rough_bsdf_cases() {
     cases.push_back({"mirror coat", make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, 0, 1.5f)});
     cases.push_back({"glass of index 1.1", make_dielectric(1.1f, 0.5f, grey(1))});
     cases.push_back({"glass of index 2.4", make_dielectric(2.4f, 0.35f, grey(1))});
+    for (const BsdfCase& c : layered_bsdf_cases()) cases.push_back(c);
     return cases;
 }
 

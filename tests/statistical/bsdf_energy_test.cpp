@@ -48,7 +48,7 @@ TEST_CASE("white diffuse and smooth glTF materials, a perfect mirror and smooth 
         for (const float cosine : {1e-4f, 0.01f, 0.2f, 0.6f, 0.7f, 0.8f, 1.0f})
             for (const float side : {1.0f, -1.0f}) {
                 const MeanWeight mean = mean_weight(bsdf, direction_at(side * cosine), 20'000);
-                INFO("cos(wo) = " << side * cosine << " kind " << static_cast<int>(bsdf.kind));
+                INFO("cos(wo) = " << side * cosine << " base " << static_cast<int>(bsdf.base.kind));
                 CHECK(mean.least() > 0.999);
                 CHECK(mean.largest() < 1.001);
             }
@@ -113,13 +113,15 @@ TEST_CASE("no bsdf returns more than 1 + 1e-3 of the light") {
                               make_dielectric(ior, roughness, color),
                               make_conductor(0.2f * color, grey(4.0f * metallic), roughness),
                               make_metallic_roughness(grey(1), (i & 16) != 0 ? metallic : 0.0f, roughness, ior)};
-        const Bsdf& bsdf = bsdfs[i & 3];
+        Bsdf bsdf = bsdfs[i & 3];
+        if (((i >> 5) & 1) != 0) bsdf = make_coated(bsdf, channel(b.y), unit_interval(b.w), 1.5f);
+        if (((i >> 6) & 1) != 0) bsdf = make_sheen(bsdf, channel(b.z) * color, channel(b.w));
         const Vec3 wo = direction_at((b.w & 1) != 0 ? z : -z);
         MeanWeight mean = mean_weight(bsdf, wo, 1 << 14);
         if (mean.largest() > 1 - 2e-3) mean = mean_weight(bsdf, wo, 1 << 16); // the first try may be off by as much
         if (mean.largest() > 1 + 3e-4) mean = mean_weight(bsdf, wo, 1 << 20);
-        INFO("case " << i << " kind " << static_cast<int>(bsdf.kind) << " cos(wo) " << wo.z << " alpha " << bsdf.alpha
-                     << " ior " << bsdf.ior << " metallic " << bsdf.metallic << " mean " << mean.largest());
+        INFO("case " << i << " base " << static_cast<int>(bsdf.base.kind) << " cos(wo) " << wo.z << " roughness "
+                     << roughness << " ior " << ior << " metallic " << metallic << " mean " << mean.largest());
         CHECK(mean.largest() < 1 + 1e-3);
     }
 }
@@ -136,8 +138,8 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
             const Vec3 wi = (i & 1) != 0 && s.pdf > 0 ? s.wi : direction_at(2.0f * q.u.x - 1.0f, q.u.y);
             const Rgb there = f_of(c.bsdf, wo, wi);
             Rgb back = f_of(c.bsdf, wi, wo);
-            if (c.bsdf.kind == BsdfKind::Dielectric && wo.z * wi.z < 0) {
-                const float eta = wo.z > 0 ? c.bsdf.ior : 1.0f / c.bsdf.ior; // f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2
+            if (c.bsdf.base.kind == LobeKind::Dielectric && wo.z * wi.z < 0) {
+                const float eta = c.bsdf.base.dielectric.eta_from(wo); // f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2
                 back = (eta * eta) * back;
             }
             const float size = std::max(max_component(there), max_component(back));
@@ -146,7 +148,63 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
             // The half vectors of the two ways round differently, by about 1e-7 / alpha of the lobe's width.
             const float error = max(max_component(there - back), max_component(back - there)) / size;
             INFO(c.name << " wo.z " << wo.z << " wi.z " << wi.z << " there " << there.r << " back " << back.r);
-            CHECK(error < 5e-4f + 1e-5f / std::max(c.bsdf.alpha, 1e-2f));
+            CHECK(error < 5e-4f + 1e-5f / std::max(narrowest_alpha(c.bsdf), 1e-2f));
         }
     CHECK(compared > count);
+}
+
+TEST_CASE("what lies beneath layers loses little light, and sheen alone gives at most what it gets") {
+    const uint32_t points = furnace_points();
+    const auto varnished = [](float r) { return make_coated(make_diffuse(grey(1)), 1, r, 1.5f); };
+    const MeanWeight on_white = furnace_range(varnished, 1, points);
+    INFO("varnish on white: from " << on_white.least() << " to " << on_white.largest());
+    CHECK(on_white.r > 0.93);
+    CHECK(on_white.b < 1.001);
+    const auto mirrored = [](float r) { return make_coated(make_conductor(grey(0), grey(2), 0), 1, r, 1.5f); };
+    const MeanWeight on_mirror = furnace_range(mirrored, 1, points);
+    INFO("varnish on a mirror: from " << on_mirror.least() << " to " << on_mirror.largest());
+    CHECK(on_mirror.r > 0.995);
+    CHECK(on_mirror.b < 1.001);
+    const auto velvet = [](float r) { return make_sheen(make_diffuse(grey(1)), grey(1), r); };
+    const MeanWeight on_velvet = furnace_range(velvet, 1, points);
+    INFO("white velvet: from " << on_velvet.least() << " to " << on_velvet.largest());
+    CHECK(on_velvet.b < 1.001);
+    const auto sheen = [](float r) { return make_sheen(make_absorber(), grey(1), r); };
+    const MeanWeight alone = furnace_range(sheen, 1, points);
+    INFO("sheen alone: from " << alone.least() << " to " << alone.largest());
+    CHECK(alone.largest() > 0.4);
+    CHECK(alone.b < 1.001);
+}
+
+TEST_CASE("diffuse and glossy light add up to all, and each is what its lobe alone scatters") {
+    for (const BsdfCase& c : rough_bsdf_cases()) {
+        CAPTURE(c.name);
+        for (uint32_t i = 0; i < 200; ++i) {
+            const SamplePoint p = random_point(i, 91), q = random_point(i, 92);
+            const Vec3 wo = direction_at(2.0f * p.u.x - 1.0f, p.u.y), wi = direction_at(2.0f * q.u.x - 1.0f, q.u.y);
+            const BsdfValue all = c.bsdf.evaluate(wo, wi);
+            const BsdfValue diffuse = c.bsdf.evaluate(wo, wi, only(LobeClass::Diffuse));
+            const BsdfValue glossy = c.bsdf.evaluate(wo, wi, only(LobeClass::Glossy));
+            CHECK(is_black(c.bsdf.evaluate(wo, wi, only(LobeClass::Specular)).f));
+            CHECK(diffuse.pdf == all.pdf);
+            CHECK(diffuse.f.g + glossy.f.g == doctest::Approx(all.f.g).epsilon(1e-5));
+        }
+    }
+    // A black base leaves the reflection, and no reflection is left where only the base is asked for.
+    const Vec3 wo = direction_at(0.7f), wi = direction_at(0.6f, 0.55f);
+    const Bsdf plastic = make_metallic_roughness({0.2f, 0.5f, 0.8f}, 0, 0.3f, 1.5f);
+    const Bsdf black = make_metallic_roughness(grey(0), 0, 0.3f, 1.5f);
+    CHECK(plastic.evaluate(wo, wi, only(LobeClass::Glossy)).f == black.eval(wo, wi));
+    const Rgb base = plastic.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
+    CHECK(base.g / base.r == doctest::Approx(2.5).epsilon(1e-5));
+    CHECK(is_black(black.evaluate(wo, wi, only(LobeClass::Diffuse)).f));
+    // A sample says which lobe drew it.
+    for (uint32_t i = 0; i < 500; ++i) {
+        const SamplePoint p = random_point(i, 93);
+        const Bsdf& varnished = make_coated(plastic, 1, 0, 1.5f);
+        const BsdfSample s = varnished.sample(wo, p.lobe, p.u);
+        if (!(s.pdf > 0)) continue;
+        CHECK(s.is_delta() == (s.wi.x == -wo.x && s.wi.y == -wo.y));
+        CHECK((s.lobe_class == LobeClass::Specular) == s.is_delta());
+    }
 }

@@ -35,7 +35,7 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
     for (uint32_t i = 0; i < samples; i++) {
         const SamplePoint p = random_point(i, seed);
         const BsdfSample s = bsdf.sample(wo, p.lobe, p.u);
-        if (!(s.pdf > 0) || s.is_delta) {
+        if (!(s.pdf > 0) || s.is_delta()) {
             observed[kCells] += 1;
             continue;
         }
@@ -101,18 +101,18 @@ DirectionChart chart_for(Vec3 wo, float alpha) {
 
 /// About the refracted direction.
 DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
-    const float eta = wo.z > 0 ? glass.ior : 1.0f / glass.ior, across = std::sqrt(1.0f - wo.z * wo.z);
+    const float eta = glass.base.dielectric.eta_from(wo), across = std::sqrt(1.0f - wo.z * wo.z);
     const float down = std::sqrt(std::max(1.0f - square(across / eta), 0.0f));
     const Vec3 wi = normalize({-wo.x / eta, -wo.y / eta, wo.z > 0 ? -down : down});
-    return {make_frame(wi), std::max(0.5 * static_cast<double>(glass.alpha), 0.02)};
+    return {make_frame(wi), std::max(0.5 * static_cast<double>(narrowest_alpha(glass)), 0.02)};
 }
 
 /// The heights of wi at which eval() and pdf() may jump: the horizon and, through glass, the direction whose half
 /// vector lies in the surface, beyond which no microfacet refracts to.
 std::vector<double> jumps_of(const Bsdf& bsdf, Vec3 wo) {
     std::vector<double> jumps = {0};
-    if (bsdf.kind == BsdfKind::Dielectric)
-        jumps.push_back(-static_cast<double>(wo.z) / static_cast<double>(bsdf.dielectric().eta_from(wo)));
+    if (bsdf.base.kind == LobeKind::Dielectric)
+        jumps.push_back(-static_cast<double>(wo.z) / static_cast<double>(bsdf.base.dielectric.eta_from(wo)));
     return jumps;
 }
 
@@ -128,8 +128,9 @@ TEST_CASE("every bsdf draws directions as its pdf says, with weight eval over pd
     parallel_for(reports.size(), 1, [&](uint64_t i) {
         const Bsdf& bsdf = cases[i / angles.size()].bsdf;
         const Vec3 wo = direction_at(angles[i % angles.size()]);
-        const bool through = bsdf.kind == BsdfKind::Dielectric && bsdf.alpha < 0.3f;
-        const DirectionChart chart = through ? chart_through(wo, bsdf) : chart_for(wo, bsdf.alpha);
+        const float alpha = narrowest_alpha(bsdf);
+        const bool through = bsdf.base.kind == LobeKind::Dielectric && alpha < 0.3f;
+        const DirectionChart chart = through ? chart_through(wo, bsdf) : chart_for(wo, alpha);
         const auto seed = static_cast<uint32_t>(i + 1);
         reports[i] = test_sampling(bsdf, wo, chart, jumps_of(bsdf, wo), samples, seed);
     });
@@ -147,24 +148,26 @@ TEST_CASE("every bsdf draws directions as its pdf says, with weight eval over pd
 namespace {
 
 /// Diffuse, with the flaw that its pdf lacks the cosine.
-struct NoCosineInPdf : DiffuseBsdf {
+struct NoCosineInPdf : Bsdf {
     float pdf(Vec3 wo, Vec3 wi) const { return wo.z * wi.z > 0 ? 0.5f * kInvPi : 0.0f; }
 };
 
 /// Diffuse, with the flaw that its value lacks the cosine.
-struct NoCosineInEval : DiffuseBsdf {
-    Rgb eval(Vec3 wo, Vec3 wi) const { return wo.z * wi.z > 0 ? kInvPi * albedo : Rgb{}; }
+struct NoCosineInEval : Bsdf {
+    Rgb eval(Vec3 wo, Vec3 wi) const { return wo.z * wi.z > 0 ? kInvPi * base.diffuse.albedo : Rgb{}; }
 };
 
 /// Rough metal that forgets, in its pdf alone, the lobe of returned energy.
-struct ForgottenLobe : ConductorBsdf {
-    float pdf(Vec3 wo, Vec3 wi) const { return wi.z > 0 ? evaluate_ggx_reflection(wo, wi, alpha).pdf : 0.0f; }
+struct ForgottenLobe : Bsdf {
+    float pdf(Vec3 wo, Vec3 wi) const {
+        return wi.z > 0 ? evaluate_ggx_reflection(wo, wi, base.conductor.alpha).pdf : 0.0f;
+    }
 };
 
 /// Rough metal whose weights are 2 % too bright, in the samples alone.
-struct BrightWeights : ConductorBsdf {
+struct BrightWeights : Bsdf {
     BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
-        BsdfSample s = ConductorBsdf::sample(wo, u_lobe, u);
+        BsdfSample s = Bsdf::sample(wo, u_lobe, u);
         s.weight = 1.02f * s.weight;
         return s;
     }
@@ -176,16 +179,16 @@ TEST_CASE("the sampling test notices a missing cosine, a forgotten lobe and brig
     const Vec3 wo = direction_at(0.7f);
     const DirectionChart chart = chart_for(wo, 1);
     const std::vector<double> horizon = {0};
-    const NoCosineInPdf pdf = {{grey(0.5f)}};
+    const NoCosineInPdf pdf = {make_diffuse(grey(0.5f))};
     CHECK_FALSE(test_sampling(pdf, wo, chart, horizon, 100'000, 1).chi_square.passes(1000));
-    const NoCosineInEval eval = {{grey(0.5f)}};
+    const NoCosineInEval eval = {make_diffuse(grey(0.5f))};
     const SamplingReport of_eval = test_sampling(eval, wo, chart, horizon, 100'000, 1);
     CHECK(of_eval.chi_square.passes(1));
     CHECK(of_eval.mean_deviations > 5);
     CHECK(of_eval.weight_error > 1e-2);
-    const ForgottenLobe lobe = {{kGoldEta, kGoldK, 0.25f}};
+    const ForgottenLobe lobe = {make_conductor(kGoldEta, kGoldK, 0.5f)};
     CHECK_FALSE(test_sampling(lobe, wo, chart, horizon, 100'000, 1).chi_square.passes(1000));
-    const BrightWeights bright = {{kGoldEta, kGoldK, 0.25f}};
+    const BrightWeights bright = {make_conductor(kGoldEta, kGoldK, 0.5f)};
     const SamplingReport of_bright = test_sampling(bright, wo, chart, horizon, 100'000, 1);
     CHECK(of_bright.chi_square.passes(1));
     CHECK(of_bright.mean_deviations > 5);

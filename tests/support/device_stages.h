@@ -49,7 +49,7 @@ struct ScatterRandomly {
         const BsdfSample sample = bsdf.sample(wo, unit_interval(h.x), {unit_interval(h.y), unit_interval(h.z)});
         const BsdfValue value = bsdf.evaluate(wo, other);
         uint32_t hash = fold(fold(1, sample.wi), sample.weight);
-        hash = fold(fold(hash, sample.pdf), (sample.is_delta ? 1u : 0u) + (sample.is_transmission ? 2u : 0u));
+        hash = fold(fold(hash, sample.pdf), (sample.is_delta() ? 1u : 0u) + (sample.is_transmission ? 2u : 0u));
         out[i] = fold(fold(hash, value.f), value.pdf);
     }
 };

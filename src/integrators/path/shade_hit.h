@@ -115,11 +115,11 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     const Vec3 wi = sample.wi;
 
     path.throughput = path.throughput * sample.weight;
-    path.bsdf_pdf = sample.is_delta ? 0.0f : sample.pdf;
+    path.bsdf_pdf = sample.is_delta() ? 0.0f : sample.pdf;
     path.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
     path.direction = wi;
     path.start = surface.triangle;
-    path.rough_depth += sample.is_delta ? 0 : 1;
+    path.rough_depth += sample.is_delta() ? 0 : 1;
     if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing of it would count
     const uint32_t vertex = path.depth + 1;
     if (vertex >= settings.roulette_depth) {

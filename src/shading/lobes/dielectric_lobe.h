@@ -9,16 +9,15 @@
 // wo.z > 0 is the outside, where the index is 1; the inside has index `ior`.
 
 #include "base/host_device.h"
-#include "shading/bsdf_sample.h"
-#include "shading/conductor_bsdf.h"
 #include "shading/energy_tables.h"
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
 #include "shading/grazing_lobe.h"
+#include "shading/lobes/passage.h"
 
 namespace pertev {
 
-struct DielectricBsdf {
+struct DielectricLobe {
     Rgb tint;    // factor on what is transmitted, [0, 1]
     float alpha; // GGX width = roughness^2, [0, 1]
     float ior;   // inside over outside; where rough within [1.1, 3] or its inverse (usable_ior)
@@ -34,7 +33,10 @@ struct DielectricBsdf {
     /// Index of the far side over that of the near side.
     HD float eta_from(Vec3 wo) const { return wo.z > 0 ? ior : 1.0f / ior; }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi) const {
+    HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
+    HD float energy() const { return 1; }
+
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
         if (is_smooth() || !(abs(wo.z) > 0 && abs(wi.z) > 0)) return {};
         const float eta = eta_from(wo);
         const Vec3 o = {wo.x, wo.y, abs(wo.z)};
@@ -48,8 +50,8 @@ struct DielectricBsdf {
             const GgxReflection once = evaluate_ggx_reflection(o, {wi.x, wi.y, cos_i}, alpha);
             const float reflectance = fresnel_dielectric(once.cos_h, eta).reflectance;
             const float more = (1.0f - share) * lost_o * glass_lost(cos_i, alpha, eta) / average_o;
-            return {grey(once.f * reflectance + cosine * more),
-                    (1.0f - lost_o) * reflectance * once.pdf + lost_o * (1.0f - share) * grazing};
+            return {grey(way.light * (once.f * reflectance + cosine * more)),
+                    way.reach * ((1.0f - lost_o) * reflectance * once.pdf + lost_o * (1.0f - share) * grazing)};
         }
         float f = share * lost_o * glass_lost(cos_i, alpha, 1.0f / eta) / average_far * cosine;
         float pdf = lost_o * share * grazing;
@@ -68,16 +70,12 @@ struct DielectricBsdf {
             f += d * cos_i / (so * cos_i + si * o.z);
             pdf += (1.0f - lost_o) * d / (o.z + so);
         }
-        return {f * tint, pdf};
+        return {(way.light * f) * tint, way.reach * pdf};
     }
-    HD Rgb eval(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).f; }
-    HD float pdf(Vec3 wo, Vec3 wi) const { return evaluate(wo, wi).pdf; }
-
-    HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
-        if (wo.z == 0) return {};
+    HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         const float eta = eta_from(wo);
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}; // mirrored to the upper side, and i with it
-        if (is_smooth()) return sample_smooth(wo, u_lobe, eta);
+        if (is_smooth()) return draw_smooth(wo, u_lobe, eta);
 
         Vec3 i;
         const float lost = glass_lost(o.z, alpha, eta);
@@ -98,8 +96,7 @@ struct DielectricBsdf {
                 if (!(i.z < 0)) return {};
             }
         }
-        const Vec3 wi = {i.x, i.y, wo.z < 0 ? -i.z : i.z};
-        return make_bsdf_sample(wi, evaluate(wo, wi), i.z < 0);
+        return draw_direction({i.x, i.y, wo.z < 0 ? -i.z : i.z}, i.z < 0);
     }
 
 private:
@@ -108,13 +105,13 @@ private:
         return (1.0f - fresnel_dielectric_average(eta)) * min(1.0f, average_far / average_near);
     }
 
-    HD BsdfSample sample_smooth(Vec3 wo, float u_lobe, float eta) const {
+    HD LobeDraw draw_smooth(Vec3 wo, float u_lobe, float eta) const {
         const DielectricFresnel fresnel = fresnel_dielectric(min(abs(wo.z), 1.0f), eta);
         const float r = fresnel.reflectance;
-        if (u_lobe < r) return {.wi = {-wo.x, -wo.y, wo.z}, .weight = grey(1), .pdf = r, .is_delta = true};
+        if (u_lobe < r) return draw_mirror(wo, grey(1), r);
         if (!(r < 1)) return {};
         const Vec3 wi = normalize(Vec3{-wo.x / eta, -wo.y / eta, -copysign(fresnel.cos_t, wo.z)});
-        return {.wi = wi, .weight = tint, .pdf = 1.0f - r, .is_delta = true, .is_transmission = true};
+        return {.sample = {.wi = wi, .weight = tint, .pdf = 1.0f - r, .is_transmission = true}};
     }
 };
 

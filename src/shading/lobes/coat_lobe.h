@@ -1,0 +1,55 @@
+#pragma once
+
+// A clear varnish on anything: a second dielectric interface of its own roughness, colourless. A layer; what lies
+// beneath gets at most what the coat leaves, from either side (Passage::pass).
+//
+// Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the viewer alone is not reciprocal: here the
+// coat's directional albedo takes that place, of both directions.
+
+#include "shading/lobes/schlick_lobe.h"
+
+namespace pertev {
+
+struct CoatLobe {
+    float strength; // [0, 1]: clearcoatFactor
+    float alpha;    // GGX width = roughness^2, [0, 1]
+    float f0;       // reflectance at normal incidence, [0, 1]: 0.04 in glTF
+
+    HD SchlickLobe interface() const { return {grey(0), 0, alpha, f0}; }
+
+    HD LobeClass lobe_class() const { return interface().lobe_class(); }
+    HD float energy() const { return strength * interface().energy(); }
+
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {
+        const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
+        const SchlickLobe lobe = interface();
+        const SchlickLobe::Average average = lobe.make_average();
+        const SchlickLobe::Albedo at_o = lobe.albedo_at(o.z, average), at_i = lobe.albedo_at(i.z, average);
+        const LayerShares shares = make_shares(average, at_o, beneath);
+        BsdfValue value;
+        if (!lobe.is_smooth() && wo.z * wi.z > 0) {
+            const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
+            value = {(way.light * strength) * lobe.value_of(once, i.z, average, at_o, at_i),
+                     way.reach * lobe.pdf_of(once, i.z, shares.specular, shares.more)};
+        }
+        way.pass(strength * at_o.coat, strength * at_i.coat, shares.beneath);
+        return value;
+    }
+
+    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+        const SchlickLobe lobe = interface();
+        const SchlickLobe::Average average = lobe.make_average();
+        const LayerShares shares = make_shares(average, lobe.albedo_at(abs(wo.z), average), beneath);
+        return lobe.draw_by(shares, strength * fresnel_schlick(abs(wo.z), grey(f0)), wo, u_lobe, u);
+    }
+
+private:
+    HD LayerShares make_shares(const SchlickLobe::Average& average, const SchlickLobe::Albedo& at_o,
+                               float beneath) const {
+        const float once = strength * ((1.0f - at_o.lost) * (f0 + (1.0f - f0) * at_o.schlick));
+        const float more = strength * (at_o.lost * average.coat_more);
+        return layer_shares(once, more, beneath * (1.0f - strength * at_o.coat));
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,51 @@
+#pragma once
+
+// Metal: exact Fresnel reflectance of a complex index, GGX microfacets, perfectly smooth below kSmoothAlpha. What
+// single scattering loses comes back through a reciprocal second lobe (energy_tables.h). Both sides reflect alike.
+// draw() takes a visible normal with the probability of the share that one bounce returns, else the
+// grazing lobe.
+
+#include "base/host_device.h"
+#include "shading/energy_tables.h"
+#include "shading/fresnel.h"
+#include "shading/ggx.h"
+#include "shading/grazing_lobe.h"
+#include "shading/lobes/passage.h"
+
+namespace pertev {
+
+struct ConductorLobe {
+    Rgb eta, k;  // complex index eta + i k, per channel, over that of the outside
+    float alpha; // GGX width = roughness^2, [0, 1]
+
+    HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
+
+    HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
+    HD float energy() const { return max_component(fresnel_conductor_average(eta, k)); }
+
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
+        if (is_smooth() || !(wo.z * wi.z > 0)) return {};
+        const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
+        const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
+        const float lost_o = metal_lost(o.z, alpha), lost_i = metal_lost(i.z, alpha);
+        const float lost = metal_average_lost(alpha), cosine = i.z * kInvPi;
+        const Rgb more = multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
+        return {way.light * (once.f * fresnel_conductor(once.cos_h, eta, k) + (cosine * lost_o * lost_i / lost) * more),
+                way.reach * ((1.0f - lost_o) * once.pdf + lost_o * pdf_grazing_lobe(i.z, alpha))};
+    }
+    HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
+        if (is_smooth()) return draw_mirror(wo, fresnel_conductor(abs(wo.z), eta, k), 1);
+        Vec3 wi;
+        if (u_lobe < metal_lost(abs(wo.z), alpha)) {
+            wi = sample_grazing_lobe(alpha, u);
+        } else {
+            const Vec3 o = {wo.x, wo.y, abs(wo.z)};
+            wi = normalize(reflect(o, sample_ggx_visible_normal(o, alpha, u)));
+            if (!(wi.z > 0)) return {}; // into the surface: lost, and part of what the second lobe returns
+        }
+        wi.z = copysign(wi.z, wo.z);
+        return draw_direction(wi);
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,33 @@
+#pragma once
+
+// Ideal diffuse reflection, on the side of wo. The lobe to read first: passage.h says what every lobe has.
+// tests/statistical/bsdf_*_test.cpp hold all of them to it: chi-square of sample against pdf, mean of weight against
+// the integral of eval, no energy gained, reciprocity.
+
+#include "base/host_device.h"
+#include "math/sampling.h"
+#include "math/vec2.h"
+#include "shading/lobes/passage.h"
+
+namespace pertev {
+
+struct DiffuseLobe {
+    Rgb albedo;      // [0, 1] per channel, linear Rec. 709
+    float share = 1; // factor on it, [0, 1]
+
+    HD LobeClass lobe_class() const { return LobeClass::Diffuse; }
+    HD float energy() const { return share * max_component(albedo); }
+
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
+        if (!(wo.z * wi.z > 0)) return {};
+        const float pdf = abs(wi.z) * kInvPi;
+        return {(way.light * (pdf * share * way.near * way.far / way.average)) * albedo, way.reach * pdf};
+    }
+    HD LobeDraw draw(Vec3 wo, Vec2 u) const {
+        Vec3 wi = sample_cosine_hemisphere(u);
+        wi.z = copysign(wi.z, wo.z);
+        return draw_direction(wi);
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,136 @@
+#pragma once
+
+// The reflection of glTF 2.0's metallic-roughness (specification, appendix B): metal and dielectric coat, mixed by
+// `metallic`, by one GGX lobe with Schlick's Fresnel; multiple scattering is compensated (energy_tables.h). A layer, of
+// which the coat lies on a diffuse base or on nothing. The base gets (1 - C(o)) (1 - C(i)) / (1 - C_avg), C the coat's
+// directional albedo (Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001), so coat
+// and a white base together return all light. Below kSmoothAlpha a perfect mirror. Both sides reflect alike.
+
+#include "base/host_device.h"
+#include "shading/energy_tables.h"
+#include "shading/fresnel.h"
+#include "shading/ggx.h"
+#include "shading/grazing_lobe.h"
+#include "shading/lobes/passage.h"
+
+namespace pertev {
+
+/// Probabilities of sampling a layer's visible normal (or its mirror), its grazing lobe, what lies beneath.
+struct LayerShares {
+    float specular, more, beneath;
+};
+/// From the energies seen from wo. The visible normals keep at least 1/16, against fireflies where the energy seen from
+/// wo is no guide to the value at wi.
+HD inline LayerShares layer_shares(float once, float more, float beneath) {
+    LayerShares shares = {};
+    shares.specular = more + beneath > 0 ? max(once / (once + more + beneath), 0.0625f) : 1.0f;
+    const float rest = more + beneath > 0 ? (1.0f - shares.specular) / (more + beneath) : 0.0f;
+    shares.more = rest * more;
+    shares.beneath = rest * beneath;
+    return shares;
+}
+
+struct SchlickLobe {
+    Rgb base_color; // [0, 1], the metal's reflectance at normal incidence
+    float metallic; // [0, 1]
+    float alpha;    // GGX width = roughness^2, [0, 1]
+    float f0;       // reflectance of the coat at normal incidence, [0, 1]: f0_from_ior(ior)
+
+    struct Average {
+        float lost, schlick; // of the lobe with F = 1
+        float coat_more;     // factor of the compensating lobe of the coat
+        float coat;          // the coat's albedo
+        Rgb more;            // factor of the compensating lobe, coat and metal mixed
+    };
+    struct Albedo {
+        float lost, schlick; // of the lobe with F = 1; schlick is metal_schlick()
+        float coat;          // of coat with compensation, [0, 1]
+    };
+
+    HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
+    HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
+    HD float energy() const { return max_component(fresnel_schlick_average(mixed_f0())); }
+    HD Rgb mixed_f0() const { return lerp(grey(f0), base_color, metallic); }
+
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {
+        if (!(wo.z * wi.z > 0)) return {};
+        const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
+        const Average average = make_average();
+        const Albedo at_o = albedo_at(o.z, average), at_i = albedo_at(i.z, average);
+        const LayerShares shares = make_shares(average, at_o, beneath);
+        BsdfValue value;
+        if (!is_smooth()) {
+            const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
+            value = {way.light * value_of(once, i.z, average, at_o, at_i),
+                     way.reach * pdf_of(once, i.z, shares.specular, shares.more)};
+        }
+        way.near = 1.0f - at_o.coat;
+        way.far = 1.0f - at_i.coat;
+        way.average = 1.0f - average.coat;
+        way.reach = way.reach * shares.beneath;
+        return value;
+    }
+
+    HD LobeDraw draw(Vec3 wo, float beneath, float u_lobe, Vec2 u) const {
+        const Average average = make_average();
+        const LayerShares shares = make_shares(average, albedo_at(abs(wo.z), average), beneath);
+        return draw_by(shares, fresnel_schlick(abs(wo.z), mixed_f0()), wo, u_lobe, u);
+    }
+
+    // What follows also makes coat_lobe.h.
+
+    HD Rgb value_of(const GgxReflection& once, float cos_i, const Average& average, const Albedo& at_o,
+                    const Albedo& at_i) const {
+        const float cosine = cos_i * kInvPi;
+        return once.f * fresnel_schlick(once.cos_h, mixed_f0()) +
+               (cosine * at_o.lost * at_i.lost / average.lost) * average.more;
+    }
+    HD float pdf_of(const GgxReflection& once, float cos_i, float p_specular, float p_more) const {
+        return p_specular * once.pdf + p_more * pdf_grazing_lobe(cos_i, alpha);
+    }
+
+    /// `fresnel`: the mirror's reflectance seen from wo.
+    HD LobeDraw draw_by(const LayerShares& shares, Rgb fresnel, Vec3 wo, float u_lobe, Vec2 u) const {
+        Vec3 wi;
+        if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);
+        if (u_lobe - shares.beneath < shares.more) {
+            wi = sample_grazing_lobe(alpha, u);
+        } else if (is_smooth()) {
+            return draw_mirror(wo, (1.0f / shares.specular) * fresnel, shares.specular);
+        } else {
+            const Vec3 o = {wo.x, wo.y, abs(wo.z)};
+            wi = normalize(reflect(o, sample_ggx_visible_normal(o, alpha, u)));
+            if (!(wi.z > 0)) return {};
+        }
+        wi.z = copysign(wi.z, wo.z);
+        return draw_direction(wi);
+    }
+
+    HD Average make_average() const {
+        Average a = {};
+        a.lost = is_smooth() ? 0.0f : metal_average_lost(alpha);
+        a.schlick = is_smooth() ? 1.0f / 21.0f : metal_average_schlick(alpha);
+        a.coat_more = multiple_scattering_tint(fresnel_schlick_average(f0), a.lost);
+        a.coat = f0 * (1.0f - a.lost - a.schlick) + a.schlick + a.lost * a.coat_more;
+        const Rgb metal_more = multiple_scattering_tint(fresnel_schlick_average(base_color), a.lost);
+        a.more = lerp(grey(a.coat_more), metal_more, metallic);
+        return a;
+    }
+    HD Albedo albedo_at(float cosine, const Average& average) const {
+        Albedo a = {};
+        a.lost = is_smooth() ? 0.0f : metal_lost(cosine, alpha);
+        a.schlick = is_smooth() ? schlick_weight(cosine) : metal_schlick(cosine, alpha);
+        a.coat = min((1.0f - a.lost) * (f0 + (1.0f - f0) * a.schlick) + a.lost * average.coat_more, 1.0f);
+        return a;
+    }
+
+private:
+    HD LayerShares make_shares(const Average& average, const Albedo& at_o, float beneath) const {
+        const float specular_f0 = max_component(mixed_f0());
+        const float once = (1.0f - at_o.lost) * (specular_f0 + (1.0f - specular_f0) * at_o.schlick);
+        const float more = at_o.lost * max_component(average.more);
+        return layer_shares(once, more, beneath * (1.0f - at_o.coat));
+    }
+};
+
+} // namespace pertev

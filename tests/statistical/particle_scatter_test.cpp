@@ -1,0 +1,158 @@
+// Particles from the lights see the same surface as paths from the camera: for any light and any camera the power that
+// one carries to the other is the same number, summed over paths or over particles (render/particle_scatter.h).
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/parallel_for.h"
+#include "render/particle_scatter.h"
+#include "tests/statistical/bsdf_cases.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+/// A surface whose shading normal is +z and whose triangle is turned by asin(tilt) about y.
+Surface tilted_surface(const Bsdf& bsdf, float tilt) {
+    Surface surface = {};
+    surface.geometric_normal = {tilt, 0, std::sqrt(1.0f - tilt * tilt)};
+    surface.frame = make_frame({0, 0, 1});
+    surface.bsdf = bsdf;
+    surface.tilt = terminator_tilt(tilt, 0);
+    return surface;
+}
+
+/// Radiance over n^2 that arrives along w, and what a camera makes of it that sees the surface along w: any two smooth
+/// functions. Both are dark near the triangle's plane, where delta directions are folded back.
+double light_at(const Surface& surface, Vec3 w) {
+    const float height = std::fabs(dot(w, surface.geometric_normal));
+    return static_cast<double>(square(max(height - 0.25f, 0.0f)) * (1.2f + w.x - 0.5f * w.y));
+}
+double camera_at(const Surface& surface, Vec3 w) {
+    const float height = std::fabs(dot(w, surface.geometric_normal));
+    return static_cast<double>(max(height - 0.3f, 0.0f) * (1.3f - 0.7f * w.x + 0.4f * w.y));
+}
+
+/// n^2 |w . Ng|
+double etendue(const Surface& surface, Vec3 w) {
+    const bool inside = surface.bsdf.base.kind == LobeKind::Dielectric && dot(w, surface.geometric_normal) < 0;
+    const double n = inside ? static_cast<double>(surface.bsdf.base.dielectric.ior) : 1.0;
+    return n * n * std::fabs(static_cast<double>(dot(w, surface.geometric_normal)));
+}
+
+struct Estimate {
+    double mean = 0, error = 0;
+};
+
+/// Power from the light to the camera: paths start along even directions from the camera, particles from the light.
+Estimate transported(const Surface& surface, bool particles, uint32_t count) {
+    double sum = 0, squares = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const SamplePoint p = random_point(i, particles ? 31 : 32), q = random_point(i, particles ? 33 : 34);
+        const Vec3 start = sample_uniform_sphere(q.u);
+        const BsdfSample s =
+            particles ? sample_adjoint(surface, start, p.lobe, p.u) : surface.sample(start, p.lobe, p.u);
+        if (!(s.pdf > 0)) continue;
+        const double ends = particles ? light_at(surface, start) * camera_at(surface, s.wi)
+                                      : camera_at(surface, start) * light_at(surface, s.wi);
+        const double x = ends * etendue(surface, start) * static_cast<double>(s.weight.g);
+        sum += x;
+        squares += x * x;
+    }
+    const double mean = sum / count;
+    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
+}
+
+std::vector<BsdfCase> cases_with_deltas() {
+    std::vector<BsdfCase> cases = rough_bsdf_cases();
+    cases.push_back({"smooth glass", make_dielectric(1.5f, 0, {1.0f, 0.9f, 0.7f})});
+    cases.push_back({"mirror", make_conductor(kGoldEta, kGoldK, 0)});
+    cases.push_back({"rough varnish on a mirror", make_coated(make_conductor(kGoldEta, kGoldK, 0), 1, 0.4f, 1.5f)});
+    cases.push_back({"smooth varnish on smooth glass", make_coated(make_dielectric(1.5f, 0, grey(1)), 1, 0, 1.5f)});
+    return cases;
+}
+
+} // namespace
+
+TEST_CASE("particles carry the power that paths carry, by every BSDF, flat and about a bent normal") {
+    const std::vector<BsdfCase> cases = cases_with_deltas();
+    constexpr float tilts[] = {0, 0.1f, 0.3f};
+    const auto count = static_cast<uint32_t>(effort(400'000, 10'000'000));
+    std::vector<Estimate> by_path(cases.size() * std::size(tilts)), by_particle(by_path.size());
+    parallel_for(by_path.size(), 1, [&](uint64_t i) {
+        const Surface surface = tilted_surface(cases[i / std::size(tilts)].bsdf, tilts[i % std::size(tilts)]);
+        by_path[i] = transported(surface, false, count);
+        by_particle[i] = transported(surface, true, count);
+    });
+    for (std::size_t i = 0; i < by_path.size(); ++i) {
+        const Estimate &a = by_path[i], &b = by_particle[i];
+        INFO(cases[i / std::size(tilts)].name << ", tilt " << tilts[i % std::size(tilts)] << ": " << a.mean << " +- "
+                                              << a.error << " by paths, " << b.mean << " +- " << b.error);
+        CHECK(a.mean > 0);
+        CHECK(std::fabs(a.mean - b.mean) < 4.5 * std::sqrt(a.error * a.error + b.error * b.error));
+        CHECK(a.error < 0.02 * a.mean);
+    }
+}
+
+TEST_CASE("without the cosines of the two normals particles carry other power, and the comparison shows it") {
+    const Surface surface = tilted_surface(make_diffuse(grey(1)), 0.3f);
+    const Estimate by_path = transported(surface, false, 200'000);
+    double bare = 0; // the BSDF's own adjoint about the shading normal
+    for (uint32_t i = 0; i < 200'000; ++i) {
+        const SamplePoint p = random_point(i, 35), q = random_point(i, 36);
+        const Vec3 wi = sample_uniform_sphere(q.u);
+        const BsdfSample s = surface.bsdf.sample(wi, p.lobe, p.u);
+        if (!(s.pdf > 0)) continue;
+        bare += light_at(surface, wi) * camera_at(surface, s.wi) * etendue(surface, wi) *
+                static_cast<double>(s.weight.g) / 200'000;
+    }
+    CHECK(std::fabs(bare - by_path.mean) > 10 * by_path.error);
+}
+
+TEST_CASE("a particle's direction is drawn from the adjoint's density, and its weight is value over density") {
+    const std::vector<BsdfCase> cases = rough_bsdf_cases();
+    constexpr float tilts[] = {0, 0.3f};
+    const int tests = static_cast<int>(cases.size() * std::size(tilts));
+    for (const BsdfCase& c : cases) {
+        const float alpha = narrowest_alpha(c.bsdf);
+        if (!(alpha > 0.05f)) continue; // too narrow for an even grid
+        for (const float tilt : tilts) {
+            const Surface surface = tilted_surface(c.bsdf, tilt);
+            const Vec3 wi = direction_at(0.45f, 0.45f); // within the reach of the raise
+            double weight_error = 0;
+            const auto sample = [&](float lobe, Vec2 u) -> std::optional<Vec3> {
+                const BsdfSample s = sample_adjoint(surface, wi, lobe, u);
+                if (!(s.pdf > 0) || s.is_delta()) return std::nullopt;
+                const BsdfValue value = evaluate_adjoint(surface, wi, s.wi);
+                const double f = static_cast<double>(value.f.g);
+                weight_error = std::max(weight_error, std::abs(static_cast<double>(s.weight.g * s.pdf) - f) / f);
+                return s.wi;
+            };
+            const auto pdf = [&](Vec3 wo) { return static_cast<double>(evaluate_adjoint(surface, wi, wo).pdf); };
+            const ChiSquareResult result = chi_square_of_directions(
+                sample, pdf, {.samples = static_cast<uint32_t>(effort(40'000, 400'000)), .cells_x = 12, .cells_y = 20});
+            INFO(c.name << ", tilt " << tilt << ", weight off by " << weight_error);
+            CHECK_MESSAGE(result.passes(tests), result.describe());
+            CHECK(weight_error < 0.02);
+        }
+    }
+}
+
+TEST_CASE("on a flat surface the adjoint is the BSDF with its directions exchanged") {
+    for (const BsdfCase& c : rough_bsdf_cases()) {
+        const Surface surface = tilted_surface(c.bsdf, 0);
+        for (uint32_t i = 0; i < 200; ++i) {
+            const SamplePoint p = random_point(i, 41), q = random_point(i, 42);
+            const Vec3 wi = direction_at(2.0f * p.u.x - 1.0f, p.u.y), wo = direction_at(2.0f * q.u.x - 1.0f, q.u.y);
+            const BsdfValue value = evaluate_adjoint(surface, wi, wo), exchanged = c.bsdf.evaluate(wi, wo);
+            CHECK(value.f.g == doctest::Approx(exchanged.f.g).epsilon(1e-4));
+            CHECK(value.pdf == doctest::Approx(exchanged.pdf).epsilon(1e-4));
+        }
+    }
+}
