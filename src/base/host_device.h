@@ -14,13 +14,6 @@
 #define HD_CALL
 #endif
 
-// A function that is called in device code rather than inlined: it is seldom run and would cost its callers registers.
-#if defined(__CUDA_ARCH__)
-#define PERTEV_OUT_OF_LINE __noinline__
-#else
-#define PERTEV_OUT_OF_LINE
-#endif
-
 #if defined(__CUDACC__) || defined(PERTEV_EMULATED_WARPS)
 #define PERTEV_HAS_KERNELS 1
 #else

@@ -22,8 +22,8 @@ struct TraceQuery {
 };
 
 /// Of an instance that lets something pass. Out of line: what it does with textures must not cost the walk registers.
-HD PERTEV_OUT_OF_LINE inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
-                                                 uint32_t instance, uint32_t primitive, float u, float v) {
+HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+                                   uint32_t instance, uint32_t primitive, float u, float v) {
     const AcceptHit accept{*scene, {}, {}, key};
     if (hides_backs && AcceptCameraHit{accept, ray->direction}.meets_hidden_back(instance, primitive)) return true;
     return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
