@@ -18,6 +18,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
+#include "apps/cli/tracer_flags.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
@@ -38,6 +39,7 @@ struct BenchFlags {
     std::string size = "1920x1080", output, job = "S8";
     uint32_t samples = 0, seed = 0;
     MachineFlags machine;
+    TracerFlags tracer;
     ReportFlags report;
 };
 
@@ -92,11 +94,12 @@ double mean_of(const Image& image) {
 int bench_job(const BenchFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
-    const RenderSettings settings = job_settings(flags);
+    RenderSettings settings = job_settings(flags);
     if (!flags.output.empty()) check_image_output(flags.output, settings.width, settings.height);
     check_bench_scene(flags.scenes.front());
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
+    settings.tracers = tracer_choice(flags.tracer, queue->is_cuda());
     reporter.set_work(fmt::format("measuring {}", flags.scenes.front()));
     const Stopwatch watch;
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
@@ -266,6 +269,7 @@ int bench_scenes(const BenchFlags& flags) {
     for (const std::string& scene : scenes) {
         for (const auto& queue : queues) {
             reporter.set_work(fmt::format("measuring {} on {}", scene, queue->device_name()));
+            settings.tracers = tracer_choice(flags.tracer, queue->is_cuda());
             settings.samples = flags.samples > 0 ? flags.samples : (queue->is_cuda() ? 64 : 4);
             const SceneFigures figures = measure(scene, *queue, settings);
             reporter.answer(std::exchange(header, "")); // over the first row
@@ -281,6 +285,7 @@ void add_shared_flags(CLI::App& verb, BenchFlags& flags) {
         ->type_name("N")
         ->check(whole_between(1, kMaxSamplesPerPixel));
     add_machine_flags(verb, flags.machine);
+    add_tracer_flags(verb, flags.tracer, "Tracing");
     add_report_flags(verb, flags.report);
 }
 

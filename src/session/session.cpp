@@ -68,6 +68,7 @@ void Session::set_camera(const Camera& camera) {
 }
 
 void Session::set_settings(const RenderSettings& settings) {
+    check_choice(tracers_of(settings, queue_.is_cuda()), queue_.is_cuda());
     const bool same = same_picture(settings_, settings);
     if (settings.width != settings_.width || settings.height != settings_.height) hidden_back_share_.reset();
     settings_ = settings;
@@ -114,7 +115,7 @@ Film& Session::current_film() {
 }
 
 PictureView Session::view_of(const RenderSettings& settings) {
-    PERTEV_CHECK(scene_.has_value()); // the last set_scene threw
+    PERTEV_CHECK(scene_.has_value() && tracer_.has_value()); // the last set_scene or set_settings threw
     const SceneView& scene = scene_->view();
     return {scene,
             make_camera_rays(camera_, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,

@@ -7,7 +7,8 @@
 //   set_scene     always. Uploads the scene; takes no memory for film and queues.
 //   set_camera    where the camera is another. Uploads and takes nothing.
 //   set_settings  where the picture is another (same_picture). Another size or other layers take a new film at the next
-//                 render, and larger queues where they must be larger. All else takes nothing.
+//                 render, and larger queues where they must be larger; another tracer takes its structure. All else
+//                 takes nothing.
 //   cut           always.
 // Whatever came before, the picture of n samples is what a fresh session gives, to the byte; so is one of a samples
 // with b added. One thread at a time.
@@ -38,13 +39,16 @@ struct History {
 class Session {
 public:
     /// Uploads `scene`, which may go away afterwards, as may the Scene it was made from. `queue` outlives the session.
-    /// Throws Error(OutOfMemory, DeviceFault).
+    /// Throws Error(OutOfMemory, DeviceFault), and what set_settings throws.
     Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings);
 
     /// As the constructor. The scene before is freed first, so that two need not fit; when this throws there is none,
     /// and the next set_scene must come before anything is rendered or metered.
     void set_scene(const PreparedScene& scene);
     void set_camera(const Camera& camera);
+    /// Throws Error(BadInput), and nothing is done, where the device has no such tracer; Error(OutOfMemory, OverLimit)
+    /// where the structure of another one cannot be had: the next set_settings must then come before anything is
+    /// rendered.
     void set_settings(const RenderSettings& settings);
     /// What was seen before tells nothing of what comes (a camera that jumps, a measurement that begins again).
     void cut();

@@ -19,10 +19,10 @@ FLAGS = {
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time "
               "--integrator --max-depth --seed --sampler --filter --filter-radius --clamp --device --threads "
-              "--no-bvh-cache",
+              "--no-bvh-cache --structure --walk --rta --order --distribution",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
-    "bench": "--scene --size --spp --device --threads --quiet -q --json",
+    "bench": "--scene --size --spp --device --threads --structure --walk --rta --order --distribution --quiet -q --json",
     "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --quiet -q --json",
 }
 
@@ -184,7 +184,7 @@ class WhatIsSaid(CliTest):
         outcome = self.succeed("render", "cornell-box", "-o", "x.exr", "--size", "8x8", "--spp", "2")
         self.assertEqual(outcome.stdout, "")
         self.assertRegex(outcome.stderr.splitlines()[-1],
-                         r"^2 spp in [\d.]+ s .*Msamples/s, [\d.]+ Mrays/s, peak \d+ MiB.*, 0 invalid samples, "
+                         r"^2 spp in [\d.]+ s .*, [\d.e+-]+ s a frame of 1 spp \([\d.e+]+ frames/s\), [\d.]+ Msamples/s, [\d.]+ Mrays/s, peak \d+ MiB.*, 0 invalid samples, "
                          r"picture [0-9a-f]{32}$")
         self.assertEqual(outcome.stderr.split()[-1], self.info("x.exr")["hash"])
 

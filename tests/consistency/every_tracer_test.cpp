@@ -1,0 +1,179 @@
+// Pictures by every structure, walk, switch and way of handing rays out that this device has, with exact tests: one
+// hash. What makes no sense says why. With --device cuda the GPU's.
+
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "image/picture_hash.h"
+#include "render/tracer/walk_kernels.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+RenderSettings small_settings() {
+    RenderSettings settings;
+    settings.width = 24, settings.height = 16;
+    settings.samples = 2;
+    settings.path.max_depth = 5;
+    settings.aovs = kAovNormal | kAovDepth | kAovIds;
+    settings.transparent = true;
+    return settings;
+}
+
+/// Each instance with a mesh of its own: baked, so that the scene is one tree.
+Scene make_single_tree(const Scene& scene) {
+    Scene single = scene;
+    single.meshes.clear();
+    for (Instance& instance : single.instances) {
+        single.meshes.push_back(scene.meshes[instance.mesh]);
+        instance.mesh = static_cast<uint32_t>(single.meshes.size() - 1);
+    }
+    return single;
+}
+
+/// All surfaces as if the file said nothing of alpha and sides.
+Scene make_opaque(Scene scene) {
+    for (Material& material : scene.materials) material.alpha_mode = AlphaMode::Opaque, material.double_sided = true;
+    return scene;
+}
+
+Hash128 hash_of(const RenderResult& result) {
+    Hasher hasher;
+    hasher.add_value(picture_hash(result.picture).high);
+    hasher.add_value(picture_hash(result.picture).low);
+    for (const FilmLayer& layer : result.layers) hasher.add_values(std::span<const float>(layer.image.pixels));
+    for (const PixelIds& ids : result.ids) {
+        for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
+    }
+    return hasher.result();
+}
+
+std::vector<WalkOptions> all_switches() {
+    std::vector<WalkOptions> all;
+    for (const bool rta : {true, false}) {
+        for (const bool near_first : {true, false}) all.push_back({.rta = rta, .near_first = near_first});
+    }
+    all.push_back({.rta_at_pops = false});
+    return all;
+}
+
+constexpr Distribution kDistributions[] = {Distribution::OneAThread, Distribution::Persistent,
+                                           Distribution::DynamicFetch};
+
+struct Tally {
+    int pictures = 0, refused = 0, wrong = 0;
+};
+
+/// One session that goes from tracer to tracer.
+Tally check_all(const Scene& scene) {
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = small_settings();
+    Queue cpu = Queue::make_cpu();
+    const Camera camera = test::mixed_scene_camera();
+    const Hash128 wanted = hash_of(render_picture(cpu, prepared, camera, settings));
+    Queue queue = test::queue_asked_for();
+    Session session(queue, prepared, camera, settings);
+    Tally tally;
+    for (const StructureKind structure : all_structures()) {
+        for (const WalkKind walk : all_walks()) {
+            for (const WalkOptions& options : all_switches()) {
+                for (const Distribution distribution : kDistributions) {
+                    const Combination c = {structure, walk, options, distribution};
+                    if (const auto reason = why_no_tracer(c, queue.is_cuda())) {
+                        tally.refused += reason->empty() ? 0 : 1;
+                        continue;
+                    }
+                    settings.tracers = same_for_all(c);
+                    session.set_settings(settings);
+                    session.cut();
+                    session.render(settings.samples);
+                    ++tally.pictures;
+                    if (hash_of(session.result()) == wanted) continue;
+                    ++tally.wrong;
+                    FAIL_CHECK(name_of(c));
+                }
+            }
+        }
+    }
+    return tally;
+}
+
+void check(const Tally& tally) {
+    CHECK(tally.wrong == 0);
+    CHECK(tally.pictures > (test::cuda_requested() ? 1000 : 400));
+    CHECK(tally.refused > 100);
+}
+
+} // namespace
+
+TEST_CASE("every tracer gives one picture: a scene with instances, cut-outs, blended surfaces and hidden backs") {
+    check(check_all(test::make_mixed_scene()));
+}
+
+TEST_CASE("every tracer gives one picture: the same as one tree") {
+    check(check_all(make_single_tree(test::make_mixed_scene())));
+}
+
+TEST_CASE("every tracer gives one picture: opaque surfaces in one tree") {
+    check(check_all(make_opaque(make_single_tree(test::make_mixed_scene()))));
+}
+
+TEST_CASE("each kind of ray may have a tracer of its own") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = small_settings();
+    Queue queue = test::queue_asked_for();
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    session.render(settings.samples);
+    const Hash128 wanted = hash_of(session.result());
+    const Combination kd = {.structure = StructureKind::KdSah, .walk = WalkKind::Kd},
+                      octree = {.structure = StructureKind::Octree, .walk = WalkKind::Octree},
+                      wide = {.structure = StructureKind::SpatialSplits, .walk = WalkKind::Compressed};
+    for (const TracerChoice& choice :
+         {TracerChoice{kd, octree, wide}, TracerChoice{wide, kd, octree}, TracerChoice{octree, wide, kd}}) {
+        settings.tracers = choice;
+        session.set_settings(settings);
+        session.cut();
+        session.render(settings.samples);
+        CHECK(hash_of(session.result()) == wanted);
+    }
+}
+
+TEST_CASE("pictures are refused by tests that leak, and by walks that a device has not") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings = small_settings();
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    session.render(1);
+    const auto refuses = [&](const Combination& c) {
+        settings.tracers = same_for_all(c);
+        try {
+            session.set_settings(settings);
+        } catch (const Error& error) {
+            CHECK(std::string(error.what()).find(name_of(c)) != std::string::npos);
+            return error.code() == ErrorCode::BadInput;
+        }
+        return false;
+    };
+    CHECK(refuses({.walk = WalkKind::WhileWhile, .options = {.tests = TestKind::Fast}}));
+    CHECK(refuses({.walk = WalkKind::WhileWhile, .options = {.tests = TestKind::Woop}}));
+    CHECK(refuses({.structure = StructureKind::KdSah, .walk = WalkKind::WhileWhile}));
+    if (queue.is_cuda()) {
+        CHECK(refuses({.walk = WalkKind::Wide8Simd}));
+    } else {
+        CHECK(refuses({.walk = WalkKind::WhileWhile, .distribution = Distribution::DynamicFetch}));
+    }
+    settings.tracers.reset(); // and goes on with what it can do
+    session.set_settings(settings);
+    CHECK(session.render(1) == 1);
+}

@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""How rays are traced is asked for by flags, and shows in no picture; what cannot be says why."""
+
+from cli_run import FLOOR, CliTest, main, write
+
+SMALL = ["--size", "24x18", "--spp", "2", "--device", "cpu"]
+
+
+class HowRaysAreTraced(CliTest):
+    def hash_of(self, *arguments, scene="cornell-box"):
+        done = self.succeed("render", scene, "-o", "x.exr", *SMALL, "--json", *arguments).events("done")
+        return done[0]["hash"]
+
+    def test_every_way_gives_one_picture(self):
+        wanted = self.hash_of()
+        for line in ["--structure sbvh --walk restart-trail --rta off", "--walk brute-force", "--structure kd-sah",
+                     "--walk octree", "--structure ploc --walk compressed --rta nodes",
+                     "--walk while-while --order off", "--walk shadow=kd --structure bounce=insertion",
+                     "--walk camera=packet --walk bounce=short-stack --walk shadow=skip-links"]:
+            with self.subTest(line=line):
+                self.assertEqual(self.hash_of(*line.split()), wanted)
+
+    def test_what_cannot_be_says_why(self):
+        for line, why in [("--structure kd-sah --walk if-if", "the walk for it is kd"),
+                          ("--structure octree --walk wide8", "the walk for it is octree"),
+                          ("--walk skip-links --order off", "there is no order of children"),
+                          ("--walk if-if --rta nodes", "for the compressed walk"),
+                          ("--walk compressed --distribution dynamic-fetch", "threads of a CPU"),
+                          ("--walk camera=wide9", "expected one of if-if"),
+                          ("--walk eye=kd", "camera, bounce and shadow")]:
+            with self.subTest(line=line):
+                self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cpu", *line.split(), says=[why])
+
+    def test_brute_force_is_for_small_scenes(self):
+        side = 200  # 80,000 triangles
+        vertices = "".join(f"v {i % (side + 1)} 0 {i // (side + 1)}\n" for i in range((side + 1) ** 2))
+        faces = "".join(f"f {a} {a + side + 1} {a + side + 2} {a + 1}\n"
+                        for a in (z * (side + 1) + x + 1 for z in range(side) for x in range(side)))
+        write(self.path("field.obj"), vertices + faces)
+        self.refuse(3, "render", "field.obj", "-o", "x.png", *SMALL, "--walk", "brute-force", says=["80000 triangles"])
+        write(self.path("floor.obj"), FLOOR)
+        self.assertEqual(self.hash_of("--walk", "brute-force", scene="floor.obj"), self.hash_of(scene="floor.obj"))
+
+    def test_the_last_line_has_the_measures_of_frames(self):
+        done = self.succeed("render", "cornell-box", "-o", "x.exr", *SMALL, "--json").events("done")[0]
+        self.assertEqual(done["frames"], 2)
+        self.assertAlmostEqual(done["seconds_per_frame"] * 2, done["seconds"], places=4)
+
+
+if __name__ == "__main__":
+    main()
