@@ -1,7 +1,7 @@
 #pragma once
 
-// The record's "bunny": a scanned mesh, made sixteen times finer and a little rough, in a box without front and
-// ceiling. The same bits on every machine.
+// The scene "bunny" of the record (docs/ray_sets.md): a scanned mesh, made sixteen times finer and a little rough, in a
+// box without front and ceiling. The same bits on every machine.
 
 #include "scene/mesh.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// The record's "forest": a hilly ground with trees of loose leaves, 8.2 million triangles that are small, far apart and
-// turned every way, the opposite of a room with walls. The same bits on every machine and for any number of threads.
+// The scene "forest" of the record (docs/ray_sets.md): a hilly ground with trees of loose leaves, 8.2 million triangles
+// that are small, far apart and turned every way, the opposite of a room with walls. The same bits on every machine and
+// for any number of threads.
 
 #include "scene/mesh.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// The three scenes that rays on the record are traced in, with their cameras, and what was measured on them elsewhere.
+// The record: five sets of rays (docs/ray_sets.md) that other tracers were timed on. Here are the three scenes that
+// they are traced in, with their cameras, and what was measured on them elsewhere.
 
 #include <filesystem>
 #include <optional>

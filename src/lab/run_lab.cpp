@@ -30,7 +30,7 @@ namespace {
 /// Thrown when keep_going says no; what has been measured is kept.
 struct Stopped {};
 
-/// What pictures on a GPU are made with unless another tracer is chosen, and every other is held to.
+/// The proven walk: held against brute force on some rays, so that every other combination can be held to it on all.
 constexpr Combination kProven = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
 
 /// Over the instances that keep a tree of their own, in the file's coordinates, as the sets of rays are.

@@ -1,7 +1,8 @@
 #pragma once
 
-// The laboratory: makes the rays of a frame, holds the proven walk against brute force on some of them, then every
-// combination against the proven walk on all of them, and times those that agree.
+// The laboratory: makes the rays of a frame, holds one walk of one tree (the proven walk: while-while over the binned
+// binary tree) against brute force on some of them, then every combination against the proven walk on all of them, and
+// times those that agree.
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
-// A set of rays with what they meet, as every combination is held to: from the proven walk, which itself was held
-// against brute force on some of them.
+// A set of rays with what they meet, which every combination is held to. It comes from the proven walk (lab/run_lab.h),
+// which itself was held against brute force on some of the rays.
 
 #include <span>
 #include <string>
@@ -17,7 +17,7 @@ namespace pertev {
 struct TracedSet {
     SetFigures figures;
     Buffer<Ray> rays;           // on the queue's device
-    std::vector<RayHit> wanted; // in the form that TraceRays gives for the set's kind
+    std::vector<RayHit> wanted; // in the form that HitsOnDevice::download gives for the set's kind
 };
 
 /// A scene's triangles, and where instances of those that are not baked stand.

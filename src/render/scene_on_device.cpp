@@ -133,8 +133,9 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
     std::vector<InstanceView> instances;
     std::vector<MaterialView> materials;
     std::vector<TextureImageView> images;
-    return list_geometry(scene, meshes, view).bytes() + list_instances(prepared, instances, view).bytes() + list_materials(scene, materials, view).bytes() +
-           list_textures(scene, images, view).bytes() + list_lights(prepared.lights, view.lights).bytes();
+    return list_geometry(scene, meshes, view).bytes() + list_instances(prepared, instances, view).bytes() +
+           list_materials(scene, materials, view).bytes() + list_textures(scene, images, view).bytes() +
+           list_lights(prepared.lights, view.lights).bytes();
 }
 
 } // namespace pertev

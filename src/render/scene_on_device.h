@@ -1,7 +1,8 @@
 #pragma once
 
-// A prepared scene in a device's memory, but for its trees, which are a tracer's (render/tracer/): owns the buffers, hands out the view. It lies there in parts, one buffer each,
-// that are updated each on its own; an update that needs no more room than the part has takes no memory.
+// A prepared scene in a device's memory, but for its trees, which are a tracer's (render/tracer/scene_tracer.h): owns
+// the buffers, hands out the view. It lies there in parts, one buffer each, that are updated each on its own; an update
+// that needs no more room than the part has takes no memory.
 
 #include "device/buffer.h"
 #include "render/prepare_scene.h"

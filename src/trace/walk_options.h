@@ -1,6 +1,6 @@
 #pragma once
 
-// What can be switched in every walk of the laboratory. Only `tests` changes hits.
+// What can be switched in every walk, at compile time. Only `tests` changes hits.
 
 #include <type_traits>
 

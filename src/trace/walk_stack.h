@@ -1,6 +1,6 @@
 #pragma once
 
-// The stack of the laboratory's walks, and the step that all of them take at an inner node of a binary tree.
+// The stack of the walks of binary trees, and the step that they take at an inner node.
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009: both boxes are tested at
 // once, the walk goes on with the nearer child and the other one is pushed. Redundant traversal avoidance drops, at

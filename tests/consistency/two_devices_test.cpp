@@ -44,8 +44,9 @@ public:
           integrator_(make_integrator(queue, {.path = {}, .body = PathBody::Wavefront, .batch = 1000})) {
         tracer_.set_surfaces(scene_.view());
         const PixelFilter kind = PixelFilter::BlackmanHarris;
-        const CameraRays rays = make_camera_rays(test::mixed_scene_camera(), filter_.set(kind, default_filter_radius(kind)),
-                                                 subject.width, subject.height, prepared_.centre);
+        const CameraRays rays =
+            make_camera_rays(test::mixed_scene_camera(), filter_.set(kind, default_filter_radius(kind)), subject.width,
+                             subject.height, prepared_.centre);
         integrator_->begin({scene_.view(), rays}, tracer_, kSamples);
     }
 

@@ -137,8 +137,8 @@ void count_lanes_persistent(Queue& queue, const BvhView& bvh, const WalkBatch& b
 }
 
 void count_lanes_dynamic(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
-    launch_dynamic_fetch<WhileWhileWalk<WalkOptions{}>, false>(queue, "count lanes", SingleTree<BvhView>{bvh}, BatchRays{batch}, batch.count,
-                                                               batch.pool, LaneCounter{counts});
+    launch_dynamic_fetch<WhileWhileWalk<WalkOptions{}>, false>(
+        queue, "count lanes", SingleTree<BvhView>{bvh}, BatchRays{batch}, batch.count, batch.pool, LaneCounter{counts});
 }
 
 } // namespace pertev::test

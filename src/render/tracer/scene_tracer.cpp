@@ -13,10 +13,6 @@ namespace {
 
 constexpr RayKind kRayKinds[] = {RayKind::Camera, RayKind::Bounce, RayKind::Shadow};
 
-} // namespace
-
-namespace {
-
 /// Throws Error(OverLimit).
 void check_brute_force(const Combination& c, uint64_t triangles) {
     if (c.walk != WalkKind::BruteForce || triangles <= kMaxBruteForceTriangles) return;
