@@ -24,7 +24,7 @@ for part in "${parts[@]}"; do
     tests)
         files='*/consistency/*,*/watertight_test.cpp,*/ray_sets_test.cpp,*/glowing_room_test.cpp,*/path_parts_test.cpp'
         files+=',*/light_leak_test.cpp,*/meter_exposure_test.cpp,*/session_test.cpp,*/lamp_faces_test.cpp,*/hidden_back_test.cpp'
-        files+=',*/shadow_terminator_test.cpp,*/film_test.cpp,*/scene_on_device_test.cpp,*/predicted_bytes_test.cpp,*/queue_test.cpp'
+        files+=',*/shadow_terminator_test.cpp,*/film_test.cpp,*/film_add_test.cpp,*/scene_on_device_test.cpp,*/predicted_bytes_test.cpp,*/queue_test.cpp'
         run "$bin/pertev_tests" --device cuda --source-file="$files"
         ;;
     long)
