@@ -99,7 +99,7 @@ uint64_t check_proven_walk(Queue& queue, const RaySet& set, const Tracer& proven
     for (std::size_t i = 0; i < some.size(); ++i) {
         if (found[i] == wanted_of(truth[i], set.any_hit)) continue;
         throw Error(ErrorCode::DeviceFault,
-                    fmt::format("the walk of pictures differs from brute force on {} ({}): instance {} in place of {}, "
+                    fmt::format("the proven walk differs from brute force on {} ({}): instance {} in place of {}, "
                                 "primitive {} in place of {}, t {:a} in place of {:a}; please report it",
                                 set.name, text_of(some[i]), found[i].instance, truth[i].instance, found[i].primitive,
                                 truth[i].primitive, found[i].t, truth[i].t));

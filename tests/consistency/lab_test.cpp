@@ -1,4 +1,4 @@
-// Every combination of structure, walk and switches gives the hits of the walk of pictures, bit for bit, and that walk
+// Every combination of structure, walk and switches gives the hits of the proven walk, bit for bit, and that walk
 // those of brute force: in public scenes and in meshes made to break them, with instances and without.
 
 #include <doctest/doctest.h>
