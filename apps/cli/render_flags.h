@@ -33,8 +33,7 @@ struct RenderFlags {
 
 void add_render_flags(CLI::App& verb, RenderFlags& flags);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
-/// --seed,
-/// --filter, --filter-radius.
+/// --seed, --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
 
 /// Whether a picture is asked for that light is mapped to tones for: PNG or JPEG.

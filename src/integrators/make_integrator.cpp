@@ -2,8 +2,17 @@
 
 namespace pertev {
 
+bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
+    if (a.integrator != b.integrator) return false;
+    switch (a.integrator) {
+    case IntegratorKind::Path:
+        break;
+    }
+    return a.path == b.path;
+}
+
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
-    switch (settings.kind) {
+    switch (settings.integrator) {
     case IntegratorKind::Path:
         break;
     }
@@ -11,8 +20,8 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
 }
 
 bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to) {
-    if (from.kind != to.kind || from.body != to.body || from.batch != to.batch) return false;
-    switch (to.kind) {
+    if (from.integrator != to.integrator || from.body != to.body || from.batch != to.batch) return false;
+    switch (to.integrator) {
     case IntegratorKind::Path:
         static_cast<PathIntegrator&>(integrator).set_settings(to.path);
         break;
@@ -21,7 +30,7 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
 }
 
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool walks_itself) {
-    switch (settings.kind) {
+    switch (settings.integrator) {
     case IntegratorKind::Path:
         break;
     }

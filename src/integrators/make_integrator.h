@@ -13,11 +13,16 @@ namespace pertev {
 enum class IntegratorKind : uint8_t { Path };
 
 struct IntegratorSettings {
-    IntegratorKind kind = IntegratorKind::Path;
+    IntegratorKind integrator = IntegratorKind::Path;
     PathSettings path;
-    PathBody body = PathBody::Loop;
-    uint32_t batch = 1u << 22; // most paths in flight of a wavefront; more cost memory
+
+    // How the device does it: the light stays the same.
+    PathBody body = PathBody::Loop; // CUDA always takes Wavefront
+    uint32_t batch = 1u << 22;      // most paths in flight of a wavefront; more cost memory
 };
+
+/// Whether both give the same samples.
+bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);
 
 /// `queue` outlives it.
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings);

@@ -11,15 +11,14 @@
 
 namespace pertev {
 
-struct RenderSettings {
-    // What the picture is a function of, beside scene, camera and number of samples.
+/// Which integrator, its settings (IntegratorSettings), and what a picture is asked for beside them.
+struct RenderSettings : IntegratorSettings {
+    // What the picture is a function of, beside scene, camera, light and number of samples.
     uint32_t width = 1280, height = 720;
     PixelFilter filter = PixelFilter::BlackmanHarris;
     float filter_radius = 0;  // pixels; 0 = the filter's default
     uint32_t aovs = 0;        // AovBits
     bool transparent = false; // RGBA: the background is left out, alpha says how much of the pixel is covered
-    IntegratorKind integrator = IntegratorKind::Path;
-    PathSettings path;
 
     // How many, and until when.
     uint32_t samples = 64;     // a pixel, of render_picture
@@ -27,8 +26,6 @@ struct RenderSettings {
     uint32_t pass_samples = 0; // samples a pass; 0 = as many as fit a fraction of a second
 
     // How the device does it: the picture stays the same.
-    PathBody body = PathBody::Loop;      // CUDA always takes Wavefront
-    uint32_t batch = 1u << 22;           // paths in flight of the wavefront
     std::optional<TracerChoice> tracers; // none: the device's default
     bool time_kinds = false;             // fills RenderStats::kind_seconds; the wavefront is then slower
 };

@@ -22,10 +22,6 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
     return std::min(left, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0)));
 }
 
-IntegratorSettings integrator_of(const RenderSettings& settings) {
-    return {.kind = settings.integrator, .path = settings.path, .body = settings.body, .batch = settings.batch};
-}
-
 TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
     return settings.tracers.value_or(default_tracers(on_cuda));
 }
@@ -91,7 +87,6 @@ void Session::take_tracer() {
         tracer_.emplace(queue_, *structures_, choice);
         tracer_->set_surfaces(scene_->view());
     }
-    tracer_->time_kinds(settings_.time_kinds);
 }
 
 /// Forgets the samples. The film itself is cleared when it is next looked at.
@@ -125,13 +120,14 @@ PictureView Session::view_of(const RenderSettings& settings) {
 
 /// Makes the integrator ready to add `samples` samples of the picture of `settings`.
 void Session::begin(const RenderSettings& settings, uint32_t samples) {
-    const IntegratorSettings wanted = integrator_of(settings);
+    const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {
         integrator_.reset(); // with its queues
         integrator_ = make_integrator(queue_, wanted);
     }
     integrator_settings_ = wanted;
+    tracer_->time_kinds(settings.time_kinds);
     integrator_->begin(view_of(settings), *tracer_, samples);
     queue_.wait();
 }
@@ -152,6 +148,7 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
         const double seconds = watch.seconds();
         history_.samples = first + done;
         stats_.rays = rays_before + integrator_->rays();
+        stats_.kind_seconds = tracer_->seconds();
         stats_.render_seconds = seconds_before + seconds;
         if (first == 0 && done == pass) stats_.first_pixel_seconds = since_call.seconds();
         if (keep_going && !keep_going({first + done, first + count, seconds, integrator_->rays()})) break;
@@ -170,7 +167,6 @@ RenderStats Session::stats() {
     stats.samples = history_.samples;
     stats.invalid_samples = current_film().invalid_samples();
     stats.hidden_back_share = *hidden_back_share_;
-    stats.kind_seconds = tracer_->seconds();
     stats.device_peak_bytes = queue_.peak_bytes();
     return stats;
 }
@@ -192,7 +188,7 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     const TracerChoice tracers = tracers_of(settings, on_cuda);
     const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
     return predicted_bytes(scene) + structures + film +
-           predicted_bytes(integrator_of(settings), uint64_t(settings.width) * settings.height, settings.samples,
+           predicted_bytes(settings, uint64_t(settings.width) * settings.height, settings.samples,
                            can_walk_on_host(tracers, on_cuda));
 }
 

@@ -334,6 +334,24 @@ TEST_CASE("the meter shows what it showed when each look of it was a render of i
     CHECK(session.meter(ToneMap::Aces) == 3.07f);
 }
 
+TEST_CASE("seconds of each kind of ray are of the last call that renders, and of nothing that looks at the scene since") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings settings = small_settings();
+    settings.time_kinds = true;
+    Session session(queue, mixed.prepared, camera_at(0), settings);
+    session.meter(ToneMap::Agx);
+    CHECK(session.stats().kind_seconds.camera == 0);
+    session.render(2);
+    const SceneTracer::Seconds seconds = session.stats().kind_seconds;
+    CHECK(seconds.camera > 0);
+    CHECK(seconds.bounce > 0);
+    CHECK(seconds.shadow > 0);
+    session.meter(ToneMap::Agx);
+    CHECK(session.stats().kind_seconds.camera == seconds.camera);
+    CHECK(session.stats().kind_seconds.bounce == seconds.bounce);
+}
+
 TEST_CASE("the share of hidden backs follows scene, camera and size") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene()), furnace(test::make_furnace_scene(0.5f));
