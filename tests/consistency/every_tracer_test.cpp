@@ -107,7 +107,7 @@ Tally check_all(const Scene& scene) {
 
 void check(const Tally& tally) {
     CHECK(tally.wrong == 0);
-    CHECK(tally.pictures > (test::cuda_requested() ? 1000 : 400));
+    CHECK(tally.pictures > (test::cuda_requested() ? 800 : 390));
     CHECK(tally.refused > 100);
 }
 

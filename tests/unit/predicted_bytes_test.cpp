@@ -37,8 +37,8 @@ std::size_t bytes_of(const Scene& scene) {
 } // namespace
 
 TEST_CASE("a scene takes the bytes that are said beforehand") {
-    CHECK(bytes_of(test::make_mixed_scene()) > 100'000);
-    CHECK(bytes_of(test::make_furnace_scene(0.5f)) > 10'000);
+    CHECK(bytes_of(test::make_mixed_scene()) > 50'000);
+    CHECK(bytes_of(test::make_furnace_scene(0.5f)) > 5'000);
 }
 
 TEST_CASE("each light of a scene counts in the bytes that it will take") {

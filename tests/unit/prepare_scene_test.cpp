@@ -68,12 +68,12 @@ TEST_CASE("trees and lights lie in the moved world, and in the file's where rays
     Messages messages;
     const PreparedScene moved = prepare_scene(scene, {}, messages);
     CHECK(moved.centre == Vec3{1000, 0, 0});
-    CHECK(moved.baked.bounds.max_abs() < 2);
+    CHECK(moved.trees.baked().bounds.max_abs() < 2);
     CHECK(moved.lights.punctual[0].position == Vec3{1, 2, 3});
     CHECK(max_component(abs(moved.lights.triangles[0].a)) < 2);
     const PreparedScene kept = prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages);
     CHECK(kept.centre == Vec3{0, 0, 0});
-    CHECK(kept.baked.bounds.lo.x > 998);
+    CHECK(kept.trees.baked().bounds.lo.x > 998);
     CHECK(kept.lights.punctual[0].position == Vec3{1001, 2, 3});
 }
 
@@ -84,9 +84,9 @@ TEST_CASE("the cache tells the tree of a moved world from that of the file's") {
     Messages messages;
     for (int run = 0; run < 2; ++run) { // built, then read
         options.keep_coordinates = true;
-        CHECK(prepare_scene(scene, options, messages).baked.bounds.lo.x > 998);
+        CHECK(prepare_scene(scene, options, messages).trees.baked().bounds.lo.x > 998);
         options.keep_coordinates = false;
-        CHECK(prepare_scene(scene, options, messages).baked.bounds.max_abs() < 2);
+        CHECK(prepare_scene(scene, options, messages).trees.baked().bounds.max_abs() < 2);
     }
     CHECK(messages.all().empty());
     std::size_t trees = 0;

@@ -153,18 +153,17 @@ TEST_CASE("nothing of a session is left on the device when it ends") {
     CHECK(queue.allocated_bytes() == 0);
 }
 
-TEST_CASE("the bytes that are predicted are those that a session takes for its film and its queues") {
+TEST_CASE("the bytes that are predicted are those that a session takes") {
     Queue queue = test::queue_asked_for();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = small_settings();
     settings.samples = 3;
     settings.aovs = kAovAlbedo | kAovIds;
     Session session(queue, furnace.prepared, camera_at(0), settings);
-    const std::size_t of_scene = queue.allocated_bytes();
     session.render(settings.samples);
-    const std::size_t predicted = predicted_bytes(furnace.prepared, settings, true) - predicted_bytes(furnace.prepared);
-    CHECK(queue.allocated_bytes() - of_scene >= predicted);
-    CHECK(queue.allocated_bytes() - of_scene <= predicted + 1024);
+    const std::size_t predicted = predicted_bytes(furnace.prepared, settings, queue.is_cuda());
+    CHECK(queue.allocated_bytes() >= predicted);
+    CHECK(queue.allocated_bytes() <= predicted + 4096); // a pixel filter's table, the scene's view
 }
 
 TEST_CASE("a render ends at a whole sample when it is told to, and goes on from there") {
@@ -306,11 +305,12 @@ TEST_CASE("the meter looks at the scene on the device, uploads nothing, and leav
     CHECK(picture_hash(session.picture()) == before);
     CHECK(session.history().samples == 3);
     CHECK(session.stats().rays.camera == uint64_t(24) * 16 * 3);
+    const uint64_t uploaded_for_stats = queue.uploaded_bytes(); // a look at hidden backs
     const uint64_t allocations = queue.allocation_count();
     CHECK(session.meter(ToneMap::Agx) == stops);
     CHECK(queue.allocation_count() == allocations); // its film and queues stay
     session.render(2);
-    CHECK(queue.uploaded_bytes() == uploaded);
+    CHECK(queue.uploaded_bytes() == uploaded_for_stats);
     Session whole(queue, mixed.prepared, camera_at(0), settings);
     CHECK(whole.meter(ToneMap::Agx) == stops); // before anything is rendered
     whole.render(5);

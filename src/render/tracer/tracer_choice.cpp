@@ -22,9 +22,16 @@ const Combination& TracerChoice::operator[](RayKind kind) const {
 TracerChoice same_for_all(const Combination& combination) { return {combination, combination, combination}; }
 
 TracerChoice default_tracers(bool on_cuda) {
-    TracerChoice choice = same_for_all(
-        {.structure = StructureKind::Binned, .walk = on_cuda ? WalkKind::WhileWhile : WalkKind::Wide8Simd});
-    choice.shadow.options.near_first = false; // of two children, the first is where any-hit searches end sooner
+    if (on_cuda) { // rays from the camera go together, by binary nodes; scattered ones go alone, by compressed ones
+        const Combination together = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
+        const Combination alone = {.structure = StructureKind::Binned,
+                                   .walk = WalkKind::Compressed,
+                                   .options = {.rta_at_pops = false},
+                                   .distribution = Distribution::DynamicFetch};
+        return {together, alone, alone};
+    }
+    TracerChoice choice = same_for_all({.structure = StructureKind::Binned, .walk = WalkKind::Wide8Simd});
+    choice.shadow.options.near_first = false; // of several children, the first is where any-hit searches end sooner
     return choice;
 }
 
