@@ -236,7 +236,7 @@ MUTATIONS = [
              ["statistical/lamp_faces"]),
     Mutation("light passes the backs that the camera looks through",
              [edit("src/integrators/path/path_integrator.cpp", "path.depth == 0 && scene.any_hidden_back != 0",
-                   "picture_.scene.any_hidden_back != 0")],
+                   "scene.any_hidden_back != 0")],
              ["unit/hidden_back"]),
     Mutation("hidden backs are those of the world's winding",
              [edit("src/render/accept_hit.h", "transform_vector(placed.local_from_world, direction)) > 0;",
