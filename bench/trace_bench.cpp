@@ -16,6 +16,7 @@
 #include "tests/support/meshes.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
+#include "trace/wide/walk_wide.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -76,17 +77,18 @@ std::vector<Ray> bounce(const std::vector<Ray>& rays, const std::vector<Hit>& hi
     return next;
 }
 
-void measure(const char* name, const SceneBvhView& scene, const EmbreeScene& embree, const std::vector<Ray>& rays,
+template <class ClosestWalk, class AnyWalk, class Scene>
+void measure(const char* name, const Scene& scene, const EmbreeScene& embree, const std::vector<Ray>& rays,
              std::vector<Hit>& hits) {
     const double m = static_cast<double>(rays.size()) * 1e-6;
     hits.resize(rays.size());
     const double closest_s = fastest(3, [&] {
-        for (std::size_t i = 0; i < rays.size(); ++i) trace_closest(scene, rays[i], AcceptAll{}, hits[i]);
+        for (std::size_t i = 0; i < rays.size(); ++i) trace_closest<ClosestWalk>(scene, rays[i], AcceptAll{}, hits[i]);
     });
     uint64_t any = 0;
     const double any_s = fastest(3, [&] {
         any = 0;
-        for (const Ray& ray : rays) any += trace_any(scene, ray, AcceptAll{}) ? 1 : 0;
+        for (const Ray& ray : rays) any += trace_any<AnyWalk>(scene, ray, AcceptAll{}) ? 1 : 0;
     });
     std::vector<Hit> results(rays.size());
     const double embree_closest_s = fastest(3, [&] {
@@ -100,8 +102,8 @@ void measure(const char* name, const SceneBvhView& scene, const EmbreeScene& emb
     uint64_t nodes = 0, triangles = 0, any_nodes = 0, any_triangles = 0, other = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit hit;
-        trace_closest(scene, rays[i], AcceptAll{}, hit, WalkCounter{&nodes, &triangles});
-        trace_any(scene, rays[i], AcceptAll{}, WalkCounter{&any_nodes, &any_triangles});
+        trace_closest<ClosestWalk>(scene, rays[i], AcceptAll{}, hit, WalkCounter{&nodes, &triangles});
+        trace_any<AnyWalk>(scene, rays[i], AcceptAll{}, WalkCounter{&any_nodes, &any_triangles});
         other +=
             results[i].instance != hit.instance || (hit.instance != kNoHit && results[i].primitive != hit.primitive);
     }
@@ -133,21 +135,22 @@ int main(int argc, char** argv) {
                     static_cast<double>(triangles.size()));
     const EmbreeScene embree(mesh);
     const float eps = 2e-5f * length(bvh.bounds.size());
-    std::vector<WideBvhNode<8>> wide_nodes;
-    const double widen_s = fastest(3, [&] { wide_nodes = make_wide_nodes(bvh); });
-    std::printf("wide tree: made in %.1f ms, %zu nodes\n", widen_s * 1e3, wide_nodes.size());
-    for (const bool wide : {false, true}) {
-        std::printf("%s walk\n", wide ? "wide" : "binary");
-        SceneBvhView scene;
-        scene.baked = view_of(bvh);
-        if (wide) scene.baked.wide = wide_nodes.data();
+    WideBvh<kWideChildren> wide;
+    const double widen_s = fastest(3, [&] { wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse); });
+    std::printf("wide tree: made in %.1f ms, %zu nodes\n", widen_s * 1e3, wide.nodes.size());
+    const auto measure_all = [&]<class ClosestWalk, class AnyWalk>(const auto& scene) {
         std::vector<Hit> hits;
         std::vector<Ray> rays = primary_rays(count, bvh.bounds, has_file);
-        measure("primary", scene, embree, rays, hits);
+        measure<ClosestWalk, AnyWalk>("primary", scene, embree, rays, hits);
         rays = bounce(rays, hits, mesh, eps, 22);
-        measure("diffuse1", scene, embree, rays, hits);
+        measure<ClosestWalk, AnyWalk>("diffuse1", scene, embree, rays, hits);
         rays = bounce(rays, hits, mesh, eps, 44);
-        measure("diffuse2", scene, embree, rays, hits);
-    }
+        measure<ClosestWalk, AnyWalk>("diffuse2", scene, embree, rays, hits);
+    };
+    constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // as pictures have them
+    std::printf("binary walk\n");
+    measure_all.operator()<WhileWhileWalk<kClosest>, WhileWhileWalk<kAny>>(SceneBvhView{.baked = view_of(bvh)});
+    std::printf("wide walk\n");
+    measure_all.operator()<Wide8SimdWalk<kClosest>, Wide8SimdWalk<kAny>>(HostTrees{.baked = view_of(wide)});
     return 0;
 }

@@ -8,7 +8,7 @@
 #include "render/accept_hit.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
-#include "trace/walk_wide.h"
+#include "trace/wide/walk_wide.h"
 
 namespace pertev {
 

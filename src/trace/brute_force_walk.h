@@ -3,7 +3,7 @@
 // Tests every triangle of a tree's array: the oracle of all other walks. No node, no order, nothing skipped. A tree
 // with spatial splits holds a triangle more than once; the second time changes nothing.
 
-#include "trace/test_leaf.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/walk_options.h"
 
 namespace pertev {

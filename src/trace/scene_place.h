@@ -1,14 +1,14 @@
 #pragma once
 
 // Where a ray stands in the walk of a whole scene between two turns, for walks that can be left there
-// (trace/dynamic_fetch.h): in one tree, or on its way through the trees of a scene with instances. The walk from tree
-// to tree is that of trace/walk_scene.h.
+// (trace/warps/dynamic_fetch.h): in one tree, or on its way through the trees of a scene with instances. The walk from
+// tree to tree is that of trace/walk_scene.h.
 
 #include <cstdint>
 
 #include "base/host_device.h"
 #include "trace/walk_scene.h"
-#include "trace/warp_vote.h"
+#include "trace/warps/warp_vote.h"
 
 namespace pertev {
 

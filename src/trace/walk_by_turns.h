@@ -1,12 +1,12 @@
 #pragma once
 
-// A walk that can be left between two turns (trace/dynamic_fetch.h says what it offers), walked from root to end.
+// A walk that can be left between two turns (trace/warps/dynamic_fetch.h says what it offers), walked from root to end.
 
 #include <cstdint>
 
 #include "base/host_device.h"
 #include "trace/ray.h"
-#include "trace/warp_vote.h"
+#include "trace/warps/warp_vote.h"
 
 namespace pertev {
 

@@ -4,8 +4,8 @@
 
 #include <type_traits>
 
-#include "trace/ray_tests.h"
-#include "trace/woop_tests.h"
+#include "trace/intersect/ray_tests.h"
+#include "trace/intersect/woop_tests.h"
 
 namespace pertev {
 

@@ -10,9 +10,9 @@
 
 #include "base/host_device.h"
 #include "base/limits.h"
-#include "trace/scene_bvh.h"
-#include "trace/walk_tree.h"
-#include "trace/while_while_walk.h"
+#include "trace/binary/walk_tree.h"
+#include "trace/binary/while_while_walk.h"
+#include "trace/scene_trees.h"
 
 namespace pertev {
 

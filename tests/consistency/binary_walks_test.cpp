@@ -17,15 +17,15 @@
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/split_bvh.h"
+#include "trace/binary/if_if_walk.h"
+#include "trace/binary/packet_walk.h"
+#include "trace/binary/parent_links_walk.h"
+#include "trace/binary/short_stack_walk.h"
+#include "trace/binary/skip_links_walk.h"
+#include "trace/binary/speculative_walk.h"
+#include "trace/binary/warp_packet_walk.h"
+#include "trace/binary/while_while_walk.h"
 #include "trace/brute_force_walk.h"
-#include "trace/if_if_walk.h"
-#include "trace/packet_walk.h"
-#include "trace/parent_links_walk.h"
-#include "trace/short_stack_walk.h"
-#include "trace/skip_links_walk.h"
-#include "trace/speculative_walk.h"
-#include "trace/warp_packet_walk.h"
-#include "trace/while_while_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -12,8 +12,8 @@
 #include "tests/support/check_walk.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
-#include "trace/kd_tree_walk.h"
-#include "trace/octree_walk.h"
+#include "trace/cells/kd_tree_walk.h"
+#include "trace/cells/octree_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -16,9 +16,9 @@
 #include "tests/support/instanced_scene.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
-#include "trace/compressed_walk.h"
-#include "trace/lane_counter.h"
-#include "trace/while_while_walk.h"
+#include "trace/binary/while_while_walk.h"
+#include "trace/warps/lane_counter.h"
+#include "trace/wide/compressed_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -1,7 +1,7 @@
 // Rays that share a stack get the hits that they would get alone, bit for bit: closest and any, with every switch and
 // with any of the packet's rays missing. A packet of one ray visits what that ray visits by itself.
 
-#include "trace/packet_walk.h"
+#include "trace/binary/packet_walk.h"
 
 #include <doctest/doctest.h>
 
@@ -15,7 +15,7 @@
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/split_bvh.h"
-#include "trace/while_while_walk.h"
+#include "trace/binary/while_while_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

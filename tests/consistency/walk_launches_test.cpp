@@ -18,7 +18,7 @@
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/walk_launches.h"
-#include "trace/while_while_walk.h"
+#include "trace/binary/while_while_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -160,7 +160,7 @@ TEST_CASE("so they do over instances, those that can, and packets whose rays par
         CHECK(count_wrong(batch.hits.download(), expected, s.rays, launch.any) == 0);
         ++launches;
     }
-    CHECK(launches == 32); // eight walks, two ways, closest and any
+    CHECK(launches == 38); // eight walks, two ways, and three by dynamic fetch too; closest and any
 }
 
 TEST_CASE("live lanes add up to the visits of the rays") {

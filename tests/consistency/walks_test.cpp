@@ -11,7 +11,7 @@
 #include "tests/support/check_walk.h"
 #include "tests/support/instanced_scene.h"
 #include "tests/support/nasty_meshes.h"
-#include "trace/walk_wide.h"
+#include "trace/wide/walk_wide.h"
 
 using namespace pertev;
 using namespace pertev::test;

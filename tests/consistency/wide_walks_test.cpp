@@ -13,9 +13,9 @@
 #include "math/random.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/options.h"
-#include "trace/compressed_walk.h"
-#include "trace/walk_wide.h"
-#include "trace/wide_walk.h"
+#include "trace/wide/compressed_walk.h"
+#include "trace/wide/walk_wide.h"
+#include "trace/wide/wide_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -16,7 +16,7 @@
 #include "tests/support/options.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
-#include "trace/walk_wide.h"
+#include "trace/wide/walk_wide.h"
 
 using namespace pertev;
 using namespace pertev::test;

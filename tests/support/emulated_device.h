@@ -47,7 +47,7 @@ inline uint32_t __shfl_sync(uint32_t mask, uint32_t value, int source, Place at 
     return lane::shuffle(mask, value, source, at);
 }
 inline void __syncwarp(uint32_t mask = 0xffffffffu, Place at = Place::current()) { lane::sync(mask, at); }
-/// In place of the assembler of trace/warp_vote.h.
+/// In place of the assembler of trace/warps/warp_vote.h.
 inline uint32_t emulated_lanes_before() { return (1u << (threadIdx.x & 31u)) - 1; }
 
 template <class T>

@@ -1,6 +1,7 @@
-// The kernels of src/device/launch_body.h, src/trace/persistent.h and src/trace/dynamic_fetch.h with the walks that
-// vote, compiled as for a device: see tests/support/emulated_device.h. The host's views, rays and hits have the layout
-// of the device's, so addresses of the ones serve as addresses of the others; nothing else passes between the two.
+// The kernels of src/device/launch_body.h, src/trace/warps/persistent.h and src/trace/warps/dynamic_fetch.h with the
+// walks that vote, compiled as for a device: see tests/support/emulated_device.h. The host's views, rays and hits have
+// the layout of the device's, so addresses of the ones serve as addresses of the others; nothing else passes between
+// the two.
 
 #include "tests/support/emulated_walks.h"
 
@@ -9,14 +10,14 @@
 #include <type_traits>
 
 #include "device/launch_body.h"
-#include "trace/compressed_walk.h"
-#include "trace/dynamic_fetch.h"
-#include "trace/lane_counter.h"
-#include "trace/persistent.h"
-#include "trace/scene_bvh.h"
-#include "trace/speculative_walk.h"
-#include "trace/warp_packet_walk.h"
-#include "trace/while_while_walk.h"
+#include "trace/binary/speculative_walk.h"
+#include "trace/binary/warp_packet_walk.h"
+#include "trace/binary/while_while_walk.h"
+#include "trace/scene_trees.h"
+#include "trace/warps/dynamic_fetch.h"
+#include "trace/warps/lane_counter.h"
+#include "trace/warps/persistent.h"
+#include "trace/wide/compressed_walk.h"
 
 namespace pertev {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "accel/bvh/top_level_bvh.h"
 #include "tests/support/check_walk.h"
-#include "trace/scene_bvh.h"
+#include "trace/scene_trees.h"
 
 namespace pertev::test {
 

@@ -9,7 +9,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "tests/support/random.h"
-#include "trace/intersect_triangle.h"
+#include "trace/intersect/intersect_triangle.h"
 #include "trace/ray.h"
 
 namespace pertev::test {

@@ -3,15 +3,15 @@
 #include <type_traits>
 
 #include "device/launch_body.h"
-#include "trace/compressed_walk.h"
-#include "trace/dynamic_fetch.h"
-#include "trace/if_if_walk.h"
-#include "trace/parent_links_walk.h"
-#include "trace/persistent.h"
-#include "trace/short_stack_walk.h"
-#include "trace/speculative_walk.h"
-#include "trace/warp_packet_walk.h"
-#include "trace/while_while_walk.h"
+#include "trace/binary/if_if_walk.h"
+#include "trace/binary/parent_links_walk.h"
+#include "trace/binary/short_stack_walk.h"
+#include "trace/binary/speculative_walk.h"
+#include "trace/binary/warp_packet_walk.h"
+#include "trace/binary/while_while_walk.h"
+#include "trace/warps/dynamic_fetch.h"
+#include "trace/warps/persistent.h"
+#include "trace/wide/compressed_walk.h"
 
 namespace pertev::test {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "accel/bvh/compressed_bvh.h"
 #include "device/queue.h"
-#include "trace/lane_counter.h"
 #include "trace/ray.h"
-#include "trace/scene_bvh.h"
+#include "trace/scene_trees.h"
+#include "trace/warps/lane_counter.h"
 
 namespace pertev::test {
 

@@ -13,8 +13,8 @@
 #include "tests/support/check_walk.h"
 #include "tests/support/meshes.h"
 #include "tests/support/nasty_meshes.h"
-#include "trace/compressed_boxes.h"
-#include "trace/compressed_walk.h"
+#include "trace/intersect/compressed_boxes.h"
+#include "trace/wide/compressed_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

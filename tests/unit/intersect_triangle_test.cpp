@@ -1,6 +1,6 @@
 // The triangle test against values that are known exactly, and against the same test in exact-enough arithmetic.
 
-#include "trace/intersect_triangle.h"
+#include "trace/intersect/intersect_triangle.h"
 
 #include <doctest/doctest.h>
 

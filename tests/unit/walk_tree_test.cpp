@@ -1,7 +1,7 @@
 // The skipping rule itself: a node is left out only if its box is missed or its entry is greater than the limit. Equal
 // is entered, in the binary walk, in the wide one, and when a node comes back from the stack.
 
-#include "trace/walk_tree.h"
+#include "trace/binary/walk_tree.h"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/meshes.h"
-#include "trace/walk_wide.h"
+#include "trace/wide/walk_wide.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -11,8 +11,8 @@
 #include "tests/support/check_walk.h"
 #include "tests/support/meshes.h"
 #include "tests/support/nasty_meshes.h"
-#include "trace/while_while_walk.h"
-#include "trace/woop_tests.h"
+#include "trace/binary/while_while_walk.h"
+#include "trace/intersect/woop_tests.h"
 
 using namespace pertev;
 using namespace pertev::test;

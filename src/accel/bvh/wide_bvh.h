@@ -57,8 +57,8 @@ WideBvhView<kWidth> view_of(const WideBvh<kWidth>& bvh) {
 template <int kWidth>
 WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings = {});
 
-/// For the CPU's vector unit (trace/walk_wide.h): eight boxes at a time, and four triangles, for about twice what the
-/// boxes of a node cost.
+/// For the CPU's vector unit (trace/wide/walk_wide.h): eight boxes at a time, and four triangles, for about twice what
+/// the boxes of a node cost.
 inline constexpr int kWideChildren = 8;
 inline constexpr CollapseSettings kSimdCollapse = {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 2};
 

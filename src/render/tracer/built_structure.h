@@ -23,7 +23,7 @@
 #include "render/tracer/binary_trees.h"
 #include "render/tracer/combination.h"
 #include "trace/brute_force_walk.h"
-#include "trace/scene_bvh.h"
+#include "trace/scene_trees.h"
 
 namespace pertev {
 

@@ -12,9 +12,9 @@
 #include "render/accept_queued.h"
 #include "render/tracer/built_structure.h"
 #include "render/tracer/combination.h"
-#include "trace/kernel_limits.h"
-#include "trace/lane_counter.h"
 #include "trace/walk_counter.h"
+#include "trace/warps/kernel_limits.h"
+#include "trace/warps/lane_counter.h"
 
 namespace pertev {
 

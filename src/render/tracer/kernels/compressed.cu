@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/compressed_walk.h"
+#include "trace/wide/compressed_walk.h"
 
 namespace pertev {
 

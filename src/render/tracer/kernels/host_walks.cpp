@@ -7,8 +7,8 @@
 #include "base/parallel_for.h"
 #include "render/tracer/kernels/queue_stages.h"
 #include "render/tracer/walk_kernels.h"
-#include "trace/packet_walk.h"
-#include "trace/walk_wide.h"
+#include "trace/binary/packet_walk.h"
+#include "trace/wide/walk_wide.h"
 
 namespace pertev {
 namespace {

@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/if_if_walk.h"
+#include "trace/binary/if_if_walk.h"
 
 namespace pertev {
 

@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/kd_tree_walk.h"
+#include "trace/cells/kd_tree_walk.h"
 
 namespace pertev {
 

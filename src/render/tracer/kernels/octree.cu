@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/octree_walk.h"
+#include "trace/cells/octree_walk.h"
 
 namespace pertev {
 

@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/parent_links_walk.h"
+#include "trace/binary/parent_links_walk.h"
 
 namespace pertev {
 

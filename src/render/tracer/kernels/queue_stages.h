@@ -46,7 +46,7 @@ struct TraceQueue {
     }
 };
 
-/// For launch_dynamic_fetch (trace/dynamic_fetch.h).
+/// For launch_dynamic_fetch (trace/warps/dynamic_fetch.h).
 template <bool kAny, class Accept>
 struct QueueInOut {
     TraceQuery query;

@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/restart_trail_walk.h"
+#include "trace/binary/restart_trail_walk.h"
 
 namespace pertev {
 

@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/short_stack_walk.h"
+#include "trace/binary/short_stack_walk.h"
 
 namespace pertev {
 

@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/skip_links_walk.h"
+#include "trace/binary/skip_links_walk.h"
 
 namespace pertev {
 

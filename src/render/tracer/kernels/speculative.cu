@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/speculative_walk.h"
+#include "trace/binary/speculative_walk.h"
 
 namespace pertev {
 

@@ -6,8 +6,8 @@
 #include "device/launch_body.h"
 #include "render/tracer/kernels/queue_stages.h"
 #include "render/tracer/walk_kernels.h"
-#include "trace/dynamic_fetch.h"
-#include "trace/persistent.h"
+#include "trace/warps/dynamic_fetch.h"
+#include "trace/warps/persistent.h"
 
 namespace pertev {
 
@@ -73,7 +73,7 @@ void trace_dynamic(Queue& queue, const AnyTrees& trees, const RayBatch& batch, c
 
 // Lanes are counted in opaque scenes of one tree: each counting kernel takes as long to compile as a walk.
 
-/// The counting of trace/lane_counter.h.
+/// The counting of trace/warps/lane_counter.h.
 template <class Walk, bool kAny>
 struct CountLanes {
     SingleTree<typename Walk::Tree> scene;

@@ -1,7 +1,7 @@
 // A CPU has packets of its own: see host_walks.cpp.
 
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/warp_packet_walk.h"
+#include "trace/binary/warp_packet_walk.h"
 
 namespace pertev {
 

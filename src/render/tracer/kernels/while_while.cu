@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/while_while_walk.h"
+#include "trace/binary/while_while_walk.h"
 
 namespace pertev {
 

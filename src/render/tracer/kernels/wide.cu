@@ -1,5 +1,5 @@
 #include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/wide_walk.h"
+#include "trace/wide/wide_walk.h"
 
 namespace pertev {
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "accel/bvh/parent_links.h"
-#include "trace/test_leaf.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/walk_options.h"
 
 namespace pertev {

@@ -11,10 +11,10 @@
 #include "accel/bvh/wide_bvh.h"
 #include "base/host_device.h"
 #include "math/float4.h"
+#include "trace/binary/walk_tree.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/load_bvh.h"
-#include "trace/test_leaf.h"
 #include "trace/walk_options.h"
-#include "trace/walk_tree.h"
 
 namespace pertev {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "base/limits.h"
-#include "trace/test_leaf.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 #include "trace/walk_options.h"

@@ -21,11 +21,11 @@
 #include "base/host_device.h"
 #include "base/limits.h"
 #include "math/bits.h"
-#include "trace/compressed_boxes.h"
+#include "trace/intersect/compressed_boxes.h"
 #include "trace/load_bvh.h"
 #include "trace/walk_by_turns.h"
 #include "trace/walk_options.h"
-#include "trace/warp_vote.h"
+#include "trace/warps/warp_vote.h"
 
 namespace pertev {
 

@@ -7,9 +7,9 @@
 // leaf). How far lanes run ahead is a matter of the warp they are in; the hits are not. On the host, where a warp is
 // one ray, nothing is put off and the nodes tested are those of WhileWhileWalk.
 
+#include "trace/binary/while_while_walk.h"
 #include "trace/walk_by_turns.h"
-#include "trace/warp_vote.h"
-#include "trace/while_while_walk.h"
+#include "trace/warps/warp_vote.h"
 
 namespace pertev {
 

@@ -9,8 +9,8 @@
 
 #include "accel/bvh/bvh.h"
 #include "accel/bvh/wide_bvh.h"
-#include "trace/intersect_4_triangles.h"
-#include "trace/ray_boxes.h"
+#include "trace/intersect/intersect_4_triangles.h"
+#include "trace/intersect/ray_boxes.h"
 #include "trace/walk_options.h"
 
 namespace pertev {

@@ -7,9 +7,9 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/ray_tests.h"
 #include "trace/load_bvh.h"
 #include "trace/ray.h"
-#include "trace/ray_tests.h"
 
 namespace pertev {
 

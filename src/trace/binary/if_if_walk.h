@@ -6,9 +6,9 @@
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
 
 #include "base/limits.h"
-#include "trace/test_leaf.h"
+#include "trace/binary/walk_stack.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/walk_options.h"
-#include "trace/walk_stack.h"
 
 namespace pertev {
 

@@ -25,8 +25,8 @@
 
 #include "accel/bvh/compressed_bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/ray_boxes.h"
 #include "trace/ray.h"
-#include "trace/ray_boxes.h"
 
 namespace pertev {
 

@@ -23,12 +23,12 @@
 #include "base/host_device.h"
 #include "base/parallel_for.h"
 #include "device/queue.h"
-#include "trace/kernel_limits.h"
-#include "trace/persistent.h"
 #include "trace/scene_place.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
-#include "trace/warp_vote.h"
+#include "trace/warps/kernel_limits.h"
+#include "trace/warps/persistent.h"
+#include "trace/warps/warp_vote.h"
 
 namespace pertev {
 
@@ -116,8 +116,7 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, co
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
         static LimitsByDevice limits;
-        const uint32_t blocks =
-            blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count);
+        const uint32_t blocks = blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count);
         queue.zero(pool, sizeof *pool);
         run_dynamic_fetch<Walk, kAny>
             <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);

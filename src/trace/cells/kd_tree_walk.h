@@ -11,8 +11,8 @@
 
 #include "accel/kd_tree/kd_tree.h"
 #include "base/host_device.h"
-#include "trace/cell_span.h"
-#include "trace/test_references.h"
+#include "trace/cells/cell_span.h"
+#include "trace/intersect/test_references.h"
 #include "trace/walk_counter.h"
 #include "trace/walk_options.h"
 

@@ -7,7 +7,7 @@
 // GPU Raytracing", I3D 2007 (short stacks). Entries move rather than an index, so that the device has them in
 // registers.
 
-#include "trace/restart_trail_walk.h"
+#include "trace/binary/restart_trail_walk.h"
 
 namespace pertev {
 

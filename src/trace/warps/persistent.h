@@ -13,7 +13,7 @@
 #include "base/host_device.h"
 #include "base/parallel_for.h"
 #include "device/queue.h"
-#include "trace/kernel_limits.h"
+#include "trace/warps/kernel_limits.h"
 
 namespace pertev {
 

@@ -10,8 +10,8 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/ray_boxes.h"
 #include "trace/load_bvh.h"
-#include "trace/ray_boxes.h"
 #include "trace/walk_counter.h"
 
 namespace pertev {

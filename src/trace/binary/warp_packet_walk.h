@@ -2,7 +2,8 @@
 
 // A packet of a whole warp: its rays are always at the same node, which is entered if any of them enters it. The stack
 // is one, each lane keeping a copy of its links; beside them lies the lane's own entry parameter, so that every push
-// and pop of a warp is one line of memory. Meant for persistent warps (trace/persistent.h), whose lanes start together.
+// and pop of a warp is one line of memory. Meant for persistent warps (trace/warps/persistent.h), whose lanes start
+// together.
 //
 // Source: Guenther, Popov, Seidel, Slusallek, "Realtime Ray Tracing on GPU with BVH-based Packet Traversal", IEEE RT
 // 2007 (the majority says which child is walked first); Aila, Laine, HPG 2009, section 3 (the same as persistent
@@ -12,10 +13,10 @@
 #include <cstdint>
 
 #include "base/limits.h"
-#include "trace/test_leaf.h"
+#include "trace/binary/walk_tree.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/walk_options.h"
-#include "trace/walk_tree.h"
-#include "trace/warp_vote.h"
+#include "trace/warps/warp_vote.h"
 
 namespace pertev {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "accel/bvh/skip_bvh.h"
-#include "trace/test_leaf.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/walk_options.h"
 
 namespace pertev {

@@ -6,9 +6,9 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/ray_tests.h"
 #include "trace/load_bvh.h"
 #include "trace/ray.h"
-#include "trace/ray_tests.h"
 
 namespace pertev {
 
@@ -37,7 +37,7 @@ HD inline bool test_leaf(const BvhTriangle* triangles, uint32_t leaf, const Ray&
     }
 }
 
-/// The same, of a tree; trace/woop_tests.h has that of a tree with Woop's triangles.
+/// The same, of a tree; trace/intersect/woop_tests.h has that of a tree with Woop's triangles.
 template <class Tests, class Visitor, class Counter>
 HD inline bool test_leaf(const BvhView& bvh, uint32_t leaf, const Ray& ray, const typename Tests::Triangles& prepared,
                          uint32_t instance, Visitor& visitor, const Counter& counter) {

@@ -13,9 +13,9 @@
 
 #include "base/limits.h"
 #include "math/bits.h"
-#include "trace/test_leaf.h"
+#include "trace/binary/walk_tree.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/walk_options.h"
-#include "trace/walk_tree.h"
 
 namespace pertev {
 

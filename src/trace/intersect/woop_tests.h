@@ -10,9 +10,9 @@
 
 #include "accel/bvh/woop_bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/ray_tests.h"
 #include "trace/load_bvh.h"
 #include "trace/ray.h"
-#include "trace/ray_tests.h"
 
 namespace pertev {
 
@@ -37,7 +37,7 @@ struct WoopTests {
     }
 };
 
-/// test_leaf() of trace/test_leaf.h by transforms.
+/// test_leaf() of trace/intersect/test_leaf.h by transforms.
 template <class Tests, class Visitor, class Counter>
 HD inline bool test_leaf(const WoopBvhView& bvh, uint32_t leaf, const Ray& ray, const typename Tests::Triangles&,
                          uint32_t instance, Visitor& visitor, const Counter& counter) {

@@ -11,7 +11,7 @@
 
 #include "base/host_device.h"
 #include "math/bounds3.h"
-#include "trace/ray_boxes.h"
+#include "trace/intersect/ray_boxes.h"
 
 namespace pertev {
 

@@ -7,9 +7,9 @@
 // Source of the fast triangle test: Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 
 #include "base/host_device.h"
-#include "trace/intersect_triangle.h"
+#include "trace/intersect/intersect_triangle.h"
+#include "trace/intersect/ray_boxes.h"
 #include "trace/ray.h"
-#include "trace/ray_boxes.h"
 
 namespace pertev {
 

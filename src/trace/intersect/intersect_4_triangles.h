@@ -6,7 +6,7 @@
 #include <immintrin.h>
 
 #include "accel/bvh/bvh.h"
-#include "trace/intersect_triangle.h"
+#include "trace/intersect/intersect_triangle.h"
 #include "trace/ray.h"
 
 namespace pertev {

@@ -5,15 +5,15 @@
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
 
-#include "trace/test_leaf.h"
+#include "trace/binary/walk_stack.h"
+#include "trace/intersect/test_leaf.h"
 #include "trace/walk_by_turns.h"
 #include "trace/walk_options.h"
-#include "trace/walk_stack.h"
-#include "trace/warp_vote.h"
+#include "trace/warps/warp_vote.h"
 
 namespace pertev {
 
-/// Where a walk with a stack stands between two turns; dynamic fetch (trace/dynamic_fetch.h) may leave it there.
+/// Where a walk with a stack stands between two turns; dynamic fetch (trace/warps/dynamic_fetch.h) may leave it there.
 template <WalkOptions kOptions>
 struct WalkPlace {
     using Tests = TestsOf<kOptions>;

@@ -26,7 +26,7 @@ struct SceneTrees {
     float top_reach = 0, top_growth = 0; // TopLevelBvh's
 };
 using SceneBvhView = SceneTrees<BvhView>;
-using HostTrees = SceneTrees<WideBvhView<8>>; // what a CPU walks by default (trace/walk_wide.h)
+using HostTrees = SceneTrees<WideBvhView<8>>; // what a CPU walks by default (trace/wide/walk_wide.h)
 
 /// A scene all of whose triangles are baked. Its walk has no top level in it, which saves a kernel registers.
 template <class Tree>
