@@ -334,7 +334,8 @@ TEST_CASE("the meter shows what it showed when each look of it was a render of i
     CHECK(session.meter(ToneMap::Aces) == 3.07f);
 }
 
-TEST_CASE("seconds of each kind of ray are of the last call that renders, and of nothing that looks at the scene since") {
+TEST_CASE(
+    "seconds of each kind of ray are of the last call that renders, and of nothing that looks at the scene since") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = small_settings();
