@@ -187,7 +187,8 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     throw_if_interrupted();
     const PreparedScene prepared = prepare_scene(scene, options, messages); // also fills the cache
     throw_if_interrupted();
-    figures.cached_s = prepare_scene(scene, options, messages).build_seconds;
+    const PreparedScene cached = prepare_scene(scene, options, messages);
+    figures.cached_s = cached.build_seconds;
     figures.build_s = prepare_scene(scene, {}, messages).build_seconds;
     figures.triangles = prepared.triangles;
     figures.tree_bytes_per_triangle =
@@ -196,7 +197,7 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const Camera camera = choose_camera({}, scene, aspect, messages);
     {
-        Session warm_up(queue, prepared, camera, settings);
+        Session warm_up(queue, cached, camera, settings); // whose trees are not those that are yet to be converted
         render_anew(warm_up, 1);
     }
     Session session(queue, prepared, camera, settings);

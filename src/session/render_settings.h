@@ -51,7 +51,7 @@ struct RenderStats {
     SceneTracer::Seconds kind_seconds; // of the last call that renders
     uint64_t invalid_samples = 0;
     double hidden_back_share = 0; // of the camera's rays: see render/hidden_back_share.h
-    double upload_seconds = 0;    // of the scene
+    double upload_seconds = 0;    // of the scene; with its trees' conversion, where no session has had its tracers yet
     double render_seconds = 0;
     double first_pixel_seconds = 0; // until one sample of all pixels was there, with the time to take memory for it
     std::size_t device_peak_bytes = 0;
