@@ -23,8 +23,8 @@ public:
     virtual ~Integrator() = default;
 
     /// From now on samples are of this picture, and `tracer` traces their rays. Both stay as they are until the next
-    /// begin(). Memory is taken for `samples` of each pixel, as far as they go into one piece of work; more may be asked
-    /// for. What is held already is kept: another camera takes no memory. Throws Error(OutOfMemory).
+    /// begin(). Memory is taken for `samples` of each pixel, as far as they go into one piece of work; more may be
+    /// asked for. What is held already is kept: another camera takes no memory. Throws Error(OutOfMemory).
     virtual void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) = 0;
 
     /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
