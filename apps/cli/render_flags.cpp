@@ -173,9 +173,8 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
     RenderSettings settings; // CLI11 has checked all names
     if (!flags.size.empty()) {
         std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
-    } else if (const Camera* camera = scene_camera(flags.scene, scene); camera != nullptr && camera->aspect > 0) {
-        settings.height = 720;
-        settings.width = static_cast<uint32_t>(to_int(720 * camera->aspect + 0.5f, 1, 8192));
+    } else {
+        set_default_size(settings, scene_camera(flags.scene, scene));
     }
     settings.samples = flags.samples;
     settings.filter = *filter_named(flags.filter);

@@ -8,6 +8,7 @@
 #include "integrators/make_integrator.h"
 #include "render/film.h"
 #include "render/pixel_filter.h"
+#include "scene/camera.h"
 
 namespace pertev {
 
@@ -34,6 +35,10 @@ struct RenderSettings : IntegratorSettings {
 inline float filter_radius_of(const RenderSettings& settings) {
     return settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
 }
+
+/// For a picture that is given no size: 1280x720, or 720 high in the shape that `own`, a camera of the scene, asks for.
+/// Null: there is none.
+void set_default_size(RenderSettings& settings, const Camera* own);
 
 /// Whether both ask for the same picture of the same scene, camera and number of samples.
 bool same_picture(const RenderSettings& a, const RenderSettings& b);

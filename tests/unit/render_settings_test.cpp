@@ -1,0 +1,24 @@
+#include "session/render_settings.h"
+
+#include <doctest/doctest.h>
+
+using namespace pertev;
+
+TEST_CASE("a picture without a size is 720 pixels high, in the shape that the scene's camera asks for") {
+    RenderSettings settings;
+    settings.width = 1, settings.height = 1;
+    set_default_size(settings, nullptr);
+    CHECK(settings.width == 1280);
+    CHECK(settings.height == 720);
+    Camera camera; // asks for no shape
+    settings.width = 1;
+    set_default_size(settings, &camera);
+    CHECK(settings.width == 1280);
+    camera.aspect = 0.5f;
+    set_default_size(settings, &camera);
+    CHECK(settings.width == 360);
+    CHECK(settings.height == 720);
+    camera.aspect = 1e9f;
+    set_default_size(settings, &camera);
+    CHECK(settings.width == 8192);
+}
