@@ -13,14 +13,14 @@
 namespace pertev {
 
 template <class Accept>
-inline Hit find_hit(const HostTrees& trees, const Ray& ray, const Accept& accept) {
+[[gnu::always_inline]] inline Hit find_hit(const HostTrees& trees, const Ray& ray, const Accept& accept) {
     Hit hit;
     trace_closest<Wide8SimdWalk<WalkOptions{}>>(trees, ray, accept, hit);
     return hit;
 }
 
 template <class Accept>
-inline bool is_occluded(const HostTrees& trees, const Ray& ray, const Accept& accept) {
+[[gnu::always_inline]] inline bool is_occluded(const HostTrees& trees, const Ray& ray, const Accept& accept) {
     // Of several children, the builder put first where such searches end sooner.
     return trace_any<Wide8SimdWalk<WalkOptions{.near_first = false}>>(trees, ray, accept);
 }

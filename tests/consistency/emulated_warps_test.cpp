@@ -201,7 +201,7 @@ TEST_CASE("so they do over instances, where rays of a warp come to different mes
             return walk.run_scene({&binary_scene, &compressed_scene}, batch);
         });
     }
-    CHECK(runs == 16); // four walks, two ways, closest and any
+    CHECK(runs == 22); // four walks, two ways, and three by dynamic fetch too; closest and any
 }
 
 TEST_CASE("on warps, live lanes add up to the visits of the rays") {

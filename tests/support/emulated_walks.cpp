@@ -29,10 +29,6 @@ struct AcceptSome {
     }
 };
 
-struct AcceptAllOf : AcceptAll {
-    uint32_t i;
-};
-
 struct Batch {
     const Ray* rays;
     Hit* hits;
@@ -45,7 +41,6 @@ struct Batch {
         ++stores[i < count ? i : count];
         if (i < count) hits[i] = hit;
     }
-    AcceptAllOf accept(uint32_t i) const { return {{}, i}; }
     template <class Counter>
     Counter counter() const {
         if constexpr (std::is_same_v<Counter, LaneCounter>) {
@@ -86,9 +81,18 @@ void run_persistent(const Scene& scene, const Batch& batch, uint32_t* pool) {
     run_stage_persistent(TraceBatch<Walk, kAny, Accept, Counter, Scene>{scene, batch}, batch.count, pool);
 }
 
-template <class Walk, bool kAny, class, class Counter, class Scene>
+/// The batch with what counts for each ray, as the kernel takes it.
+template <class Accept>
+struct BatchAccepting : Batch {
+    struct AcceptOf : Accept {
+        uint32_t i;
+    };
+    AcceptOf accept(uint32_t i) const { return {{}, i}; }
+};
+
+template <class Walk, bool kAny, class Accept, class Counter, class Scene>
 void run_dynamic(const Scene& scene, const Batch& batch, uint32_t* pool) {
-    run_dynamic_fetch<Walk, kAny>(scene, batch, batch.count, pool, batch.counter<Counter>());
+    run_dynamic_fetch<Walk, kAny>(scene, BatchAccepting<Accept>{batch}, batch.count, pool, batch.counter<Counter>());
 }
 
 } // namespace
@@ -179,7 +183,7 @@ void add_way(const char* name, Rows& rows) {
         rows.push_back(row);
         row.counts_lanes = false;
     }
-    if constexpr (kPlain && kWay != Way::Dynamic) { // that one has no cut-outs, and one tree alone
+    if constexpr (kPlain) {
         row.cut_outs = true;
         row.run = run_tree<W, kAny, kWay, AcceptSome>;
         rows.push_back(row);
