@@ -110,6 +110,7 @@ int render(RenderFlags flags) {
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
     const double load_s = watch.seconds();
     PrepareOptions prepare;
+    prepare.tracers = tracers.value_or(default_tracers(queue->is_cuda()));
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);

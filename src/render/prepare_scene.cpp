@@ -55,8 +55,10 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.top_level = build_top_level_bvh(placed_trees(scene, placement, bounds));
     prepared.triangles = triangles.count();
     prepared.trees.parts = trees;
-    prepared.build_seconds = prepared.trees.build_s = watch.seconds();
+    prepared.trees.build_s = watch.seconds();
     prepared.structures = std::make_shared<SceneStructures>(prepared.trees, prepared.top_level);
+    if (options.tracers) prepared.structures->device_bytes(*options.tracers); // builds them
+    prepared.build_seconds = watch.seconds();
 
     prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages, prepared.centre);
     balance_lights(prepared, srgb_decode_table().data());

@@ -32,7 +32,7 @@ struct PreparedScene {
     std::shared_ptr<SceneStructures> structures; // of `trees` and of others, built when they are asked for
     LightSetData lights;                         // moved world
     uint64_t triangles = 0;                      // in all trees
-    double build_seconds = 0;                    // placement and trees, built or read from the cache
+    double build_seconds = 0; // placement, trees (built or read from the cache), structures asked for at once
 };
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);

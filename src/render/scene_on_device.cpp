@@ -91,12 +91,14 @@ PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
 
 } // namespace
 
-SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) {
-    update_geometry(queue, *prepared.scene);
-    update_instances(queue, prepared);
-    update_materials(queue, *prepared.scene);
-    update_textures(queue, *prepared.scene);
-    update_lights(queue, prepared);
+SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) { update(queue, prepared, kAllParts); }
+
+void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t parts) {
+    if ((parts & kPartGeometry) != 0) update_geometry(queue, *prepared.scene);
+    if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
+    if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
+    if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
+    if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it looks at
 }
 
 void SceneOnDevice::update_geometry(Queue& queue, const Scene& scene) {

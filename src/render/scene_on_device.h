@@ -10,6 +10,18 @@
 
 namespace pertev {
 
+/// What may change of a scene by itself. A set of them is an uint32_t.
+enum ScenePart : uint32_t {
+    kPartGeometry = 1,  // meshes
+    kPartInstances = 2, // where they are, and the world's centre; of their materials, whether they have alpha and hide
+                        // their backs
+    kPartMaterials = 4, // all else of materials; what they emit is in the lights too
+    kPartTextures = 8,  // images
+    kPartLights = 16,   // near and far ones
+    kPartTrees = 32,    // not here: a tracer's (render/tracer/)
+    kAllParts = 63,
+};
+
 /// Every update copies: what it is given may go away afterwards. The view, and each copy of it, is void after an
 /// update: view() has the new one. Work that was queued before an update still sees the scene as it was. All throw
 /// Error(OutOfMemory), after which the part is empty and no view may be used until it is updated again.
@@ -18,6 +30,9 @@ public:
     SceneOnDevice(Queue& queue, const PreparedScene& prepared);
 
     const SceneView& view() const { return view_; }
+
+    /// Several parts (ScenePart).
+    void update(Queue& queue, const PreparedScene& prepared, uint32_t parts);
 
     /// Meshes.
     void update_geometry(Queue& queue, const Scene& scene);

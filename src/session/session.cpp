@@ -43,14 +43,35 @@ Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera,
 }
 
 void Session::set_scene(const PreparedScene& scene) {
-    const Stopwatch watch;
     cut();
+    upload(scene, kAllParts);
+}
+
+void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
+    begin_film();
+    upload(scene, parts);
+}
+
+/// Those parts of `scene`; the others stay. What a part lies in is kept where it is large enough.
+void Session::upload(const PreparedScene& scene, uint32_t parts) {
+    const Stopwatch watch;
     hidden_back_share_.reset();
-    scene_.reset();
-    tracer_.reset();
-    structures_ = scene.structures;
-    scene_.emplace(queue_, scene);
+    if ((parts & kPartTrees) != 0) {
+        tracer_.reset();
+        structures_ = scene.structures;
+    }
+    try {
+        if (scene_) {
+            scene_->update(queue_, scene, parts);
+        } else {
+            scene_.emplace(queue_, scene);
+        }
+    } catch (...) {
+        scene_.reset(); // parts of it may be missing
+        throw;
+    }
     take_tracer();
+    tracer_->set_surfaces(scene_->view());
     queue_.wait();
     stats_.upload_seconds = watch.seconds();
 }

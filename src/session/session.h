@@ -4,7 +4,9 @@
 // device, the film and the integrator with its queues; what does not change is not uploaded, allocated or built again.
 //
 // Samples gather in the film until something changes the picture: then the film begins anew. These calls do that:
-//   set_scene     always. Uploads the scene; takes no memory for film and queues.
+//   set_scene     always. Uploads the scene; takes memory for parts that are larger than before, none for film and
+//                 queues.
+//   update_scene  always. The same of those parts alone.
 //   set_camera    where the camera is another. Uploads and takes nothing.
 //   set_settings  where the picture is another (same_picture). Another size or other layers take a new film at the next
 //                 render, and larger queues where they must be larger; another tracer takes its structure. All else
@@ -45,6 +47,10 @@ public:
     /// As the constructor. The scene before is freed first, so that two need not fit; when this throws there is none,
     /// and the next set_scene must come before anything is rendered or metered.
     void set_scene(const PreparedScene& scene);
+    /// The same scene after a change: only `parts` (ScenePart) are taken from `scene`, and nothing else of it may
+    /// differ from what the session has. No cut: the next samples are a later frame of the same sequence. Throws as
+    /// set_scene.
+    void update_scene(const PreparedScene& scene, uint32_t parts);
     void set_camera(const Camera& camera);
     /// Throws Error(BadInput), and nothing is done, where the device has no such tracer; Error(OutOfMemory, OverLimit)
     /// where the structure of another one cannot be had: the next set_settings must then come before anything is
@@ -84,6 +90,7 @@ private:
     Film& current_film();
     void begin_film();
     void take_tracer();
+    void upload(const PreparedScene& scene, uint32_t parts);
     PictureView view_of(const RenderSettings& settings);
     void begin(const RenderSettings& settings, uint32_t samples);
 

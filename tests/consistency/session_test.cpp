@@ -179,6 +179,34 @@ TEST_CASE("two sessions on one queue do not see each other") {
     CHECK(hash_of(b.result()) == hash_of(render_picture(cpu, world.prepared[1], world.cameras[1], other)));
 }
 
+TEST_CASE("a session that takes parts of a changed scene gives the picture of the changed scene, and copies no more") {
+    const World world;
+    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    RenderSettings settings = small_settings();
+    Session session(queue, world.prepared[0], world.cameras[0], settings);
+    session.render(settings.samples);
+    Scene after = world.scenes[0];
+    Messages messages;
+    const auto check_change = [&](uint32_t parts, uint64_t most_bytes) {
+        const PreparedScene prepared = prepare_scene(after, {}, messages);
+        const Hash128 fresh = hash_of(render_picture(cpu, prepared, world.cameras[0], settings));
+        CHECK(fresh != hash_of(session.result()));
+        const uint64_t uploaded = queue.uploaded_bytes();
+        session.update_scene(prepared, parts);
+        CHECK(session.history().samples == 0);
+        session.render(settings.samples);
+        CHECK(queue.uploaded_bytes() - uploaded <= most_bytes);
+        CHECK(hash_of(session.result()) == fresh);
+    };
+    for (Material& material : after.materials) material.base_color = 0.5f * material.base_color;
+    check_change(kPartMaterials, 16'384);
+    after.instances[1].world_from_local.translation.x += 0.125f; // a sphere
+    check_change(kPartInstances | kPartTrees | kPartLights, 1 << 20);
+    for (Light& light : after.lights) light.intensity = 2.0f * light.intensity;
+    check_change(kPartLights, 1 << 18);
+    CHECK(session.history().cuts == 0); // one sequence still
+}
+
 TEST_CASE("an integrator that knows nothing of the path tracer renders through the same seam") {
     const World world;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();

@@ -19,7 +19,6 @@
 #include "accel/bvh/woop_bvh.h"
 #include "accel/kd_tree/kd_tree.h"
 #include "accel/octree/octree.h"
-#include "device/buffer.h"
 #include "render/tracer/binary_trees.h"
 #include "render/tracer/combination.h"
 #include "trace/brute_force_walk.h"
@@ -96,26 +95,6 @@ private:
     std::vector<Array> arrays_;
     std::unordered_map<const void*, std::size_t> offsets_;
     std::size_t device_bytes_ = 0;
-};
-
-/// The same in the memory of a queue's device: on the host where that is the device, else a copy in one piece.
-class StructureOnDevice {
-public:
-    /// `queue` outlives it. Throws Error(OutOfMemory).
-    StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure);
-
-    const AnyTrees& trees() const { return trees_; }
-    const BuiltStructure& built() const { return *structure_; }
-
-private:
-    template <class T>
-    const T* moved(const T* on_host) const;
-    template <class View>
-    SceneTrees<View> moved_scene(SceneTrees<View> scene);
-
-    std::shared_ptr<const BuiltStructure> structure_;
-    AnyTrees trees_;
-    Buffer<std::byte> memory_;
 };
 
 } // namespace pertev

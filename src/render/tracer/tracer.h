@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "device/buffer.h"
-#include "render/tracer/built_structure.h"
 #include "render/tracer/combination.h"
+#include "render/tracer/structure_on_device.h"
 #include "render/tracer/walk_kernels.h"
 
 namespace pertev {

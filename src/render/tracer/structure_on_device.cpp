@@ -1,0 +1,49 @@
+#include "render/tracer/structure_on_device.h"
+
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace pertev {
+
+/// Where an array of the host's lies on the device; null of one without elements.
+template <class T>
+const T* StructureOnDevice::moved(const T* on_host) const {
+    const auto offset = structure_->offset_of(on_host);
+    return offset ? reinterpret_cast<const T*>(memory_.data() + *offset) : nullptr;
+}
+
+template <class View>
+SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene) {
+    const auto move = [&](View& view) {
+        if constexpr (requires { view.nodes; }) view.nodes = moved(view.nodes);
+        view.triangles = moved(view.triangles);
+        if constexpr (requires { view.references; }) view.references = moved(view.references);
+        if constexpr (requires { view.transforms; }) view.transforms = moved(view.transforms);
+    };
+    move(scene.baked);
+    for (const BuiltStructure::Array& array : structure_->arrays()) {
+        std::span<const std::byte> bytes = array.bytes;
+        std::vector<View> meshes;
+        if (static_cast<const void*>(bytes.data()) == static_cast<const void*>(scene.meshes)) {
+            meshes.assign(scene.meshes, scene.meshes + bytes.size() / sizeof(View));
+            for (View& view : meshes) move(view);
+            bytes = std::as_bytes(std::span(meshes));
+        }
+        memory_.upload_at(array.offset, bytes);
+    }
+    scene.meshes = moved(scene.meshes);
+    scene.top_nodes = moved(scene.top_nodes);
+    scene.instances = moved(scene.instances);
+    return scene;
+}
+
+StructureOnDevice::StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure)
+    : structure_(std::move(structure)), trees_(structure_->trees()) {
+    if (!queue.is_cuda()) return;
+    memory_ = Buffer<std::byte>(queue, structure_->device_bytes(), structure_->figures().name);
+    std::visit([&](const auto& scene) { trees_ = moved_scene(scene); }, structure_->trees());
+}
+
+} // namespace pertev
