@@ -118,7 +118,11 @@ void write_file_atomically(const fs::path& path, std::span<const std::byte> byte
 
 void check_writable(const fs::path& path) {
     try {
-        std::string temporary = temporary_name(resolve_target(path));
+        const fs::path target = resolve_target(path);
+        // Without a name where the file system can: nothing is left if the process is killed here.
+        const OpenFile unnamed(::open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
+        if (unnamed.fd() >= 0) return;
+        std::string temporary = temporary_name(target);
         const OpenFile file(::mkstemp(temporary.data()));
         check(file.fd() >= 0);
         ::unlink(temporary.c_str());

@@ -20,7 +20,8 @@ namespace pertev {
 struct PrepareOptions {
     BvhBuildSettings bvh;
     std::optional<std::filesystem::path> bvh_cache; // folder of the on-disk cache; none = always build
-    bool keep_coordinates = false; // the world is the file's: for rays that are given in its coordinates
+    std::optional<TracerChoice> tracers; // whose structures are built at once; none = when they are first asked for
+    bool keep_coordinates = false;       // the world is the file's: for rays that are given in its coordinates
 };
 
 struct PreparedScene {

@@ -83,7 +83,7 @@ std::vector<BsdfCase> cases_with_deltas() {
 TEST_CASE("particles carry the power that paths carry, by every BSDF, flat and about a bent normal") {
     const std::vector<BsdfCase> cases = cases_with_deltas();
     constexpr float tilts[] = {0, 0.1f, 0.3f};
-    const auto count = static_cast<uint32_t>(effort(400'000, 10'000'000));
+    const auto count = static_cast<uint32_t>(effort(200'000, 10'000'000));
     std::vector<Estimate> by_path(cases.size() * std::size(tilts)), by_particle(by_path.size());
     parallel_for(by_path.size(), 1, [&](uint64_t i) {
         const Surface surface = tilted_surface(cases[i / std::size(tilts)].bsdf, tilts[i % std::size(tilts)]);
