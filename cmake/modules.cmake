@@ -9,21 +9,6 @@ function(pertev_compile_cuda_as_cxx)
   endforeach()
 endfunction()
 
-# Compiles once for the target what most of its C++ files read: the standard library and fmt, and HEADERS besides. No
-# header of ours is among them, and tools/check_headers.py holds each of those to what it includes itself.
-function(pertev_precompile target)
-  if(NOT PERTEV_PCH)
-    return()
-  endif()
-  set(headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span> <string>
-      <vector> <fmt/format.h> ${ARGN})
-  list(TRANSFORM headers REPLACE "<(.+)>" "$<$<COMPILE_LANGUAGE:CXX>:<\\1$<ANGLE-R>>")
-  target_precompile_headers(${target} PRIVATE ${headers})
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>) # for ccache
-  endif()
-endfunction()
-
 function(pertev_module name)
   set(dir ${PROJECT_SOURCE_DIR}/src/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${dir}/*.cpp ${dir}/*.cu)
