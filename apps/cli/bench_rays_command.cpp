@@ -67,8 +67,7 @@ std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit
 constexpr Combination kBinary = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
 
 Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared) {
-    return {queue, combination,
-            std::make_shared<const StructureOnDevice>(queue, prepared.structures->get(combination))};
+    return {queue, combination, prepared.structures->get(combination)};
 }
 
 /// Throws Error(DeviceFault) that names the first ray where the tracer of pictures on this device and the binary walk

@@ -125,7 +125,7 @@ private:
     Tracer tracer_over(const Combination& combination, const BinaryTrees& trees) {
         const auto built = std::make_shared<const BuiltStructure>(triangles_.top_level, combination.structure,
                                                                   layout_of(combination), trees);
-        return {queue_, combination, std::make_shared<const StructureOnDevice>(queue_, built)};
+        return {queue_, combination, built};
     }
 
     void trace_sets(const Tracer& proven, const BruteForce& oracle) {

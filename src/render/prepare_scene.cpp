@@ -57,7 +57,9 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.trees.parts = trees;
     prepared.trees.build_s = watch.seconds();
     prepared.structures = std::make_shared<SceneStructures>(prepared.trees, prepared.top_level);
-    if (options.tracers) prepared.structures->device_bytes(*options.tracers); // builds them
+    if (options.tracers) {
+        for (const RayKind kind : kRayKinds) prepared.structures->get((*options.tracers)[kind]);
+    }
     prepared.build_seconds = watch.seconds();
 
     prepared.lights = build_light_set(scene, srgb_decode_table().data(), messages, prepared.centre);

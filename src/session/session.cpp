@@ -70,8 +70,8 @@ void Session::upload(const PreparedScene& scene, uint32_t parts) {
         scene_.reset(); // parts of it may be missing
         throw;
     }
+    if (tracer_) tracer_->set_surfaces(scene_->view());
     take_tracer();
-    tracer_->set_surfaces(scene_->view());
     queue_.wait();
     stats_.upload_seconds = watch.seconds();
 }

@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "image/picture_hash.h"
 #include "render/tracer/walk_kernels.h"
 #include "session/session.h"
 #include "tests/support/options.h"
@@ -45,12 +44,7 @@ Scene make_opaque(Scene scene) {
 
 Hash128 hash_of(const RenderResult& result) {
     Hasher hasher;
-    hasher.add_value(picture_hash(result.picture).high);
-    hasher.add_value(picture_hash(result.picture).low);
-    for (const FilmLayer& layer : result.layers) hasher.add_values(std::span<const float>(layer.image.pixels));
-    for (const PixelIds& ids : result.ids) {
-        for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
-    }
+    test::add_picture(hasher, result);
     return hasher.result();
 }
 

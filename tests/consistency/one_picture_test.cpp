@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include "base/parallel_for.h"
-#include "image/picture_hash.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -27,12 +26,7 @@ constexpr LightStrategy kStrategies[] = {LightStrategy::Mis, LightStrategy::NeeO
 /// Hash of the picture, the layers, the ids and the share of hidden backs.
 Hash128 hash_of(const RenderResult& result) {
     Hasher hasher;
-    hasher.add_value(picture_hash(result.picture).high);
-    hasher.add_value(picture_hash(result.picture).low);
-    for (const FilmLayer& layer : result.layers) hasher.add_values(std::span<const float>(layer.image.pixels));
-    for (const PixelIds& ids : result.ids) {
-        for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
-    }
+    test::add_picture(hasher, result);
     CHECK(result.hidden_back_share > 0.001); // a sheet of the mixed scene
     hasher.add_value(result.hidden_back_share);
     return hasher.result();

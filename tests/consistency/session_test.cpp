@@ -18,15 +18,7 @@ namespace {
 
 Hash128 hash_of(const RenderResult& result) {
     Hasher hasher;
-    hasher.add_value(picture_hash(result.picture).high);
-    hasher.add_value(picture_hash(result.picture).low);
-    for (const FilmLayer& layer : result.layers) {
-        hasher.add_values(std::span<const char>(layer.name));
-        hasher.add_values(std::span<const float>(layer.image.pixels));
-    }
-    for (const PixelIds& ids : result.ids) {
-        for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
-    }
+    test::add_picture(hasher, result);
     hasher.add_value(result.hidden_back_share);
     hasher.add_value(result.rays.total());
     hasher.add_value(result.invalid_samples);

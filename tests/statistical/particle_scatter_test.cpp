@@ -10,6 +10,7 @@
 #include "base/parallel_for.h"
 #include "render/particle_scatter.h"
 #include "tests/statistical/bsdf_cases.h"
+#include "tests/statistical/tilted_surface.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/options.h"
 
@@ -17,16 +18,6 @@ using namespace pertev;
 using namespace pertev::test;
 
 namespace {
-
-/// A surface whose shading normal is +z and whose triangle is turned by asin(tilt) about y.
-Surface tilted_surface(const Bsdf& bsdf, float tilt) {
-    Surface surface = {};
-    surface.geometric_normal = {tilt, 0, std::sqrt(1.0f - tilt * tilt)};
-    surface.frame = make_frame({0, 0, 1});
-    surface.bsdf = bsdf;
-    surface.tilt = terminator_tilt(tilt, 0);
-    return surface;
-}
 
 /// Radiance over n^2 that arrives along w, and what a camera makes of it that sees the surface along w: any two smooth
 /// functions. Both are dark near the triangle's plane, where delta directions are folded back.

@@ -10,6 +10,7 @@
 
 #include "render/surface.h"
 #include "tests/statistical/bsdf_cases.h"
+#include "tests/statistical/tilted_surface.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
@@ -19,16 +20,6 @@ using namespace pertev;
 using namespace pertev::test;
 
 namespace {
-
-/// A surface whose shading normal is +z and whose triangle is turned by asin(tilt) about y.
-Surface tilted_surface(const Bsdf& bsdf, float tilt) {
-    Surface surface = {};
-    surface.geometric_normal = {tilt, 0, std::sqrt(1.0f - tilt * tilt)};
-    surface.frame = make_frame({0, 0, 1});
-    surface.bsdf = bsdf;
-    surface.tilt = terminator_tilt(tilt, 0);
-    return surface;
-}
 
 constexpr float kTilts[] = {0.02f, 0.1f, 0.17f, 0.3f};
 

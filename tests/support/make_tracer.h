@@ -15,15 +15,14 @@ inline constexpr Combination kBinaryTracer = {.structure = StructureKind::Binned
 inline constexpr Combination kSimdTracer = {.structure = StructureKind::Binned, .walk = WalkKind::Wide8Simd};
 
 inline Tracer make_tracer(Queue& queue, const PreparedScene& prepared, const Combination& combination = kBinaryTracer) {
-    return {queue, combination,
-            std::make_shared<const StructureOnDevice>(queue, prepared.structures->get(combination))};
+    return {queue, combination, prepared.structures->get(combination)};
 }
 
 inline Tracer make_tracer(Queue& queue, const Bvh& bvh, const Combination& combination = kBinaryTracer) {
     const BinaryTrees trees = {std::make_shared<const std::vector<Bvh>>(1, bvh)};
     const auto built =
         std::make_shared<const BuiltStructure>(TopLevelBvh{}, combination.structure, layout_of(combination), trees);
-    return {queue, combination, std::make_shared<const StructureOnDevice>(queue, built)};
+    return {queue, combination, built};
 }
 
 } // namespace pertev::test

@@ -1,5 +1,6 @@
 #include "tests/support/render_scenes.h"
 
+#include "image/picture_hash.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 
@@ -153,6 +154,18 @@ RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, cons
                     const PrepareOptions& prepare) {
     Messages messages;
     return render_picture(queue, prepare_scene(scene, prepare, messages), camera, settings);
+}
+
+void add_picture(Hasher& hasher, const RenderResult& result) {
+    hasher.add_value(picture_hash(result.picture).high);
+    hasher.add_value(picture_hash(result.picture).low);
+    for (const FilmLayer& layer : result.layers) {
+        hasher.add_values(std::span<const char>(layer.name));
+        hasher.add_values(std::span<const float>(layer.image.pixels));
+    }
+    for (const PixelIds& ids : result.ids) {
+        for (const uint32_t id : {ids.instance, ids.primitive, ids.material}) hasher.add_value(id);
+    }
 }
 
 } // namespace pertev::test

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/hash.h"
 #include "scene/scene.h"
 #include "session/render_picture.h"
 
@@ -26,5 +27,8 @@ Queue queue_asked_for();
 /// Renders with the scene's trees built afresh.
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare = {});
+
+/// All that a render shows: its picture, its layers and its ids.
+void add_picture(Hasher& hasher, const RenderResult& result);
 
 } // namespace pertev::test

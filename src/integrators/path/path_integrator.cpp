@@ -42,12 +42,16 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     picture_ = picture;
     tracer_ = &tracer;
     rays_ = {};
-    if (body_ == PathBody::Loop && tracer.host_trees() != nullptr) return;
+    if (trees_of_loop() != nullptr) return;
     const uint64_t all = uint64_t(picture.camera.width) * picture.camera.height * samples;
     const uint32_t capacity = capacity_for(all, batch_);
     if (queues_ && queues_->capacity >= capacity) return;
     queues_.reset(); // before there is more
     queues_.emplace(queue_, capacity);
+}
+
+const HostTrees* PathIntegrator::trees_of_loop() const {
+    return body_ == PathBody::Loop ? tracer_->host_trees() : nullptr;
 }
 
 PathQueueView PathIntegrator::path_queue() const {
@@ -63,8 +67,7 @@ ShadowQueueView PathIntegrator::shadow_queue() const {
 
 void PathIntegrator::render(uint32_t first, uint32_t count, Film& film) {
     const FilmView view = film.view();
-    const HostTrees* trees = tracer_->host_trees();
-    if (body_ == PathBody::Loop && trees != nullptr) {
+    if (const HostTrees* trees = trees_of_loop()) {
         render_loop(first, count, view, *trees);
     } else {
         render_wavefront(first, count, view);

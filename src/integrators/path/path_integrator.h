@@ -37,6 +37,7 @@ private:
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
     void trace_batch(uint32_t paths, const FilmView& film);
     void trace_path(PathState path, const FilmView& film, const HostTrees& trees, RayCounts& counts) const;
+    const HostTrees* trees_of_loop() const; // null where the body is the wavefront
     PathQueueView path_queue() const;
     ShadowQueueView shadow_queue() const;
 

@@ -11,8 +11,6 @@
 namespace pertev {
 namespace {
 
-constexpr RayKind kRayKinds[] = {RayKind::Camera, RayKind::Bounce, RayKind::Shadow};
-
 /// Throws Error(OverLimit).
 void check_brute_force(const Combination& c, uint64_t triangles) {
     if (c.walk != WalkKind::BruteForce || triangles <= kMaxBruteForceTriangles) return;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "device/buffer.h"
 #include "render/tracer/combination.h"
@@ -20,6 +21,9 @@ public:
     /// `structure` is in the layout of the combination (layout_of), which why_no_tracer has nothing against. `queue`
     /// outlives the tracer.
     Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const StructureOnDevice> structure);
+    /// Places the structure on the queue's device first, for this tracer alone. Throws Error(OutOfMemory).
+    Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const BuiltStructure> structure)
+        : Tracer(queue, combination, std::make_shared<const StructureOnDevice>(queue, std::move(structure))) {}
 
     /// What rays [0, count) meet first. Queued: the work may still be under way. Throws Error(DeviceFault).
     void find_hits(const TraceQuery& query, uint32_t count, const HitQueueView& hits) const {

@@ -37,7 +37,7 @@ TracerChoice default_tracers(bool on_cuda) {
 
 bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
     if (on_cuda) return false;
-    for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) {
+    for (const RayKind kind : kRayKinds) {
         Combination c = choice[kind];
         if (kind == RayKind::Shadow) c.options.near_first = true; // either way it finds the same
         if (!(c == Combination{.structure = choice.camera.structure, .walk = WalkKind::Wide8Simd})) return false;
@@ -46,7 +46,7 @@ bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
 }
 
 void check_choice(const TracerChoice& choice, bool on_cuda) {
-    for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) {
+    for (const RayKind kind : kRayKinds) {
         const Combination& c = choice[kind];
         if (const auto reason = why_no_tracer(c, on_cuda)) {
             throw Error(ErrorCode::BadInput, fmt::format("{}: {}", name_of(c), *reason));

@@ -9,6 +9,7 @@
 namespace pertev {
 
 enum class RayKind : uint8_t { Camera, Bounce, Shadow };
+inline constexpr RayKind kRayKinds[] = {RayKind::Camera, RayKind::Bounce, RayKind::Shadow};
 
 struct TracerChoice {
     Combination camera, bounce, shadow;
