@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Compiles headers by themselves, so that each can be included first and, where it has device code, by any compiler.
 
-Host-device headers (those that say HD) are compiled alone by each --cxx and, gathered into one generated file a module,
-by --nvcc; all other headers alone by the first --cxx. `--self-test` feeds the check headers that must fail.
+The first --cxx compiles each header alone, but for those that the build compiles so already: their own .cpp includes them
+first. Host-device headers (those that say HD) are compiled by every other --cxx and by --nvcc too, gathered into one
+generated file a module. `--self-test` feeds the check headers that must fail.
 """
 
 import argparse
@@ -20,6 +21,7 @@ HOST_FLAGS = ["-x", "c++", "-std=c++20", "-fsyntax-only", "-ffp-contract=off", "
               "-Wpedantic", "-Wshadow", "-Wdouble-promotion", "-Wfloat-conversion", "-Werror"]
 NVCC_FLAGS = ["-x", "cu", "-std=c++20", "-ptx", "-arch=compute_90", "--expt-relaxed-constexpr", "-fmad=false",
               "-Werror=all-warnings", "-o", os.devnull]
+FIRST_INCLUDE = re.compile(r'^#include [<"](.*?)[>"]', re.MULTILINE)
 HOST_DEVICE = re.compile(r"^\s*(template\s*<.*>\s*)?(\[\[\w+\]\]\s*)?(constexpr\s+|static\s+)*HD\b", re.MULTILINE)
 
 
@@ -32,16 +34,24 @@ def compile_includes(command, headers, source):
         return "" if run.returncode == 0 else run.stderr + run.stdout
 
 
+def built_alone(header, source):
+    """Does the header's own .cpp include it first?"""
+    own = (source / header).with_suffix(".cpp")
+    first = own.exists() and FIRST_INCLUDE.search(own.read_text(encoding="utf-8"))
+    return bool(first) and first.group(1) == header.as_posix()
+
+
 def jobs_for(source, compilers, nvcc):
     """(what it is, command, headers) for each compilation."""
     headers = [h.relative_to(source) for h in sorted(source.rglob("*.h")) if "cuda" not in h.parts]
     host_device = [h for h in headers if HOST_DEVICE.search((source / h).read_text(encoding="utf-8"))]
-    if nvcc:
+    others = [[c, *HOST_FLAGS] for c in compilers[1:]] + ([[nvcc, *NVCC_FLAGS]] if nvcc else [])
+    for command in others:
         for module in sorted({h.parts[0] for h in host_device}):
-            yield f"{module} by nvcc", [nvcc, *NVCC_FLAGS], [h for h in host_device if h.parts[0] == module]
-    for position, compiler in enumerate(compilers):
-        for header in headers if position == 0 else host_device:
-            yield f"{header} by {compiler}", [compiler, *HOST_FLAGS], [header]
+            yield f"{module} by {command[0]}", command, [h for h in host_device if h.parts[0] == module]
+    for header in headers:
+        if not built_alone(header, source):
+            yield f"{header} by {compilers[0]}", [compilers[0], *HOST_FLAGS], [header]
 
 
 def check(source, compilers, nvcc, threads):
@@ -69,6 +79,7 @@ def self_test(compilers, nvcc):
             shutil.copy(ROOT / "src/base/host_device.h", source / "base/host_device.h")
             (source / "base/good.h").write_text(GOOD + "HD inline int g(int x) { return x; }\n")
             (source / "base/bad.h").write_text(text)
+            (source / "base/bad.cpp").write_text('#include "base/good.h"\n#include "base/bad.h"\n')  # not first
             faults, _ = check(source, compilers, nvcc, 1)
             expected = len(compilers) + (1 if nvcc else 0) if who == "cxx" else 1
             if len(faults) != expected:
