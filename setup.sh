@@ -262,7 +262,8 @@ toolkit 12.x or a driver from 580 on, then run ./setup.sh again"
 configure() {
     local options=(-G Ninja -DCMAKE_BUILD_TYPE=Release)
     if command -v ccache >/dev/null; then
-        options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+        # Without these it would not keep what is compiled with precompiled headers.
+        options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=cmake;-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache")
         [[ -z $nvcc ]] || options+=(-DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
     fi
     if [[ -n $nvcc ]]; then
