@@ -20,6 +20,17 @@ public:
     virtual double seconds_since(const TimeMark& earlier) const = 0;
 };
 
+/// A few bytes on their way from the device to the host, which goes on meanwhile.
+class HostCopy {
+public:
+    virtual ~HostCopy() = default;
+    /// Copies from `device` after the work given to the current stream so far. The copy before has been waited for.
+    virtual void take(const void* device) = 0;
+    /// Waits for the last take() and for nothing behind it. The bytes stay until the next. Throws Error(DeviceFault)
+    /// that names `stage`, the last one launched.
+    virtual const void* wait(const char* stage) = 0;
+};
+
 class DeviceBackend {
 public:
     virtual ~DeviceBackend() = default;
@@ -30,7 +41,13 @@ public:
 
     virtual std::string name() const = 0;
     virtual bool is_cuda() const = 0;
-    virtual void* stream() const = 0; // cudaStream_t; null on the CPU
+    virtual void* stream() const = 0; // the current one, a cudaStream_t; null on the CPU
+    /// Later work goes to stream `index`. On the CPU there is but one.
+    virtual void use_stream(int index) = 0;
+    /// Streams [1, count) go on after what stream 0 has been given so far.
+    virtual void fork_streams(int count) = 0;
+    /// Stream 0 goes on after what streams [1, count) have been given so far.
+    virtual void join_streams(int count) = 0;
     virtual std::size_t free_bytes() const = 0;
 
     /// Null when there is not enough memory; throws Error(DeviceFault) for anything else.
@@ -39,11 +56,13 @@ public:
     virtual void copy_to_device(void* device, const void* host, std::size_t bytes) = 0;
     virtual void copy_to_host(void* host, const void* device, std::size_t bytes) = 0;
     virtual void fill(void* device, unsigned char value, std::size_t bytes) = 0;
-    /// Waits for all work given so far. Throws Error(DeviceFault) that names `stage`, the last one launched.
+    /// Waits for all work given to the current stream so far. Throws Error(DeviceFault) that names `stage`, the last
+    /// one launched.
     virtual void wait(const char* stage) = 0;
     /// Throws Error(DeviceFault) when the launch just made was refused.
     virtual void check_launch(const char* stage) = 0;
     virtual std::unique_ptr<TimeMark> make_time_mark() = 0;
+    virtual std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) = 0;
 };
 
 /// Why no CUDA device can be used, or empty when device `index` can: no support compiled in, no driver, no such

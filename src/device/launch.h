@@ -7,13 +7,14 @@
 #include <cstdint>
 
 #include "device/queue.h"
+#include "device/work_count.h"
 
 namespace pertev {
 
-/// Runs stage(i) for each i in [0, count), in no stated order, after all work queued before. `name` shows in errors.
-/// Throws Error(DeviceFault) when the launch is refused; a fault inside the stage is thrown by the next queue.wait(),
-/// with this name. On the CPU it returns when done.
+/// Runs stage(i) for each i in [0, count), in no stated order, after all work given to the stream before. `name` shows
+/// in errors. Throws Error(DeviceFault) when the launch is refused; a fault inside the stage is thrown by the next
+/// queue.wait(), with this name. On the CPU it returns when done.
 template <class Stage>
-void launch(Queue& queue, const char* name, uint32_t count, const Stage& stage);
+void launch(Queue& queue, const char* name, WorkCount count, const Stage& stage);
 
 } // namespace pertev

@@ -11,26 +11,26 @@ namespace pertev {
 
 #if PERTEV_HAS_KERNELS
 template <class Stage>
-__global__ void __launch_bounds__(128) run_stage(Stage stage, uint32_t count) {
+__global__ void __launch_bounds__(128) run_stage(Stage stage, WorkCount count) {
     // 64-bit on purpose: blocks * threads passes 2^32 for large queues.
     const uint64_t i = uint64_t(blockIdx.x) * blockDim.x + threadIdx.x;
-    if (i < count) stage(uint32_t(i));
+    if (i < count.value()) stage(uint32_t(i));
 }
 #endif
 
 template <class Stage>
-void launch(Queue& queue, const char* name, uint32_t count, const Stage& stage) {
-    if (count == 0) return;
+void launch(Queue& queue, const char* name, WorkCount count, const Stage& stage) {
+    if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
         constexpr uint32_t threads = 128;
-        const uint32_t blocks = uint32_t((uint64_t(count) + threads - 1) / threads);
+        const uint32_t blocks = uint32_t((uint64_t(count.most) + threads - 1) / threads);
         run_stage<<<blocks, threads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count);
         return queue.check_launch();
     }
 #endif
-    parallel_for(count, 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    parallel_for(count.value(), 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
 } // namespace pertev

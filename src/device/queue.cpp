@@ -28,12 +28,25 @@ private:
     std::chrono::steady_clock::time_point time_;
 };
 
+class CpuHostCopy final : public HostCopy {
+public:
+    explicit CpuHostCopy(std::size_t bytes) : bytes_(bytes) {}
+    void take(const void* device) override { std::memcpy(bytes_.data(), device, bytes_.size()); }
+    const void* wait(const char*) override { return bytes_.data(); }
+
+private:
+    std::vector<std::byte> bytes_;
+};
+
 class CpuBackend final : public DeviceBackend {
 public:
     void make_current() const override {}
     std::string name() const override { return "CPU"; }
     bool is_cuda() const override { return false; }
     void* stream() const override { return nullptr; }
+    void use_stream(int) override {}
+    void fork_streams(int) override {}
+    void join_streams(int) override {}
     std::size_t free_bytes() const override {
         return static_cast<std::size_t>(::sysconf(_SC_AVPHYS_PAGES)) *
                static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
@@ -50,6 +63,9 @@ public:
     void wait(const char*) override {}
     void check_launch(const char*) override {}
     std::unique_ptr<TimeMark> make_time_mark() override { return std::make_unique<CpuTimeMark>(); }
+    std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) override {
+        return std::make_unique<CpuHostCopy>(bytes);
+    }
 };
 
 double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }

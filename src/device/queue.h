@@ -3,6 +3,9 @@
 // A queue of work on one device, and the owner of that device's memory. Work runs in the order given. On the CPU each
 // call returns when it is done; in CUDA it runs behind, and wait() meets it. Several queues, on one device or on many,
 // may be used in turns from one thread or from several at once; one queue is for one thread at a time.
+//
+// Between fork_streams() and join_streams() a queue has several streams of work: each runs in the order given, and on a
+// GPU they run side by side, so that one fills what another leaves idle.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +27,34 @@ public:
 
     bool is_cuda() const { return backend_->is_cuda(); }
     void* stream() const { return backend_->stream(); }
+
+    static constexpr int kMaxStreams = 4;
+    int stream_index() const { return stream_index_; }
+    /// From now on streams [0, count), count <= kMaxStreams, go on side by side after all work given so far.
+    void fork_streams(int count) { backend_->fork_streams(count); }
+    /// From now on stream 0 goes on alone, after all that the others have been given.
+    void join_streams(int count) { backend_->join_streams(count); }
+    /// While it lives, work goes to another stream than 0: launches, copies, fills, and waits for them.
+    class OnStream {
+    public:
+        OnStream(Queue& queue, int index) : queue_(queue) { queue.use_stream(index); }
+        ~OnStream() { queue_.use_stream(0); }
+        OnStream(const OnStream&) = delete;
+        OnStream& operator=(const OnStream&) = delete;
+
+    private:
+        Queue& queue_;
+    };
     std::string device_name() const { return backend_->name(); }
 
     /// Waits for all work given. Throws Error(DeviceFault) that names the last stage launched when one failed.
     void wait() { backend_->wait(stage_); }
     void check_launch() { backend_->check_launch(stage_); }
+    const void* wait(HostCopy& copy) { return copy.wait(stage_); }
 
-    /// For device/device_timer.h.
+    /// For device/device_timer.h and device/readback.h.
     std::unique_ptr<TimeMark> make_time_mark() { return backend_->make_time_mark(); }
+    std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) { return backend_->make_host_copy(bytes); }
 
     /// Device memory, never null for bytes > 0. Throws Error(OutOfMemory) that lists the largest buffers.
     void* allocate(std::size_t bytes, const std::string& name);
@@ -71,9 +94,14 @@ private:
     };
 
     explicit Queue(std::unique_ptr<DeviceBackend> backend) : backend_(std::move(backend)) {}
+    void use_stream(int index) {
+        stream_index_ = index;
+        backend_->use_stream(index);
+    }
 
     std::unique_ptr<DeviceBackend> backend_;
     const char* stage_ = "start";
+    int stream_index_ = 0;
     std::vector<Allocation> allocations_;
     std::size_t allocated_ = 0, peak_ = 0;
     uint64_t allocation_count_ = 0, uploaded_ = 0;

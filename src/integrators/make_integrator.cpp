@@ -29,13 +29,14 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     return true;
 }
 
-std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool walks_itself) {
+std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
+                            bool walks_itself) {
     switch (settings.integrator) {
     case IntegratorKind::Path:
         break;
     }
     if (walks_itself && settings.body == PathBody::Loop) return 0;
-    return PathIntegrator::wavefront_bytes(pixels * samples, settings.batch);
+    return PathIntegrator::wavefront_bytes(pixels * samples, settings.batch, on_cuda);
 }
 
 } // namespace pertev

@@ -18,7 +18,7 @@ struct IntegratorSettings {
 
     // How the device does it: the light stays the same.
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront
-    uint32_t batch = 1u << 22;      // most paths in flight of a wavefront; more cost memory
+    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes each
 };
 
 /// Whether both give the same samples.
@@ -33,6 +33,7 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
 
 /// Bytes of the device's memory that it takes for `samples` of each of `pixels`. `walks_itself`: its tracers are such
 /// that a loop may walk them ray by ray (can_walk_on_host).
-std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool walks_itself);
+std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
+                            bool walks_itself);
 
 } // namespace pertev

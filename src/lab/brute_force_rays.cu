@@ -3,5 +3,5 @@
 #include "device/launch_body.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, uint32_t, const BruteForceRays&);
+template void launch(Queue&, const char*, WorkCount, const BruteForceRays&);
 } // namespace pertev

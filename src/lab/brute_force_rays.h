@@ -31,7 +31,7 @@ struct BruteForceRays {
     RayHit* hits; // the closest
 
     HD void operator()(uint32_t i) const {
-        const Ray ray = load_ray(rays, i);
+        const Ray ray = load_ray(rays + i);
         RayHit best = {ray.t_max, kNoHit, 0};
         test(baked, ray, kNoHit, best);
         for (uint64_t k = 0; k < instance_count; ++k) {

@@ -36,9 +36,14 @@ struct AcceptOpaque {
 
     HD bool operator()(uint32_t instance, uint32_t primitive, float, float) const {
         const RayQueueView& rays = query.rays;
-        if (rays.ends == nullptr) return true;
-        const Uint4 ends = rays.ends[rays.slot(i)];
-        return !(instance == ends.x && primitive == ends.y) && !(instance == ends.z && primitive == ends.w);
+        return !is_at(rays.starts, rays, instance, primitive) && !is_at(rays.targets, rays, instance, primitive);
+    }
+
+private:
+    HD bool is_at(const Uint2* ends, const RayQueueView& rays, uint32_t instance, uint32_t primitive) const {
+        if (ends == nullptr) return false;
+        const Uint2 end = ends[rays.place(i)];
+        return instance == end.x && primitive == end.y;
     }
 };
 
@@ -51,9 +56,9 @@ struct AcceptQueued {
         if (query.scene == nullptr) return true;
         const InstanceView& placed = query.instances[instance];
         if (placed.has_alpha == 0 && !(query.hides_backs && placed.hides_back != 0)) return true;
-        const uint32_t slot = query.rays.slot(i);
-        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[slot] : 0;
-        return !passes_surface(query.scene, query.rays.rays + slot, key, query.hides_backs, instance, primitive, u, v);
+        const int64_t place = query.rays.place(i);
+        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[place] : 0;
+        return !passes_surface(query.scene, query.rays.rays + place, key, query.hides_backs, instance, primitive, u, v);
     }
 };
 

@@ -3,8 +3,8 @@
 #include "device/launch_body.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, uint32_t, const AddSums&);
-template void launch(Queue&, const char*, uint32_t, const AddIds&);
-template void launch(Queue&, const char*, uint32_t, const ResolveFilm&);
-template void launch(Queue&, const char*, uint32_t, const DisplayFilm&);
+template void launch(Queue&, const char*, WorkCount, const AddSums&);
+template void launch(Queue&, const char*, WorkCount, const AddIds&);
+template void launch(Queue&, const char*, WorkCount, const ResolveFilm&);
+template void launch(Queue&, const char*, WorkCount, const DisplayFilm&);
 } // namespace pertev

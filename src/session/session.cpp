@@ -209,7 +209,7 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     const TracerChoice tracers = tracers_of(settings, on_cuda);
     const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
     return predicted_bytes(scene) + structures + film +
-           predicted_bytes(settings, uint64_t(settings.width) * settings.height, settings.samples,
+           predicted_bytes(settings, uint64_t(settings.width) * settings.height, settings.samples, on_cuda,
                            can_walk_on_host(tracers, on_cuda));
 }
 

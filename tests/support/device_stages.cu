@@ -2,8 +2,8 @@
 #include "tests/support/device_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, uint32_t, const test::DrawSamples&);
-template void launch(Queue&, const char*, uint32_t, const test::ScatterRandomly&);
-template void launch(Queue&, const char*, uint32_t, const test::DrawLights&);
-template void launch(Queue&, const char*, uint32_t, const test::EvaluateMath&);
+template void launch(Queue&, const char*, WorkCount, const test::DrawSamples&);
+template void launch(Queue&, const char*, WorkCount, const test::ScatterRandomly&);
+template void launch(Queue&, const char*, WorkCount, const test::DrawLights&);
+template void launch(Queue&, const char*, WorkCount, const test::EvaluateMath&);
 } // namespace pertev

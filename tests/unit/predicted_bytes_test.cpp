@@ -30,7 +30,8 @@ std::size_t bytes_of(const Scene& scene) {
     const TracerChoice choice = default_tracers(queue.is_cuda());
     const std::size_t structures = queue.is_cuda() ? prepared.structures->device_bytes(choice) : 0;
     const SceneTracer tracer(queue, *prepared.structures, choice);
-    CHECK(queue.allocated_bytes() == predicted + structures + sizeof(SceneView) + 3 * sizeof(uint32_t)); // and pools
+    CHECK(queue.allocated_bytes() ==
+          predicted + structures + sizeof(SceneView) + 3 * Queue::kMaxStreams * sizeof(uint32_t)); // and pools
     return predicted;
 }
 

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "device/buffer.h"
+#include "device/readback.h"
+#include "tests/support/render_scenes.h"
 
 using namespace pertev;
 
@@ -12,5 +14,39 @@ TEST_CASE("a queue moves while it has given no memory; after that its buffers ho
     {
         const Buffer<int> buffer(moved, 3, "numbers");
         CHECK_THROWS_AS(Queue(std::move(moved)), std::logic_error);
+    }
+}
+
+TEST_CASE("streams go on after what was given before the fork, and work behind the join comes after all of them") {
+    Queue queue = test::queue_asked_for();
+    constexpr int kStreams = Queue::kMaxStreams;
+    constexpr std::size_t kMany = 1 << 22; // a fill that takes longer than it takes to give the next
+    Buffer<unsigned char> bytes(queue, kMany, "bytes"), sum(queue, kMany * kStreams, "bytes");
+    bytes.fill(7);
+    queue.fork_streams(kStreams);
+    for (int i = 0; i < kStreams; ++i) {
+        const Queue::OnStream on(queue, i);
+        CHECK(queue.stream_index() == i);
+        queue.fill(sum.data() + static_cast<std::size_t>(i) * kMany, static_cast<unsigned char>(i + 1), kMany);
+    }
+    CHECK(queue.stream_index() == 0);
+    queue.join_streams(kStreams);
+    const std::vector<unsigned char> there = sum.download();
+    for (int i = 0; i < kStreams; ++i) {
+        CHECK(there[static_cast<std::size_t>(i) * kMany] == i + 1);
+        CHECK(there[static_cast<std::size_t>(i + 1) * kMany - 1] == i + 1);
+    }
+    CHECK(bytes.download().back() == 7);
+}
+
+TEST_CASE("a number is read back as it was when that was asked for, whatever comes later") {
+    Queue queue = test::queue_asked_for();
+    Buffer<uint32_t> number(queue, 1, "number");
+    Readback<uint32_t> readback(queue);
+    for (const unsigned char value : {1, 2, 3}) {
+        number.fill(value);
+        readback.take(number.data());
+        number.fill(0);
+        CHECK(readback.wait() == 0x01010101u * value);
     }
 }

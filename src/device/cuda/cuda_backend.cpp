@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -47,6 +48,37 @@ private:
     cudaEvent_t event_ = nullptr;
 };
 
+class CudaBackend;
+
+/// Pinned memory, and an event behind the copy to it.
+class CudaHostCopy final : public HostCopy {
+public:
+    /// Device `index` is the current one. `backend` outlives it.
+    CudaHostCopy(const CudaBackend& backend, int index, std::size_t bytes);
+    ~CudaHostCopy() override {
+        cudaSetDevice(index_);
+        cudaEventSynchronize(taken_);
+        cudaEventDestroy(taken_);
+        cudaFreeHost(memory_);
+    }
+    CudaHostCopy(const CudaHostCopy&) = delete;
+    CudaHostCopy& operator=(const CudaHostCopy&) = delete;
+
+    void take(const void* device) override;
+    const void* wait(const char* stage) override {
+        check_cuda(cudaSetDevice(index_), "cudaSetDevice");
+        check_cuda(cudaEventSynchronize(taken_), stage);
+        return memory_;
+    }
+
+private:
+    const CudaBackend& backend_;
+    int index_;
+    std::size_t bytes_;
+    void* memory_ = nullptr;
+    cudaEvent_t taken_ = nullptr;
+};
+
 class CudaBackend final : public DeviceBackend {
 public:
     explicit CudaBackend(int index) : index_(index) {
@@ -54,12 +86,15 @@ public:
         cudaDeviceProp properties{};
         check_cuda(cudaGetDeviceProperties(&properties, index), "cudaGetDeviceProperties");
         name_ = properties.name;
-        check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
+        streams_.push_back(make_stream());
     }
     ~CudaBackend() override {
         cudaSetDevice(index_);
         staging_.reset();
-        cudaStreamDestroy(stream_);
+        for (const Stream& stream : streams_) {
+            cudaEventDestroy(stream.reached);
+            cudaStreamDestroy(stream.stream);
+        }
     }
     CudaBackend(const CudaBackend&) = delete;
     CudaBackend& operator=(const CudaBackend&) = delete;
@@ -67,7 +102,22 @@ public:
     void make_current() const override { check_cuda(cudaSetDevice(index_), "cudaSetDevice"); }
     std::string name() const override { return name_; }
     bool is_cuda() const override { return true; }
-    void* stream() const override { return stream_; }
+    void* stream() const override { return current(); }
+    void use_stream(int index) override { current_ = static_cast<std::size_t>(index); }
+    void fork_streams(int count) override {
+        make_current();
+        while (streams_.size() < static_cast<std::size_t>(count)) streams_.push_back(make_stream());
+        check_cuda(cudaEventRecord(streams_[0].reached, streams_[0].stream), "cudaEventRecord");
+        for (int i = 1; i < count; ++i) wait_for(streams_[static_cast<std::size_t>(i)], streams_[0]);
+    }
+    void join_streams(int count) override {
+        make_current();
+        for (int i = 1; i < count; ++i) {
+            const Stream& other = streams_[static_cast<std::size_t>(i)];
+            check_cuda(cudaEventRecord(other.reached, other.stream), "cudaEventRecord");
+            wait_for(streams_[0], other);
+        }
+    }
     std::size_t free_bytes() const override {
         make_current();
         std::size_t free = 0, total = 0;
@@ -92,41 +142,74 @@ public:
     void copy_to_device(void* device, const void* host, std::size_t bytes) override {
         make_current();
         if (staging().is_there()) return staging().copy_to_device(device, host, bytes);
-        check_cuda(cudaMemcpyAsync(device, host, bytes, cudaMemcpyHostToDevice, stream_), "copy to device");
+        check_cuda(cudaMemcpyAsync(device, host, bytes, cudaMemcpyHostToDevice, current()), "copy to device");
         wait("copy to device"); // the host memory may go away after the call
     }
     void copy_to_host(void* host, const void* device, std::size_t bytes) override {
         make_current();
         constexpr std::size_t kMany = std::size_t(1) << 20; // fewer are there sooner without a stop on the way
         if (bytes >= kMany && staging().is_there()) return staging().copy_to_host(host, device, bytes);
-        check_cuda(cudaMemcpyAsync(host, device, bytes, cudaMemcpyDeviceToHost, stream_), "copy to host");
+        check_cuda(cudaMemcpyAsync(host, device, bytes, cudaMemcpyDeviceToHost, current()), "copy to host");
         wait("copy to host");
     }
     void fill(void* device, unsigned char value, std::size_t bytes) override {
         make_current();
-        check_cuda(cudaMemsetAsync(device, value, bytes, stream_), "fill");
+        check_cuda(cudaMemsetAsync(device, value, bytes, current()), "fill");
     }
     void wait(const char* stage) override {
         make_current();
-        check_cuda(cudaStreamSynchronize(stream_), stage);
+        check_cuda(cudaStreamSynchronize(current()), stage);
     }
     void check_launch(const char* stage) override { check_cuda(cudaGetLastError(), stage); } // of the calling thread
     std::unique_ptr<TimeMark> make_time_mark() override {
         make_current();
-        return std::make_unique<CudaTimeMark>(stream_, index_);
+        return std::make_unique<CudaTimeMark>(current(), index_);
+    }
+    std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) override {
+        make_current();
+        return std::make_unique<CudaHostCopy>(*this, index_, bytes);
     }
 
 private:
-    PinnedStaging& staging() {
-        if (!staging_) staging_.emplace(stream_);
+    struct Stream {
+        cudaStream_t stream = nullptr;
+        cudaEvent_t reached = nullptr; // that another one waits for
+    };
+
+    static Stream make_stream() {
+        Stream made;
+        check_cuda(cudaStreamCreateWithFlags(&made.stream, cudaStreamNonBlocking), "cudaStreamCreate");
+        check_cuda(cudaEventCreateWithFlags(&made.reached, cudaEventDisableTiming), "cudaEventCreate");
+        return made;
+    }
+    static void wait_for(const Stream& waiting, const Stream& other) {
+        check_cuda(cudaStreamWaitEvent(waiting.stream, other.reached, 0), "cudaStreamWaitEvent");
+    }
+    cudaStream_t current() const { return streams_[current_].stream; }
+    PinnedStaging& staging() { // of stream 0, as all large copies are
+        if (!staging_) staging_.emplace(streams_[0].stream);
         return *staging_;
     }
 
     int index_;
     std::optional<PinnedStaging> staging_; // from the first copy that needs it
     std::string name_;
-    cudaStream_t stream_ = nullptr;
+    std::vector<Stream> streams_;
+    std::size_t current_ = 0;
 };
+
+CudaHostCopy::CudaHostCopy(const CudaBackend& backend, int index, std::size_t bytes)
+    : backend_(backend), index_(index), bytes_(bytes) {
+    check_cuda(cudaMallocHost(&memory_, bytes), "cudaMallocHost");
+    check_cuda(cudaEventCreateWithFlags(&taken_, cudaEventDisableTiming), "cudaEventCreate");
+}
+
+void CudaHostCopy::take(const void* device) {
+    backend_.make_current();
+    const auto stream = static_cast<cudaStream_t>(backend_.stream());
+    check_cuda(cudaMemcpyAsync(memory_, device, bytes_, cudaMemcpyDeviceToHost, stream), "copy to host");
+    check_cuda(cudaEventRecord(taken_, stream), "cudaEventRecord");
+}
 
 } // namespace
 

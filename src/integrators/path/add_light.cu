@@ -2,5 +2,5 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, uint32_t, const AddLight&);
+template void launch(Queue&, const char*, WorkCount, const AddLight&);
 } // namespace pertev

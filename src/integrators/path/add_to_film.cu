@@ -2,5 +2,5 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, uint32_t, const AddToFilm&);
+template void launch(Queue&, const char*, WorkCount, const AddToFilm&);
 } // namespace pertev

@@ -2,5 +2,5 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, uint32_t, const GeneratePaths&);
+template void launch(Queue&, const char*, WorkCount, const GeneratePaths&);
 } // namespace pertev

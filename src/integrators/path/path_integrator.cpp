@@ -11,28 +11,54 @@
 namespace pertev {
 namespace {
 
-uint32_t capacity_for(uint64_t samples, uint32_t batch) {
-    return static_cast<uint32_t>(std::min<uint64_t>(samples, batch));
+/// Wavefronts that go side by side, and the paths that each has in flight.
+struct Size {
+    int wavefronts;
+    uint32_t capacity;
+};
+
+Size size_for(uint64_t samples, uint32_t batch, bool on_cuda) {
+    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(samples, batch));
+    constexpr uint32_t kLeast = 1u << 15; // fewer do not fill a GPU by halves
+    const int wavefronts = on_cuda && paths >= 2 * kLeast ? 2 : 1;
+    const uint32_t each = (paths - 1) / static_cast<uint32_t>(wavefronts) + 1;
+    return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
 }
 
 } // namespace
 
-PathIntegrator::Queues::Queues(Queue& queue, uint32_t paths)
-    : capacity(paths), path_rays(queue, paths, "path rays"), shadow_rays(queue, paths, "shadow rays"),
-      path_ends(queue, paths, "path rays"), shadow_ends(queue, paths, "shadow rays"),
-      path_keys(queue, paths, "path rays"), shadow_keys(queue, paths, "shadow rays"), throughput(queue, paths, "paths"),
-      radiance(queue, paths, "paths"), contribution(queue, paths, "shadow rays"), hit_places(queue, paths, "hits"),
-      samples(queue, paths, "paths"), hit_instances(queue, paths, "hits"),
-      active{{queue, paths, "active paths"}, {queue, paths, "active paths"}}, counts(queue, 2, "queue lengths") {}
+PathIntegrator::Wavefront::Paths::Paths(Queue& queue, uint32_t capacity)
+    : rays(queue, capacity, "path rays"), throughput(queue, capacity, "paths"), radiance(queue, capacity, "paths") {}
 
-std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch) {
-    constexpr std::size_t of_path = 2 * (sizeof(Ray) + sizeof(Uint4) + sizeof(uint32_t)) + 4 * sizeof(Float4) +
-                                    sizeof(Uint2) + 3 * sizeof(uint32_t);
-    return of_path * capacity_for(samples, batch) + 2 * sizeof(uint32_t);
+PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
+    : capacity(paths), sets{{queue, paths}, {queue, paths}}, shadow_rays(queue, paths, "shadow rays"),
+      path_starts(queue, paths, "path rays"), shadow_starts(queue, paths, "shadow rays"),
+      shadow_targets(queue, paths, "shadow rays"), path_keys(queue, paths, "path rays"),
+      shadow_keys(queue, paths, "shadow rays"), contribution(queue, paths, "shadow rays"),
+      hit_places(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 1, "path counts"),
+      seen(queue) {}
+
+PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
+    const Paths& set = sets[of_round % 2];
+    return {set.rays.data(), path_starts.data(), path_keys.data(), set.throughput.data(), set.radiance.data()};
+}
+
+ShadowQueueView PathIntegrator::Wavefront::shadows() const {
+    return {shadow_rays.data(), shadow_starts.data(), shadow_targets.data(), shadow_keys.data(), contribution.data()};
+}
+
+std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda) {
+    constexpr std::size_t of_path = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
+                                    sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
+    const Size size = size_for(samples, batch, on_cuda);
+    return static_cast<std::size_t>(size.wavefronts) * (of_path * size.capacity + sizeof(RoundCounts)) +
+           sizeof(RenderCounts);
 }
 
 std::size_t PathIntegrator::bytes() const {
-    return queues_ ? wavefront_bytes(queues_->capacity, queues_->capacity) : 0;
+    if (wavefronts_.empty()) return 0;
+    const uint64_t paths = wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
+    return wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda());
 }
 
 PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch)
@@ -44,25 +70,15 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     rays_ = {};
     if (trees_of_loop() != nullptr) return;
     const uint64_t all = uint64_t(picture.camera.width) * picture.camera.height * samples;
-    const uint32_t capacity = capacity_for(all, batch_);
-    if (queues_ && queues_->capacity >= capacity) return;
-    queues_.reset(); // before there is more
-    queues_.emplace(queue_, capacity);
+    const Size size = size_for(all, batch_, queue_.is_cuda());
+    if (!wavefronts_.empty() && wavefronts_.front().capacity >= size.capacity) return;
+    wavefronts_.clear(); // before there is more
+    if (render_counts_.size() == 0) render_counts_ = {queue_, 1, "path counts"};
+    for (int i = 0; i < size.wavefronts; ++i) wavefronts_.emplace_back(queue_, size.capacity);
 }
 
 const HostTrees* PathIntegrator::trees_of_loop() const {
     return body_ == PathBody::Loop ? tracer_->host_trees() : nullptr;
-}
-
-PathQueueView PathIntegrator::path_queue() const {
-    const Queues& q = *queues_;
-    return {q.path_rays.data(),  q.path_ends.data(), q.path_keys.data(),
-            q.throughput.data(), q.radiance.data(),  q.samples.data()};
-}
-
-ShadowQueueView PathIntegrator::shadow_queue() const {
-    const Queues& q = *queues_;
-    return {q.shadow_rays.data(), q.shadow_ends.data(), q.shadow_keys.data(), q.contribution.data()};
 }
 
 void PathIntegrator::render(uint32_t first, uint32_t count, Film& film) {
@@ -117,49 +133,70 @@ void PathIntegrator::trace_path(PathState path, const FilmView& film, const Host
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
-    const uint32_t picture = picture_.camera.width * picture_.camera.height;
-    const uint32_t pixels = std::min(picture, queues_->capacity);
-    const uint32_t samples = std::min(count, queues_->capacity / pixels);
-    for (uint32_t sample = 0; sample < count; sample += samples) {
-        for (uint32_t pixel = 0; pixel < picture; pixel += pixels) {
-            const uint32_t batch_pixels = std::min(pixels, picture - pixel);
-            const uint32_t batch = batch_pixels * std::min(samples, count - sample);
-            launch(queue_, "generate_paths", batch,
-                   GeneratePaths{picture_.camera, settings_, pixel, batch_pixels, first + sample,
-                                 picture_.scene.any_alpha != 0, path_queue()});
-            rays_.camera += batch;
-            trace_batch(batch, film);
+    const Work work = {first, uint64_t(picture_.camera.width) * picture_.camera.height * count, film};
+    // Kinds of rays can be timed only one after the other.
+    const int streams = tracer_->times_kinds() ? 1 : static_cast<int>(wavefronts_.size());
+    render_counts_.zero();
+    for (int i = 0; i < streams; ++i) {
+        Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
+        w.round = 0;
+        w.known = {};
+        w.is_done = false;
+        w.counts.zero();
+    }
+    queue_.fork_streams(streams);
+    for (int done = 0; done < streams;) {
+        for (int i = 0; i < streams; ++i) {
+            Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
+            if (w.is_done) continue;
+            const Queue::OnStream on(queue_, i);
+            if (w.round > 0) w.known = w.seen.wait();
+            w.is_done = w.round > 0 && w.known.active == 0;
+            if (w.is_done) {
+                ++done;
+            } else {
+                give_round(w, work);
+            }
         }
     }
-    queue_.wait();
+    queue_.join_streams(streams);
+    const RenderCounts counts = render_counts_.download().front();
+    rays_.camera += work.samples;
+    rays_.bounce += counts.bounces;
+    rays_.shadow += counts.shadows;
 }
 
-void PathIntegrator::trace_batch(uint32_t batch, const FilmView& film) {
-    const Queues& q = *queues_;
-    const PathQueueView paths = path_queue();
-    const ShadowQueueView shadows = shadow_queue();
-    const HitQueueView hits = {q.hit_places.data(), q.hit_instances.data()};
-    Buffer<uint32_t>& lengths = queues_->counts;
-    const uint32_t* active = nullptr; // at first every slot
-    int next = 0;
-    for (uint32_t count = batch; count > 0;) {
-        const SlotListView going_on = {q.active[next].data(), lengths.data()};
-        lengths.zero();
-        tracer_->find_hits(active == nullptr ? RayKind::Camera : RayKind::Bounce,
-                           {paths.rays, paths.ends, paths.keys, active}, count, hits);
-        launch(queue_, "shade_hits", count,
-               ShadeHits{picture_, settings_, film, paths, active, hits, going_on, shadows, lengths.data() + 1});
-        const std::vector<uint32_t> counts = lengths.download();
-        const HitQueueView occlusions = {nullptr, q.hit_instances.data()}; // the hits have been used
-        tracer_->find_occlusions({shadows.rays, shadows.ends, shadows.keys}, counts[1], occlusions);
-        launch(queue_, "add_light", counts[1], AddLight{shadows, occlusions.instances, paths});
-        rays_.bounce += counts[0];
-        rays_.shadow += counts[1];
-        active = q.active[next].data();
-        next = 1 - next;
-        count = counts[0];
+void PathIntegrator::give_round(Wavefront& w, const Work& work) {
+    const uint32_t pixels = picture_.camera.width * picture_.camera.height, last = w.capacity - 1;
+    const bool any_alpha = picture_.scene.any_alpha != 0;
+    const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
+    const ShadowQueueView shadows = w.shadows();
+    const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
+    RoundCounts* const counts = w.counts.data();
+    // Once all paths have begun, a round has no more of them than the one before.
+    const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.capacity;
+
+    launch(queue_, "plan_round", 1,
+           PlanRound{counts, render_counts_.data(), w.capacity, pixels, work.first_sample, work.samples});
+    w.seen.take(counts);
+    if (w.known.all_begun == 0) {
+        const WorkCount fresh = {most, &counts->fresh};
+        launch(queue_, "generate_paths", fresh,
+               GeneratePaths{picture_.camera, settings_, counts, pixels, last, any_alpha, paths});
+        tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh,
+                           {hits.places + last, hits.instances + last, -1});
     }
-    launch(queue_, "add_to_film", batch, AddToFilm{film, paths});
+    if (w.round > 0) {
+        tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits);
+    }
+    launch(queue_, "shade_hits", {most, &counts->active},
+           ShadeHits{picture_, settings_, work.film, paths, next, hits, shadows, counts, last});
+    const WorkCount asked = {most, &counts->shadows};
+    const HitQueueView occlusions = {nullptr, w.hit_instances.data()}; // the hits have been used
+    tracer_->find_occlusions(shadows.query(), asked, occlusions);
+    launch(queue_, "add_light", asked, AddLight{shadows, occlusions.instances, next});
+    launch(queue_, "add_to_film", {most, &counts->ended}, AddToFilm{work.film, next, last});
+    ++w.round;
 }
 
 } // namespace pertev

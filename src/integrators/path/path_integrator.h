@@ -2,11 +2,19 @@
 
 // Path tracing: the one file that orders the stages. Its two bodies, a loop per pixel and a wavefront over queues, call
 // the same functions and give the same bytes (tests/consistency/one_picture_test.cpp).
+//
+// The wavefront goes round by round (integrators/path/path_queues.h). The host gives rounds to the device without
+// waiting for one: how many paths a round has stays there, and the host reads one round late whether any were left. Two
+// wavefronts go side by side on a GPU, so that one fills what the last rays of the other's launch leave idle.
+//
+// Source: Laine, Karras, Aila, "Megakernels Considered Harmful: Wavefront Path Tracing on GPUs", HPG 2013, whose pool
+// of paths is refilled as they end.
 
 #include <cstdint>
-#include <optional>
+#include <vector>
 
 #include "device/buffer.h"
+#include "device/readback.h"
 #include "integrators/integrator.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_settings.h"
@@ -22,7 +30,7 @@ public:
     PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch);
 
     /// Bytes that begin() takes for so many samples of all pixels together, by the wavefront.
-    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch);
+    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, Film& film) override;
@@ -35,11 +43,17 @@ public:
 private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
-    void trace_batch(uint32_t paths, const FilmView& film);
     void trace_path(PathState path, const FilmView& film, const HostTrees& trees, RayCounts& counts) const;
     const HostTrees* trees_of_loop() const; // null where the body is the wavefront
-    PathQueueView path_queue() const;
-    ShadowQueueView shadow_queue() const;
+
+    /// Samples that render() makes.
+    struct Work {
+        uint32_t first_sample;
+        uint64_t samples; // of pixels
+        FilmView film;
+    };
+    struct Wavefront;
+    void give_round(Wavefront& wavefront, const Work& work);
 
     Queue& queue_;
     PathSettings settings_;
@@ -49,20 +63,33 @@ private:
     RayCounts rays_;
     SceneTracer* tracer_ = nullptr;
 
-    // The wavefront's queues, one element a path in flight.
-    struct Queues {
-        Queues(Queue& queue, uint32_t capacity);
+    // The queues of one wavefront, one element a path in flight.
+    struct Wavefront {
+        Wavefront(Queue& queue, uint32_t capacity);
+        /// Of a round: rounds read and write two sets of arrays in turns.
+        PathQueueView paths(uint32_t of_round) const;
+        ShadowQueueView shadows() const;
+
+        struct Paths {
+            Paths(Queue& queue, uint32_t capacity);
+            Buffer<Ray> rays;
+            Buffer<Float4> throughput, radiance;
+        };
         uint32_t capacity;
-        Buffer<Ray> path_rays, shadow_rays;
-        Buffer<Uint4> path_ends, shadow_ends;
+        Paths sets[2];
+        Buffer<Ray> shadow_rays;
+        Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
         Buffer<uint32_t> path_keys, shadow_keys;
-        Buffer<Float4> throughput, radiance, contribution, hit_places;
-        Buffer<Uint2> samples;
+        Buffer<Float4> contribution, hit_places;
         Buffer<uint32_t> hit_instances; // of path rays, then of shadow rays
-        Buffer<uint32_t> active[2];
-        Buffer<uint32_t> counts; // next paths, shadow rays
+        Buffer<RoundCounts> counts;
+        Readback<RoundCounts> seen; // of the round given last, at its start
+        uint32_t round = 0;
+        RoundCounts known = {}; // of the round before the last one given
+        bool is_done = false;
     };
-    std::optional<Queues> queues_;
+    std::vector<Wavefront> wavefronts_;
+    Buffer<RenderCounts> render_counts_;
 };
 
 } // namespace pertev

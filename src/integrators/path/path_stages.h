@@ -10,19 +10,43 @@
 
 namespace pertev {
 
+/// One thread decides what a round does: as many new paths as there is room for, until `samples` have begun.
+struct PlanRound {
+    RoundCounts* round;   // the one before, then the new one
+    RenderCounts* render; // shared by several that go round at once
+    uint32_t capacity, pixels, first_sample;
+    uint64_t samples;
+
+    HD void operator()(uint32_t) const {
+        const uint32_t going_on = round->next;
+        const uint32_t room = (capacity - going_on) / 32 * 32; // whole warps: their camera rays stay together
+        const uint64_t first = atomic_add(&render->begun, uint64_t(room));
+        const uint64_t left = first < samples ? samples - first : 0;
+        const uint32_t fresh = left < room ? static_cast<uint32_t>(left) : room;
+        atomic_add(&render->bounces, uint64_t(going_on));
+        atomic_add(&render->shadows, uint64_t(round->shadows));
+        *round = {};
+        round->going_on = going_on;
+        round->fresh = fresh;
+        round->active = going_on + fresh;
+        round->first_pixel = static_cast<uint32_t>(first % pixels);
+        round->first_sample = first_sample + static_cast<uint32_t>(first / pixels);
+        round->all_begun = left <= room ? 1 : 0;
+    }
+};
+
 struct GeneratePaths {
     CameraRays camera;
     PathSettings settings;
-    uint32_t first_pixel, pixels; // of the batch, in tiled order
-    uint32_t first_sample;
+    const RoundCounts* round;
+    uint32_t pixels, last; // `last`: place of the first one
     bool any_alpha;
     PathQueueView paths;
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = tiled_pixel(first_pixel + i % pixels, camera.width, camera.height);
-        const PathState path = generate_path(camera, settings, pixel, first_sample + i / pixels);
-        paths.store(i, path, settings.seed, any_alpha);
-        paths.samples[i] = {path.pixel, path.sample};
+        const uint32_t sample = round->first_sample + (round->first_pixel + i) / pixels;
+        const uint32_t pixel = tiled_pixel((round->first_pixel + i) % pixels, camera.width, camera.height);
+        paths.store(last - i, generate_path(camera, settings, pixel, sample), settings.seed, any_alpha);
     }
 };
 
@@ -30,29 +54,29 @@ struct ShadeHits {
     PictureView picture;
     PathSettings settings;
     FilmView film;
-    PathQueueView paths;
-    const uint32_t* active;
+    PathQueueView paths, next;
     HitQueueView hits;
-    SlotListView next;
     ShadowQueueView shadows;
-    uint32_t* shadow_count;
+    RoundCounts* round;
+    uint32_t last; // place of the first fresh path, and of the first one that ends
 
     HD void operator()(uint32_t i) const {
-        const uint32_t slot = active != nullptr ? active[i] : i;
-        PathState path = paths.load(slot);
-        const Hit hit = hits.load(i);
+        const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
+        PathState path = paths.load(place);
+        const Hit hit = hits.load(place);
         const uint32_t key = path_key(path, settings.seed, true);
         const TriangleId here = {hit.instance, hit.primitive};
         ShadowRay shadow;
         bool wants_shadow = false;
-        const bool goes_on = shade_hit(picture, settings, film, path, hit, shadow, wants_shadow);
-        if (goes_on) {
-            paths.store(slot, path, settings.seed, picture.scene.any_alpha != 0);
-            next.push(slot);
+        uint32_t to = 0;
+        if (shade_hit(picture, settings, film, path, hit, shadow, wants_shadow)) {
+            to = atomic_add(&round->next, 1u);
+            next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
         } else {
-            paths.radiance[slot] = {path.radiance.r, path.radiance.g, path.radiance.b, 0};
+            to = last - atomic_add(&round->ended, 1u);
+            next.store_ended(to, path);
         }
-        if (wants_shadow) shadows.store(atomic_add(shadow_count, 1u), shadow, slot, here, key);
+        if (wants_shadow) shadows.store(atomic_add(&round->shadows, 1u), shadow, to, here, key);
     }
 };
 
@@ -60,20 +84,24 @@ struct ShadeHits {
 struct AddLight {
     ShadowQueueView shadows;
     const uint32_t* occluded; // of a tracer: kNoHit where the ray met nothing
-    PathQueueView paths;
+    PathQueueView next;
 
     HD void operator()(uint32_t i) const {
         if (occluded[i] != kNoHit) return;
         const Float4 c = shadows.contribution[i];
-        paths.add_radiance(bits_of(c.w), {c.x, c.y, c.z});
+        next.add_radiance(bits_of(c.w), {c.x, c.y, c.z});
     }
 };
 
+/// Paths that have ended.
 struct AddToFilm {
     FilmView film;
-    PathQueueView paths;
+    PathQueueView next;
+    uint32_t last; // place of the first one
 
-    HD void operator()(uint32_t slot) const { add_radiance(film, paths.samples[slot].x, paths.load_radiance(slot)); }
+    HD void operator()(uint32_t i) const {
+        add_radiance(film, next.load_pixel(last - i), next.load_radiance(last - i));
+    }
 };
 
 } // namespace pertev

@@ -2,5 +2,5 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, uint32_t, const ShadeHits&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits&);
 } // namespace pertev

@@ -62,12 +62,12 @@ void SceneTracer::timed(double& seconds, const Trace& trace) {
     seconds += watch.seconds();
 }
 
-void SceneTracer::find_hits(RayKind kind, const RayQueueView& rays, uint32_t count, const HitQueueView& hits) {
+void SceneTracer::find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits) {
     timed(kind == RayKind::Camera ? seconds_.camera : seconds_.bounce,
           [&] { tracer(kind).find_hits(query_of(kind, rays), count, hits); });
 }
 
-void SceneTracer::find_occlusions(const RayQueueView& rays, uint32_t count, const HitQueueView& hits) {
+void SceneTracer::find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits) {
     timed(seconds_.shadow,
           [&] { tracer(RayKind::Shadow).find_occlusions(query_of(RayKind::Shadow, rays), count, hits); });
 }

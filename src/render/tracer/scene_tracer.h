@@ -26,9 +26,9 @@ public:
     void set_surfaces(const SceneView& scene);
 
     /// What rays [0, count) meet first. Queued: the work may still be under way. Throws Error(DeviceFault).
-    void find_hits(RayKind kind, const RayQueueView& rays, uint32_t count, const HitQueueView& hits);
+    void find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
     /// Whether shadow rays meet anything.
-    void find_occlusions(const RayQueueView& rays, uint32_t count, const HitQueueView& hits);
+    void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
 
     /// What a loop over rays on the host may walk by itself, by render/find_hit.h. Null unless rays of all kinds are
     /// traced so.
@@ -45,6 +45,7 @@ public:
         is_timed_ = is_timed;
         seconds_ = {};
     }
+    bool times_kinds() const { return is_timed_; }
     const Seconds& seconds() const { return seconds_; }
 
 private:

@@ -7,12 +7,12 @@ namespace pertev {
 Tracer::Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const StructureOnDevice> structure)
     : queue_(queue), combination_(combination), structure_(std::move(structure)),
       closest_(find_kernel(combination, false, queue.is_cuda())), any_(find_kernel(combination, true, queue.is_cuda())),
-      pool_(queue, 1, "ray pool") {
+      pool_(queue, Queue::kMaxStreams, "ray pool") {
     PERTEV_CHECK(closest_ != nullptr && any_ != nullptr);
 }
 
-void Tracer::trace(const WalkKernel& kernel, const TraceQuery& query, uint32_t count, const HitQueueView& hits) const {
-    if (count > 0) kernel.trace(queue_, structure_->trees(), batch(query, count), hits);
+void Tracer::trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits) const {
+    if (count.most > 0) kernel.trace(queue_, structure_->trees(), batch(query, count), hits);
 }
 
 bool Tracer::count_work(bool any_hit, const TraceQuery& query, uint32_t count, RayWork* work) const {

@@ -25,12 +25,13 @@ public:
     Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const BuiltStructure> structure)
         : Tracer(queue, combination, std::make_shared<const StructureOnDevice>(queue, std::move(structure))) {}
 
-    /// What rays [0, count) meet first. Queued: the work may still be under way. Throws Error(DeviceFault).
-    void find_hits(const TraceQuery& query, uint32_t count, const HitQueueView& hits) const {
+    /// What rays [0, count) meet first. Queued: the work may still be under way. At most kMaxPoolCount of them. Throws
+    /// Error(DeviceFault).
+    void find_hits(const TraceQuery& query, WorkCount count, const HitQueueView& hits) const {
         trace(*closest_, query, count, hits);
     }
     /// Whether they meet anything.
-    void find_occlusions(const TraceQuery& query, uint32_t count, const HitQueueView& hits) const {
+    void find_occlusions(const TraceQuery& query, WorkCount count, const HitQueueView& hits) const {
         trace(*any_, query, count, hits);
     }
 
@@ -47,8 +48,10 @@ public:
     const StructureOnDevice& structure() const { return *structure_; }
 
 private:
-    void trace(const WalkKernel& kernel, const TraceQuery& query, uint32_t count, const HitQueueView& hits) const;
-    RayBatch batch(const TraceQuery& query, uint32_t count) const { return {query, count, pool_.data()}; }
+    void trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits) const;
+    RayBatch batch(const TraceQuery& query, WorkCount count) const {
+        return {query, count, pool_.data() + queue_.stream_index()};
+    }
     const WalkKernel& kernel(bool any_hit) const { return any_hit ? *any_ : *closest_; }
 
     Queue& queue_;
@@ -56,7 +59,7 @@ private:
     std::shared_ptr<const StructureOnDevice> structure_;
     const WalkKernel* closest_;
     const WalkKernel* any_;
-    Buffer<uint32_t> pool_;
+    Buffer<uint32_t> pool_; // one for each stream
 };
 
 } // namespace pertev

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/queue.h"
+#include "device/work_count.h"
 #include "render/accept_queued.h"
 #include "render/tracer/built_structure.h"
 #include "render/tracer/combination.h"
@@ -21,7 +22,7 @@ namespace pertev {
 /// One launch's arguments: device pointers. `pool` is one counter, used where rays come from a pool.
 struct RayBatch {
     TraceQuery query;
-    uint32_t count = 0;
+    WorkCount count = 0;
     uint32_t* pool = nullptr;
 };
 

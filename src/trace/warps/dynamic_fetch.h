@@ -23,6 +23,7 @@
 #include "base/host_device.h"
 #include "base/parallel_for.h"
 #include "device/queue.h"
+#include "device/work_count.h"
 #include "trace/scene_place.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
@@ -59,9 +60,10 @@ struct RaySearch<true, Accept> {
 
 template <class Walk, bool kAny, class Scene, class Rays, class Counter>
 __global__ void __launch_bounds__(kWalkThreads)
-    run_dynamic_fetch(Scene scene, Rays rays, uint32_t count, uint32_t* pool, Counter counter) {
+    run_dynamic_fetch(Scene scene, Rays rays, WorkCount work, uint32_t* pool, Counter counter) {
     constexpr LaneMask kWarp = 0xffffffffu;
     constexpr uint32_t kNoRay = 0xffffffffu;
+    const uint32_t count = work.value();
     uint32_t index = kNoRay;
     typename Walk::Place::Slot slots[Walk::Place::kSlots];
     ScenePlace<Walk, Scene> place(slots); // done, as it is whenever there is no ray
@@ -108,15 +110,16 @@ __global__ void __launch_bounds__(kWalkThreads)
 /// kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. On the CPU this is one ray after
 /// the other.
 template <class Walk, bool kAny, class Scene, class Rays, class Counter = NoWalkCounter>
-void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, const Rays& rays, uint32_t count,
+void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, const Rays& rays, WorkCount count,
                           uint32_t* pool, const Counter& counter = {}) {
-    PERTEV_CHECK(count <= kMaxPoolCount);
-    if (count == 0) return;
+    PERTEV_CHECK(count.most <= kMaxPoolCount);
+    if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
         static LimitsByDevice limits;
-        const uint32_t blocks = blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count);
+        const uint32_t blocks =
+            blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count.most);
         queue.zero(pool, sizeof *pool);
         run_dynamic_fetch<Walk, kAny>
             <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);
@@ -124,7 +127,7 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, co
     }
 #endif
     static_cast<void>(pool);
-    parallel_for(count, 256, [&](uint64_t k) {
+    parallel_for(count.value(), 256, [&](uint64_t k) {
         const uint32_t i = static_cast<uint32_t>(k);
         const auto accept = rays.accept(i);
         const Ray ray = rays.load(i);

@@ -13,6 +13,7 @@
 #include "base/host_device.h"
 #include "base/parallel_for.h"
 #include "device/queue.h"
+#include "device/work_count.h"
 #include "trace/warps/kernel_limits.h"
 
 namespace pertev {
@@ -27,7 +28,8 @@ __device__ inline uint32_t fetch_from_pool(uint32_t* pool, uint32_t wanted) {
 }
 
 template <class Stage>
-__global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage, uint32_t count, uint32_t* pool) {
+__global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage, WorkCount work, uint32_t* pool) {
+    const uint32_t count = work.value();
     for (;;) {
         const uint32_t first = fetch_from_pool(pool, 32);
         if (first >= count) return;
@@ -42,14 +44,14 @@ __global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage
 /// Runs stage(i) for each i in [0, count), count <= kMaxPoolCount. `pool` is one number in the queue's memory; it is
 /// set to 0 first. On the CPU, where threads are few, this is launch().
 template <class Stage>
-void launch_persistent(Queue& queue, const char* name, uint32_t count, const Stage& stage, uint32_t* pool) {
-    PERTEV_CHECK(count <= kMaxPoolCount);
-    if (count == 0) return;
+void launch_persistent(Queue& queue, const char* name, WorkCount count, const Stage& stage, uint32_t* pool) {
+    PERTEV_CHECK(count.most <= kMaxPoolCount);
+    if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
         static LimitsByDevice limits;
-        const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count);
+        const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count.most);
         queue.zero(pool, sizeof *pool);
         run_stage_persistent<<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count,
                                                                                                      pool);
@@ -57,7 +59,7 @@ void launch_persistent(Queue& queue, const char* name, uint32_t count, const Sta
     }
 #endif
     static_cast<void>(pool);
-    parallel_for(count, 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    parallel_for(count.value(), 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
 } // namespace pertev

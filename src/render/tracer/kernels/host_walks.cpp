@@ -20,21 +20,21 @@ void trace_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, const HitQ
     using Walk = Wide8SimdWalk<kOptions>;
     using Scene = SceneTrees<typename Walk::Tree>;
     const TraceQueue<Walk, kAny, AcceptQueued, Scene> stage = {std::get<Scene>(trees), batch.query, hits};
-    parallel_for(batch.count, kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    parallel_for(batch.count.value(), kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
 template <WalkOptions kOptions, bool kAny>
 void count_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
     using Walk = Wide8SimdWalk<kOptions>;
     const CountQueue<Walk, kAny> stage = {std::get<SceneTrees<typename Walk::Tree>>(trees), batch.query, work};
-    parallel_for(batch.count, kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    parallel_for(batch.count.value(), kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
 /// Eight rays in a row, fewer at the end; what each meets.
 template <WalkOptions kOptions, bool kAny, class Counter>
 std::array<Hit, kPacketRays> trace_packet(const SceneBvhView& scene, const RayBatch& batch, uint64_t first,
                                           const Counter& counter) {
-    const uint64_t count = std::min<uint64_t>(kPacketRays, batch.count - first);
+    const uint64_t count = std::min<uint64_t>(kPacketRays, batch.count.value() - first);
     const unsigned active = (1u << count) - 1;
     RayPacket rays{};
     for (uint64_t k = 0; k < count; ++k) rays[k] = batch.query.rays.load(static_cast<uint32_t>(first + k));
@@ -54,7 +54,7 @@ std::array<Hit, kPacketRays> trace_packet(const SceneBvhView& scene, const RayBa
 /// Calls trace(the first ray's number) for each packet.
 template <class Trace>
 void for_each_packet(const RayBatch& batch, const Trace& trace) {
-    const uint64_t packets = (uint64_t(batch.count) + kPacketRays - 1) / kPacketRays;
+    const uint64_t packets = (uint64_t(batch.count.value()) + kPacketRays - 1) / kPacketRays;
     parallel_for(packets, kGrain / kPacketRays, [&](uint64_t packet) { trace(packet * kPacketRays); });
 }
 
@@ -63,7 +63,7 @@ void trace_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, const H
     const auto& scene = std::get<SceneBvhView>(trees);
     for_each_packet(batch, [&](uint64_t first) {
         const auto found = trace_packet<kOptions, kAny>(scene, batch, first, NoWalkCounter{});
-        const uint64_t count = std::min<uint64_t>(kPacketRays, batch.count - first);
+        const uint64_t count = std::min<uint64_t>(kPacketRays, batch.count.value() - first);
         for (uint64_t k = 0; k < count; ++k) store_hit<kAny>(hits, static_cast<uint32_t>(first + k), found[k]);
     });
 }
@@ -89,7 +89,7 @@ void count_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork
     for_each_packet(batch, [&](uint64_t first) {
         std::array<RayWork, kPacketRays> counts{};
         trace_packet<kOptions, kAny>(scene, batch, first, PacketWorkCounter{counts.data()});
-        std::copy_n(counts.begin(), std::min<uint64_t>(kPacketRays, batch.count - first), work + first);
+        std::copy_n(counts.begin(), std::min<uint64_t>(kPacketRays, batch.count.value() - first), work + first);
     });
 }
 
