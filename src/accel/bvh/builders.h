@@ -13,18 +13,20 @@
 namespace pertev {
 
 enum class BvhBuilder {
-    Binned,        // top down, surface area heuristic at the edges of bins: build_bvh.h
-    Sweep,         // top down, surface area heuristic at every place
-    Median,        // top down, middle of the longest side
-    EqualCounts,   // top down, half of the triangles to each side
-    SpatialSplits, // top down, triangles may be cut too: a tree may hold one more than once
-    Ploc,          // bottom up, clusters along a Morton curve
-    Insertion,     // one triangle after the other, each where it adds least
-    Reinsertion,   // Binned, then subtrees are moved to where they add least
+    Binned,             // top down, surface area heuristic at the edges of bins: build_bvh.h
+    Sweep,              // top down, surface area heuristic at every place
+    Median,             // top down, middle of the longest side
+    EqualCounts,        // top down, half of the triangles to each side
+    SpatialSplits,      // top down, triangles may be cut too: a tree may hold one more than once
+    Ploc,               // bottom up, clusters along a Morton curve
+    Insertion,          // one triangle after the other, each where it adds least
+    Reinsertion,        // Binned, then subtrees are moved to where they add least
+    SpatialReinsertion, // SpatialSplits, then the same
 };
-inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned,      BvhBuilder::Sweep,         BvhBuilder::Median,
-                                              BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
-                                              BvhBuilder::Insertion,   BvhBuilder::Reinsertion};
+inline constexpr BvhBuilder kBvhBuilders[] = {
+    BvhBuilder::Binned,      BvhBuilder::Sweep,         BvhBuilder::Median,
+    BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
+    BvhBuilder::Insertion,   BvhBuilder::Reinsertion,   BvhBuilder::SpatialReinsertion};
 
 /// As on the command line: "binned", "equal-counts".
 const char* bvh_builder_name(BvhBuilder builder);
@@ -58,5 +60,7 @@ struct ReinsertionSettings {
 /// Any sound tree, made better by moving subtrees; its cost does not rise, unless leaves held more than
 /// settings.max_leaf or its depth has to be limited. A triangle that it holds more than once stays in as many boxes.
 Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings = {}, const ReinsertionSettings& reinsertion = {});
+
+Bvh build_spatial_reinsertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
 } // namespace pertev
