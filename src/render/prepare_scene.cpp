@@ -62,7 +62,9 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     const std::vector<BvhBuilder> builders = builders_for(options);
     for (std::size_t part = 0; part < triangles.parts(); ++part) {
         const std::vector<BvhTriangle>& list = triangles.part(part);
-        prepared.trees.add(load_or_build_bvh(list, builders, options.bvh, options.bvh_cache, messages), list.size());
+        BvhBuilder taken = builders.front();
+        Bvh bvh = load_or_build_bvh(list, builders, options.bvh, options.bvh_cache, messages, &taken);
+        prepared.trees.add(taken, std::move(bvh), list.size());
     }
     prepared.top_level = build_top_level_bvh(placed_trees(scene, placement, prepared.trees.mesh_bounds()));
     prepared.triangles = triangles.count();

@@ -23,7 +23,8 @@ struct SceneUpdate {
 ///   moved instances     take a new top level; none of the meshes' trees. One that is baked (MeshPlacement) counts as a
 ///                       deformed mesh of the tree over all baked ones: whoever moves often should be able to move
 ///                       (scene/animation.h), so that it is not
-///   deformed meshes     have theirs refitted (update_binary_trees), and its other layouts made anew of it
+///   deformed meshes     have theirs refitted, or at first replaced by one that can be (update_binary_trees), and its
+///                       other layouts made anew of it; kd-trees and octrees, whose planes do not move along, are built
 ///   replaced meshes     have theirs built anew
 /// Where other instances would have to be baked than before, all is prepared anew. Throws as prepare_scene.
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,

@@ -20,7 +20,7 @@ inline Tracer make_tracer(Queue& queue, const PreparedScene& prepared, const Com
 
 inline Tracer make_tracer(Queue& queue, const Bvh& bvh, const Combination& combination = kBinaryTracer) {
     BinaryTrees trees;
-    trees.add(bvh, bvh.triangles.size());
+    trees.add(BvhBuilder::Binned, bvh, bvh.triangles.size());
     const auto built =
         std::make_shared<const BuiltStructure>(TopLevelBvh{}, combination.structure, layout_of(combination), trees);
     return {queue, combination, built};

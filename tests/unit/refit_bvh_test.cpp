@@ -112,7 +112,15 @@ TEST_CASE("an update shares trees that stay, refits those that are deformed, and
             }
             return a.nodes.size() == b.nodes.size();
         };
-        if (!cuts_triangles(builder)) CHECK(same_links(*updated.parts[1], *built.parts[1]));
+        if (cuts_triangles(builder)) {
+            CHECK(updated.builders[1] == kRefittedBuilder);
+            const BinaryTrees again = update_binary_trees(updated, builder, changes, after);
+            CHECK(same_links(*again.parts[1], *updated.parts[1])); // refitted from now on
+        } else {
+            CHECK(same_links(*updated.parts[1], *built.parts[1]));
+            CHECK(updated.builders[1] == builder);
+        }
+        CHECK(updated.builders[3] == builder);
         CHECK(updated.parts[2]->sah_cost <= kMaxRefitCost * updated.built_cost[2]);
         CHECK(updated.parts[3]->sah_cost == build_bvh(builder, after.meshes[2]).sah_cost);
         CHECK(updated.triangle_count() == 3 * torus.size() + after.meshes[2].size());

@@ -69,8 +69,8 @@ std::size_t size_of(Chunks chunks) {
 /// Cuts sets in two, large ones on all threads.
 class Cutter {
 public:
-    Cutter(const std::vector<BvhTriangle>& triangles, uint32_t max_leaf, float min_overlap)
-        : triangles_(triangles), max_leaf_(max_leaf), min_overlap_(min_overlap) {}
+    Cutter(const std::vector<BvhTriangle>& triangles, uint32_t max_leaf, float min_overlap, float min_own_overlap)
+        : triangles_(triangles), max_leaf_(max_leaf), min_overlap_(min_overlap), min_own_overlap_(min_own_overlap) {}
 
     /// Fills halves[i], which are empty, from chunk i; both sides get some. At most `allowance` references more than
     /// there were.
@@ -82,8 +82,9 @@ public:
         ObjectCut cut;
         bin(chunks, map, cut);
         cut.uncut = half_area(extent.box) * static_cast<float>(count);
+        const float enough = max(min_overlap_, min_own_overlap_ * half_area(extent.box));
         if (allowance > 0 && count > max_leaf_ &&
-            (cut.axis < 0 || intersection(cut.left, cut.right).half_area() > min_overlap_)) {
+            (cut.axis < 0 || intersection(cut.left, cut.right).half_area() > enough)) {
             const SpatialCut spatial = find_spatial_cut(chunks, triangles_, to_bounds(extent.box), allowance);
             if (spatial.cost < min(cut.cost, cut.uncut)) {
                 for_each_chunk(chunks.size(), [&](uint64_t i) { cut_triangles(chunks[i], spatial, halves[i]); });
@@ -179,7 +180,7 @@ private:
 
     const std::vector<BvhTriangle>& triangles_;
     std::size_t max_leaf_;
-    float min_overlap_;
+    float min_overlap_, min_own_overlap_; // half areas: this, and this part of the set's own
 };
 
 /// How a parent shares out what it leaves of its allowance. By count, small triangles would get what large ones can
@@ -256,8 +257,7 @@ struct Part {
 
 class SpatialSplitBuilder {
 public:
-    SpatialSplitBuilder(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings, float min_overlap)
-        : cutter_(triangles, static_cast<uint32_t>(settings.max_leaf), min_overlap) {}
+    explicit SpatialSplitBuilder(const Cutter& cutter) : cutter_(cutter) {}
 
     BinaryTree build(const References& all, uint64_t allowance) {
         std::vector<References> chunks((all.size() - 1) / kChunk + 1);
@@ -342,7 +342,7 @@ private:
         tree_.nodes[node] = make_inner(tree_, left, right);
     }
 
-    const Cutter cutter_;
+    const Cutter& cutter_;
     BinaryTree tree_;
 };
 
@@ -357,7 +357,9 @@ BinaryTree build_spatial_split_tree(const std::vector<BvhTriangle>& triangles, c
     check_reference_count(all.size() + allowance);
     Bounds3 box;
     for (const BuildReference& r : all) box.extend(box_of(r));
-    return SpatialSplitBuilder(triangles, settings, splits.min_overlap * box.half_area()).build(all, allowance);
+    const Cutter cutter(triangles, static_cast<uint32_t>(settings.max_leaf), splits.min_overlap * box.half_area(),
+                        splits.min_own_overlap);
+    return SpatialSplitBuilder(cutter).build(all, allowance);
 }
 
 Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings,

@@ -47,7 +47,8 @@ Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuil
 struct SpatialSplitSettings {
     float min_overlap = 1e-5f; // triangles are cut where the halves of the best cut between triangles share more than
                                // this part of the root's area
-    float max_growth = 1.0f;   // >= 0; at most (1 + this) references a triangle
+    float min_own_overlap = 0.2f; // and more than this part of their parent's: less is seldom worth a look
+    float max_growth = 1.0f;      // >= 0; at most (1 + this) references a triangle
 };
 Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {},
                             const SpatialSplitSettings& splits = {});

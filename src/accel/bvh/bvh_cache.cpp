@@ -250,13 +250,18 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
 }
 
 Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const BvhBuilder> builders,
-                      const BvhBuildSettings& settings, const std::optional<fs::path>& folder, Messages& messages) {
+                      const BvhBuildSettings& settings, const std::optional<fs::path>& folder, Messages& messages,
+                      BvhBuilder* taken) {
     const BvhBuilder builder = builders.front();
+    if (taken != nullptr) *taken = builder;
     if (!folder || triangles.size() < kMinCachedTriangles) return build_bvh(builder, triangles, settings);
     const Hash128 hash = hash_of(triangles);
     for (const BvhBuilder stored : std::views::reverse(builders)) {
         const Hash128 key = key_of(hash, settings, stored);
-        if (std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, messages)) return std::move(*bvh);
+        std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, messages);
+        if (!bvh) continue;
+        if (taken != nullptr) *taken = stored;
+        return std::move(*bvh);
     }
     BuiltTree tree = build_by_position(builder, triangles, settings);
     store_cached_bvh(key_of(hash, settings, builder), *folder, tree, triangles.size(), messages);

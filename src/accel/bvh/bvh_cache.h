@@ -36,10 +36,11 @@ void store_cached_bvh(const Hash128& key, const std::filesystem::path& folder, c
 
 /// From the cache, or built by builders.front() and stored. The trees of the others will do as well, and the last that
 /// the cache holds is taken: they are better, and would only take longer to build. Without a folder, and for fewer than
-/// kMinCachedTriangles, which build faster than a file is read, built.
+/// kMinCachedTriangles, which build faster than a file is read, built. `taken`
+/// is set to whose tree it is.
 inline constexpr std::size_t kMinCachedTriangles = 1 << 14;
 Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const BvhBuilder> builders,
                       const BvhBuildSettings& settings, const std::optional<std::filesystem::path>& folder,
-                      Messages& messages);
+                      Messages& messages, BvhBuilder* taken = nullptr);
 
 } // namespace pertev

@@ -21,7 +21,8 @@ BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder build
     BinaryTrees trees;
     const Stopwatch watch;
     for (std::size_t part = 0; part < triangles.parts(); ++part) {
-        trees.add(build_bvh(builder, triangles.part(part)), triangles.part(part).size());
+        const std::vector<BvhTriangle>& list = triangles.part(part);
+        trees.add(builder, build_bvh(builder, list), list.size());
     }
     trees.build_s = watch.seconds();
     return trees;
@@ -33,14 +34,17 @@ BinaryTrees update_binary_trees(const BinaryTrees& before, BvhBuilder builder, c
     const Stopwatch watch;
     for (std::size_t part = 0; part < changes.size(); ++part) {
         if (changes[part] == PartChange::None) continue;
-        if (changes[part] == PartChange::Deformed && !why_no_refit(builder)) {
+        BvhBuilder& own = trees.builders[part];
+        if (changes[part] == PartChange::Replaced) {
+            own = builder;
+        } else if (why_no_refit(own)) {
+            own = kRefittedBuilder;
+        } else {
             auto refitted = std::make_shared<const Bvh>(refit_bvh(*before.parts[part], triangles.part(part)));
-            if (refitted->sah_cost <= kMaxRefitCost * before.built_cost[part]) {
-                trees.parts[part] = std::move(refitted);
-                continue;
-            }
+            trees.parts[part] = std::move(refitted);
+            if (trees.parts[part]->sah_cost <= kMaxRefitCost * before.built_cost[part]) continue;
         }
-        trees.parts[part] = std::make_shared<const Bvh>(build_bvh(builder, triangles.part(part)));
+        trees.parts[part] = std::make_shared<const Bvh>(build_bvh(own, triangles.part(part)));
         trees.built_cost[part] = trees.parts[part]->sah_cost;
         trees.triangles[part] = triangles.part(part).size();
     }

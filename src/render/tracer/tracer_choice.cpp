@@ -45,7 +45,7 @@ StructureKind structure_of(TreeBuild build) {
     case TreeBuild::Fast:
         return StructureKind::Binned;
     case TreeBuild::Balanced:
-        return StructureKind::Reinsertion;
+        return StructureKind::SpatialSplits;
     case TreeBuild::Best:
         break;
     }

@@ -22,12 +22,12 @@ struct TracerChoice {
 TracerChoice same_for_all(const Combination& combination);
 /// How long the tree of pictures may take to build, for what it then gives (docs/performance.md).
 enum class TreeBuild : uint8_t {
-    Fast,     // for scenes whose triangles are others in every frame
-    Balanced, // can be refitted when a mesh is deformed: for viewers
-    Best,     // for still pictures
+    Fast,     // soonest there, and refitted when meshes are deformed: for what is another in every frame
+    Balanced, // what the first picture already pays for
+    Best,     // what many pictures pay for
 };
 inline constexpr TreeBuild kTreeBuilds[] = {TreeBuild::Fast, TreeBuild::Balanced, TreeBuild::Best}; // each better
-inline constexpr TreeBuild kDefaultBuild = TreeBuild::Best;
+inline constexpr TreeBuild kDefaultBuild = TreeBuild::Balanced;
 
 /// As on the command line: "fast".
 const char* name_of(TreeBuild build);
