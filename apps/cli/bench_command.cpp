@@ -43,6 +43,13 @@ struct BenchFlags {
     ReportFlags report;
 };
 
+/// The binary trees that pictures with these settings need; what they are turned into is made by the session.
+PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue) {
+    PrepareOptions options;
+    options.builder = builder_of(settings.tracers.value_or(default_tracers(queue.is_cuda())));
+    return options;
+}
+
 /// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
 void render_anew(Session& session, uint32_t samples) {
     throw_if_interrupted();
@@ -105,7 +112,7 @@ int bench_job(const BenchFlags& flags) {
     const Scene scene = make_job_scene(flags.scenes.front(), messages);
     const double load_s = watch.seconds();
     throw_if_interrupted();
-    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const PreparedScene prepared = prepare_scene(scene, trees_for(settings, *queue), messages);
     reporter.say_messages();
     const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
 
@@ -153,7 +160,7 @@ std::size_t tree_bytes(const PreparedScene& prepared) {
         return bvh.nodes.size() * sizeof(BvhNode) + bvh.triangles.size() * sizeof(BvhTriangle);
     };
     std::size_t sum = prepared.top_level.nodes.size() * sizeof(BvhNode);
-    for (const Bvh& bvh : *prepared.trees.parts) sum += bytes(bvh);
+    for (const auto& bvh : prepared.trees.parts) sum += bytes(*bvh);
     return sum;
 }
 
@@ -182,14 +189,15 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     add_default_light(scene, messages);
 
     const ScratchCache cache;
-    PrepareOptions options;
+    PrepareOptions options = trees_for(settings, queue);
+    const PrepareOptions uncached = options;
     options.bvh_cache = cache.path();
     throw_if_interrupted();
     const PreparedScene prepared = prepare_scene(scene, options, messages); // also fills the cache
     throw_if_interrupted();
     const PreparedScene cached = prepare_scene(scene, options, messages);
     figures.cached_s = cached.build_seconds;
-    figures.build_s = prepare_scene(scene, {}, messages).build_seconds;
+    figures.build_s = prepare_scene(scene, uncached, messages).build_seconds;
     figures.triangles = prepared.triangles;
     figures.tree_bytes_per_triangle =
         static_cast<double>(tree_bytes(prepared)) / static_cast<double>(std::max<uint64_t>(prepared.triangles, 1));

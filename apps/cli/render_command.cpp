@@ -111,6 +111,7 @@ int render(RenderFlags flags) {
     const double load_s = watch.seconds();
     PrepareOptions prepare;
     prepare.tracers = tracers.value_or(default_tracers(queue->is_cuda()));
+    prepare.may_be_better = may_be_better(flags.tracer);
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);

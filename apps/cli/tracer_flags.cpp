@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/flag_checks.h"
 #include "base/error.h"
 
 namespace pertev {
@@ -69,10 +70,19 @@ void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group) {
     const auto add = [&](const char* flag, std::vector<std::string>& values, const char* what, const char* type) {
         verb.add_option(flag, values, what)->type_name(type)->allow_extra_args(false)->group(group);
     };
+    std::vector<std::string> builds;
+    for (const TreeBuild build : kTreeBuilds) builds.emplace_back(name_of(build));
+    verb.add_option(
+            "--build", flags.build,
+            fmt::format("how much time the tree that rays go through is worth ({}):\nfast is built soonest, best "
+                        "is gone through soonest; none changes\nthe picture",
+                        name_of(kDefaultBuild)))
+        ->type_name("WHICH")
+        ->check(one_of(builds))
+        ->group(group);
     add("--structure", flags.structures,
-        "how the scene is sorted for rays, as pertev lab names it; of\none kind of ray: camera=, bounce= or "
-        "shadow=NAME; "
-        "may be given\nagain. Neither this nor what follows changes the picture",
+        "how the scene is sorted for rays, as pertev lab names it, in place\nof what --build says; of one kind of ray: "
+        "camera=, bounce= or\nshadow=NAME; may be given again. Neither this nor what follows\nchanges the picture",
         "[KIND=]NAME");
     add("--walk", flags.walks, "how rays go through it, as pertev lab names it", "[KIND=]NAME");
     add("--rta", flags.rta, "redundant traversal avoidance: on, nodes or off", "[KIND=]WHICH");
@@ -82,11 +92,11 @@ void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group) {
 }
 
 std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda) {
-    if (flags.structures.empty() && flags.walks.empty() && flags.rta.empty() && flags.order.empty() &&
-        flags.distributions.empty()) {
+    if (flags.build.empty() && flags.structures.empty() && flags.walks.empty() && flags.rta.empty() &&
+        flags.order.empty() && flags.distributions.empty()) {
         return std::nullopt;
     }
-    TracerChoice choice = default_tracers(on_cuda);
+    TracerChoice choice = default_tracers(on_cuda, tree_build_named(flags.build).value_or(kDefaultBuild));
     std::set<const Combination*> structure_named, walk_named;
     apply("--structure", flags.structures, choice, list_of(all_structures()),
           [&](Combination& c, const std::string& name) {

@@ -1,6 +1,8 @@
 #pragma once
 
-// How pictures find what rays meet, as flags: --structure, --walk and their switches. None changes the picture.
+// How pictures find what rays meet, as flags: --build, --structure, --walk and their switches. None changes the
+// picture. --build says which tree stands behind all rays; --structure names one for some or all of them exactly, and
+// goes before it.
 
 #include <optional>
 #include <string>
@@ -16,10 +18,14 @@ namespace pertev {
 
 /// Each is "NAME" for all rays, or "KIND=NAME" for camera, bounce or shadow rays; the last that names a ray counts.
 struct TracerFlags {
+    std::string build; // empty: kDefaultBuild
     std::vector<std::string> structures, walks, rta, order, distributions;
 };
 
 void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group);
+
+/// Whether a better tree than --build asks for will do: where no --structure names one.
+inline bool may_be_better(const TracerFlags& flags) { return flags.structures.empty(); }
 
 /// What the flags ask for, the device's default where they say nothing; nothing at all where none is given. Throws
 /// Error(BadInput) where pictures cannot be traced so.

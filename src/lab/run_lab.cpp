@@ -35,9 +35,7 @@ constexpr Combination kProven = {.structure = StructureKind::Binned, .walk = Wal
 
 /// Over the instances that keep a tree of their own, in the file's coordinates, as the sets of rays are.
 TopLevelBvh top_level_over(const Scene& scene, const BinaryTrees& trees) {
-    std::vector<Bounds3> bounds;
-    for (std::size_t part = 1; part < trees.parts->size(); ++part) bounds.push_back((*trees.parts)[part].bounds);
-    return build_top_level_bvh(placed_trees(scene, place_meshes(scene), bounds));
+    return build_top_level_bvh(placed_trees(scene, place_meshes(scene), trees.mesh_bounds()));
 }
 
 uint64_t host_memory_bytes() {

@@ -94,11 +94,16 @@ KindMoments look_from(const SurfacePoint& point, uint32_t i, float offset, const
 }
 
 SceneBvhView view_on_host(const PreparedScene& prepared, std::vector<BvhView>& meshes) {
-    const std::vector<Bvh>& parts = *prepared.trees.parts;
-    for (std::size_t part = 1; part < parts.size(); ++part) meshes.push_back(view_of(parts[part]));
+    const auto& parts = prepared.trees.parts;
+    for (std::size_t part = 1; part < parts.size(); ++part) meshes.push_back(view_of(*parts[part]));
     const TopLevelBvh& top = prepared.top_level;
-    return {
-        view_of(parts.front()), top.nodes.data(), top.instances.data(), meshes.data(), top.root, top.reach, top.growth};
+    return {view_of(*parts.front()),
+            top.nodes.data(),
+            top.instances.data(),
+            meshes.data(),
+            top.root,
+            top.reach,
+            top.growth};
 }
 
 } // namespace

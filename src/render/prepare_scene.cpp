@@ -28,6 +28,19 @@ void warn_of_indices(const Scene& scene, Messages& messages) {
     }
 }
 
+/// The one that is asked for, then those that will do as well.
+std::vector<BvhBuilder> builders_for(const PrepareOptions& options) {
+    const TracerChoice choice = options.tracers.value_or(default_tracers(false));
+    std::vector<BvhBuilder> builders = {options.builder.value_or(builder_of(choice))};
+    bool is_better = false; // than the one asked for
+    for (const TreeBuild build : kTreeBuilds) {
+        const BvhBuilder builder = *builder_of(structure_of(build));
+        if (is_better && options.may_be_better) builders.push_back(builder);
+        is_better = is_better || builder == builders.front();
+    }
+    return builders;
+}
+
 } // namespace
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages) {
@@ -35,7 +48,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     PreparedScene prepared;
     prepared.scene = &scene;
     warn_of_indices(scene, messages);
-    if (!options.keep_coordinates) prepared.centre = world_centre(scene);
+    if (!options.keep_coordinates) prepared.centre = options.centre.value_or(world_centre(scene));
     const MeshPlacement placement = place_meshes(scene, prepared.centre);
     prepared.is_baked = placement.is_baked;
     if (placement.copied_triangles > kManyCopiedTriangles) {
@@ -46,17 +59,17 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     }
 
     const SceneTriangles triangles(scene, placement);
-    const auto trees = std::make_shared<std::vector<Bvh>>();
+    const std::vector<BvhBuilder> builders = builders_for(options);
     for (std::size_t part = 0; part < triangles.parts(); ++part) {
-        trees->push_back(load_or_build_bvh(triangles.part(part), options.bvh, options.bvh_cache, messages));
+        const std::vector<BvhTriangle>& list = triangles.part(part);
+        BvhBuilder taken = builders.front();
+        Bvh bvh = load_or_build_bvh(list, builders, options.bvh, options.bvh_cache, messages, &taken);
+        prepared.trees.add(taken, std::move(bvh), list.size());
     }
-    std::vector<Bounds3> bounds;
-    for (std::size_t part = 1; part < trees->size(); ++part) bounds.push_back((*trees)[part].bounds);
-    prepared.top_level = build_top_level_bvh(placed_trees(scene, placement, bounds));
+    prepared.top_level = build_top_level_bvh(placed_trees(scene, placement, prepared.trees.mesh_bounds()));
     prepared.triangles = triangles.count();
-    prepared.trees.parts = trees;
     prepared.trees.build_s = watch.seconds();
-    prepared.structures = std::make_shared<SceneStructures>(prepared.trees, prepared.top_level);
+    prepared.structures = std::make_shared<SceneStructures>(builders.front(), prepared.trees, prepared.top_level);
     if (options.tracers) {
         for (const RayKind kind : kRayKinds) prepared.structures->get((*options.tracers)[kind]);
     }

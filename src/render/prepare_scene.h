@@ -20,15 +20,19 @@ namespace pertev {
 struct PrepareOptions {
     BvhBuildSettings bvh;
     std::optional<std::filesystem::path> bvh_cache; // folder of the on-disk cache; none = always build
-    std::optional<TracerChoice> tracers; // whose structures are built at once; none = when they are first asked for
-    bool keep_coordinates = false;       // the world is the file's: for rays that are given in its coordinates
+    std::optional<TracerChoice> tracers; // whose structures are built at once; none = the default's trees alone
+    std::optional<BvhBuilder> builder;   // of the trees; none = that of `tracers`, else of default ones
+    /// Where the cache holds a tree of a better TreeBuild than this one, take that.
+    bool may_be_better = false;
+    bool keep_coordinates = false; // the world is the file's: for rays that are given in its coordinates
+    std::optional<Vec3> centre;    // of the moved world, in place of the scene's own (world_centre)
 };
 
 struct PreparedScene {
     const Scene* scene = nullptr;                // outlives this
     Vec3 centre;                                 // origin of the moved world, in the file's coordinates, metres
     std::vector<bool> is_baked;                  // of each instance
-    BinaryTrees trees;                           // moved world and local spaces
+    BinaryTrees trees;                           // moved world and local spaces, by structures->builder()
     TopLevelBvh top_level;                       // over the instances that are not baked
     std::shared_ptr<SceneStructures> structures; // of `trees` and of others, built when they are asked for
     LightSetData lights;                         // moved world

@@ -19,10 +19,10 @@ FLAGS = {
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time "
               "--integrator --max-depth --seed --sampler --filter --filter-radius --clamp --device --threads "
-              "--no-bvh-cache --structure --walk --rta --order --distribution",
+              "--no-bvh-cache --build --structure --walk --rta --order --distribution",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
-    "bench": "--scene --size --spp --device --threads --structure --walk --rta --order --distribution --quiet -q --json",
+    "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
     "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --quiet -q --json",
 }
 

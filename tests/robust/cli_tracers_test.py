@@ -16,7 +16,9 @@ class HowRaysAreTraced(CliTest):
         for line in ["--structure sbvh --walk restart-trail --rta off", "--walk brute-force", "--structure kd-sah",
                      "--walk octree", "--structure ploc --walk compressed --rta nodes",
                      "--walk while-while --order off", "--walk shadow=kd --structure bounce=insertion",
-                     "--walk camera=packet --walk bounce=short-stack --walk shadow=skip-links"]:
+                     "--walk camera=packet --walk bounce=short-stack --walk shadow=skip-links", "--build fast",
+                     "--build balanced", "--build best", "--build best --structure ploc",
+                     "--build fast --structure shadow=sbvh-reinsertion"]:
             with self.subTest(line=line):
                 self.assertEqual(self.hash_of(*line.split()), wanted)
 

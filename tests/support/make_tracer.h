@@ -19,7 +19,8 @@ inline Tracer make_tracer(Queue& queue, const PreparedScene& prepared, const Com
 }
 
 inline Tracer make_tracer(Queue& queue, const Bvh& bvh, const Combination& combination = kBinaryTracer) {
-    const BinaryTrees trees = {std::make_shared<const std::vector<Bvh>>(1, bvh)};
+    BinaryTrees trees;
+    trees.add(BvhBuilder::Binned, bvh, bvh.triangles.size());
     const auto built =
         std::make_shared<const BuiltStructure>(TopLevelBvh{}, combination.structure, layout_of(combination), trees);
     return {queue, combination, built};

@@ -328,6 +328,8 @@ void check_costs(const std::vector<BvhTriangle>& triangles) {
     CHECK(of(BvhBuilder::Ploc) <= 1.2f * binned);
     CHECK(of(BvhBuilder::Insertion) <= 1.3f * binned);
     CHECK(of(BvhBuilder::Reinsertion) < binned);
+    CHECK(of(BvhBuilder::SpatialReinsertion) < 1.001f * of(BvhBuilder::Reinsertion));
+    CHECK(of(BvhBuilder::SpatialReinsertion) < of(BvhBuilder::SpatialSplits));
 }
 
 } // namespace

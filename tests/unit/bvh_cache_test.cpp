@@ -32,6 +32,8 @@ void write_bytes(const fs::path& path, std::span<const std::byte> bytes) {
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
+constexpr BvhBuilder kBinnedAlone[] = {BvhBuilder::Binned};
+
 struct Stored {
     std::vector<BvhTriangle> triangles = triangles_of(make_torus(20, 10));
     fs::path folder = scratch_folder() / "made" / "by the store";
@@ -41,7 +43,7 @@ struct Stored {
 
     Stored() {
         Messages messages;
-        store_cached_bvh(key, folder, tree, messages);
+        store_cached_bvh(key, folder, tree, triangles.size(), messages);
         REQUIRE(messages.all().empty());
     }
 };
@@ -164,27 +166,63 @@ TEST_CASE("what cannot be a cached tree costs a warning, never the render") {
 
     SUBCASE("a folder in the file's place") {
         fs::create_directories(file);
-        CHECK(same_bytes(load_or_build_bvh(triangles, {}, folder, messages).nodes, built.nodes));
+        CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder, messages).nodes, built.nodes));
         CHECK(messages.all().size() == 2); // not read, not written
     }
     SUBCASE("a file in the folder's place") {
         write_bytes(folder / "taken", {});
-        CHECK(same_bytes(load_or_build_bvh(triangles, {}, folder / "taken", messages).nodes, built.nodes));
+        CHECK(
+            same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder / "taken", messages).nodes, built.nodes));
         CHECK(messages.all().size() >= 1);
     }
     SUBCASE("a damaged file is replaced by a good one") {
         write_bytes(file,
                     std::as_bytes(std::span("not a tree at all, but long enough to hold a header and then some of "
                                             "what could be nodes")));
-        CHECK(same_bytes(load_or_build_bvh(triangles, {}, folder, messages).nodes, built.nodes));
+        CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder, messages).nodes, built.nodes));
         CHECK(messages.all().size() == 1);
         CHECK(load_cached_bvh(bvh_cache_key(triangles, {}), folder, triangles, messages));
         CHECK(messages.all().size() == 1);
     }
     SUBCASE("no folder at all") {
-        CHECK(same_bytes(load_or_build_bvh(triangles, {}, std::nullopt, messages).nodes, built.nodes));
+        CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, std::nullopt, messages).nodes, built.nodes));
         CHECK(messages.all().empty());
     }
+}
+
+TEST_CASE("a stored tree of any builder is read as it was built, triangles that are cut more than once included") {
+    const std::vector<BvhTriangle> triangles = triangles_of(make_torus(128, 80));
+    for (const BvhBuilder builder : {BvhBuilder::Binned, BvhBuilder::SpatialSplits, BvhBuilder::SpatialReinsertion}) {
+        const fs::path folder = scratch_folder();
+        const BvhBuilder builders[] = {builder};
+        const Bvh built = build_bvh(builder, triangles);
+        Messages messages;
+        for (int run = 0; run < 2; ++run) { // built, then read
+            const Bvh bvh = load_or_build_bvh(triangles, builders, {}, folder, messages);
+            CHECK(same_bytes(bvh.nodes, built.nodes));
+            CHECK(same_bytes(bvh.triangles, built.triangles));
+            CHECK(bvh.sah_cost == built.sah_cost);
+            CHECK(fs::exists(folder / (bvh_cache_key(triangles, {}, builder).hex() + ".bvh")));
+        }
+        CHECK(messages.all().empty());
+    }
+}
+
+TEST_CASE("a stored better tree is taken where it will do, and not where one tree alone is asked for") {
+    const std::vector<BvhTriangle> triangles = triangles_of(make_torus(128, 80));
+    const BvhBuilder best[] = {BvhBuilder::SpatialReinsertion};
+    const BvhBuilder any[] = {BvhBuilder::Binned, BvhBuilder::Reinsertion, BvhBuilder::SpatialReinsertion};
+    const Bvh binned = build_bvh(triangles), better = build_bvh(best[0], triangles);
+    REQUIRE(!same_bytes(binned.nodes, better.nodes));
+    const fs::path folder = scratch_folder();
+    Messages messages;
+    load_or_build_bvh(triangles, best, {}, folder, messages);
+    CHECK(same_bytes(load_or_build_bvh(triangles, any, {}, folder, messages).nodes, better.nodes));
+    CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder, messages).nodes, binned.nodes));
+    BvhBuilder taken = BvhBuilder::Binned;
+    CHECK(same_bytes(load_or_build_bvh(triangles, any, {}, folder, messages, &taken).nodes, better.nodes));
+    CHECK(taken == best[0]); // though the other is there too
+    CHECK(messages.all().empty());
 }
 
 TEST_CASE("the cache forgets what was used longest ago when it grows too large") {
@@ -196,7 +234,8 @@ TEST_CASE("the cache forgets what was used longest ago when it grows too large")
         const Hash128 key = bvh_cache_key(triangles, {});
         files.push_back(folder / (key.hex() + ".bvh"));
         const BuiltTree tree = build_triangle_tree(triangles, {});
-        store_cached_bvh(key, folder, tree, messages, k < 3 ? 1 << 30 : fs::file_size(files[0]) * 5 / 2);
+        store_cached_bvh(key, folder, tree, triangles.size(), messages,
+                         k < 3 ? 1 << 30 : fs::file_size(files[0]) * 5 / 2);
         fs::last_write_time(files.back(), fs::file_time_type::clock::now() - std::chrono::hours(k == 1 ? 1 : 9 - k));
         if (k == 2) { // what processes that were killed an hour and a moment ago have left
             for (const char* name : {".00.bvh.aB3dE6", ".00.bvh.xYz123"}) std::ofstream(folder / name) << "half a tree";

@@ -5,24 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "accel/bvh/visit_upwards.h"
 #include "base/error.h"
 #include "base/limits.h"
 
 namespace pertev {
 namespace {
-
-/// Every node that can be reached, each before its children.
-std::vector<uint32_t> nodes_downwards(const BinaryTree& tree, uint32_t root) {
-    std::vector<uint32_t> order, pending = {root};
-    while (!pending.empty()) {
-        const uint32_t at = pending.back();
-        pending.pop_back();
-        order.push_back(at);
-        const BinaryNode& node = tree.nodes[at];
-        if (!node.is_leaf()) pending.insert(pending.end(), {node.child[1], node.child[0]});
-    }
-    return order;
-}
 
 /// Links `leaves` by equal cuts along the longest side, taking inner nodes from `free` as they come.
 class EqualCuts {
@@ -82,105 +70,124 @@ void collect_references(const BinaryTree& tree, uint32_t root, std::vector<uint3
 }
 
 struct NodeSummary {
-    float cost = 0;    // times the root's area
-    uint32_t size = 0; // references beneath; of a leaf, triangles
-    bool leaf = false; // whether it becomes one
+    float cost = 0;     // times the root's area
+    uint32_t size = 0;  // triangles that leaves beneath hold
+    uint32_t inner = 0; // nodes beneath, with itself, that do not become leaves: 0 where it becomes one
+    int depth = 0;      // of those, on the longest way down
+
+    bool is_leaf() const { return inner == 0; }
 };
 
 /// Decides from the bottom up which subtrees become leaves: those where that costs no more.
 std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSettings& settings) {
     const auto max_leaf = static_cast<std::size_t>(settings.max_leaf);
     std::vector<NodeSummary> summaries(tree.nodes.size());
-    std::vector<uint32_t> held;
-    const std::vector<uint32_t> order = nodes_downwards(tree, tree.root);
-    for (const uint32_t at : std::views::reverse(order)) {
+    visit_upwards(tree, [&](uint32_t at) {
+        thread_local std::vector<uint32_t> held;
         const BinaryNode& node = tree.nodes[at];
         NodeSummary& summary = summaries[at];
         const float area = node.box.half_area();
-        if (node.is_leaf()) {
-            summary = {settings.leaf_cost * static_cast<float>(node.leaf_size()) * area, node.leaf_size(), true};
-            continue;
+        if (!node.is_leaf()) {
+            const NodeSummary &left = summaries[node.child[0]], &right = summaries[node.child[1]];
+            summary = {settings.node_cost * area + left.cost + right.cost, left.size + right.size,
+                       left.inner + right.inner + 1, 1 + std::max(left.depth, right.depth)};
+            // A triangle twice is common in trees by spatial splits, not thrice.
+            if (summary.size > 2 * max_leaf) return;
         }
-        const NodeSummary &left = summaries[node.child[0]], &right = summaries[node.child[1]];
-        summary = {settings.node_cost * area + left.cost + right.cost, left.size + right.size, false};
-        if (summary.size > 2 * max_leaf) continue; // a triangle twice is common in trees by spatial splits, not thrice
         collect_references(tree, at, held);
         const float cost = settings.leaf_cost * static_cast<float>(held.size()) * area;
-        if (held.size() > max_leaf || cost > summary.cost) continue;
-        summary = {cost, static_cast<uint32_t>(held.size()), true};
-    }
+        if (!node.is_leaf() && (held.size() > max_leaf || cost > summary.cost)) return;
+        summary = {cost, static_cast<uint32_t>(held.size()), 0, 0};
+    });
     return summaries;
 }
 
-/// Copies nodes and triangles to depth-first order, each node before its first child.
+/// Copies nodes and triangles to depth-first order, each node before its first child. How many there are beneath each
+/// says where everything comes to lie, so subtrees are copied at once.
 class Flattener {
 public:
     Flattener(const BinaryTree& tree, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings)
-        : tree_(tree), triangles_(triangles), settings_(settings), summaries_(choose_leaves(tree, settings)) {}
+        : tree_(tree), triangles_(triangles), summaries_(choose_leaves(tree, settings)) {}
 
     Bvh run() {
         const BinaryNode& root = tree_.nodes[tree_.root];
+        const NodeSummary& summary = summaries_[tree_.root];
         bvh_.bounds = root.box;
-        root_area_ = static_cast<double>(max(root.box.half_area(), 0x1p-126f));
-        bvh_.triangles.reserve(summaries_[tree_.root].size);
-        struct Pending {
-            uint32_t node, parent;
-            int k, depth;
-        };
-        std::vector<Pending> pending = {{tree_.root, kNoLink, 0, 0}};
-        while (!pending.empty()) {
-            const Pending at = pending.back();
-            pending.pop_back();
-            const bool leaf = summaries_[at.node].leaf;
-            const uint32_t link = leaf ? add_leaf(at.node) : static_cast<uint32_t>(bvh_.nodes.size());
-            if (at.parent == kNoLink) {
-                bvh_.root = link;
-            } else {
-                bvh_.nodes[at.parent].child[at.k] = link;
-            }
-            if (leaf) continue;
-            const BinaryNode& node = tree_.nodes[at.node];
-            // Child 0 is the one where a ray finds something sooner: more surface a triangle, as in build_tree.
-            const int first = surface_by_size(node, 0, 1) >= surface_by_size(node, 1, 0) ? 0 : 1;
-            const uint32_t children[2] = {node.child[first], node.child[1 - first]};
-            BvhNode& out = bvh_.nodes.emplace_back();
-            for (int k = 0; k < 2; ++k) set_child(out, k, tree_.nodes[children[k]].box, kNoLink);
-            for (int k = 1; k >= 0; --k) pending.push_back({children[k], link, k, at.depth + 1});
-            bvh_.depth = std::max(bvh_.depth, at.depth + 1);
-            cost_ += static_cast<double>(settings_.node_cost) * probability(node);
+        bvh_.nodes.resize(summary.inner);
+        bvh_.triangles.resize(summary.size);
+        bvh_.root = link_of({tree_.root, 0, 0});
+        bvh_.depth = summary.depth;
+        bvh_.sah_cost = summary.cost / max(root.box.half_area(), 0x1p-126f);
+        // Breadth first until there is enough to share out.
+        constexpr std::size_t kSubtrees = 2048;
+        std::vector<Place> level = {{tree_.root, 0, 0}};
+        while (!level.empty() && level.size() < kSubtrees) {
+            std::vector<Place> next;
+            for (const Place& at : level) copy(at, next);
+            level = std::move(next);
         }
-        bvh_.sah_cost = static_cast<float>(cost_);
+        parallel_for(level.size(), 1, [&](uint64_t i) {
+            std::vector<Place> pending = {level[i]};
+            while (!pending.empty()) {
+                const Place at = pending.back();
+                pending.pop_back();
+                copy(at, pending);
+            }
+        });
         return std::move(bvh_);
     }
 
 private:
+    struct Place {
+        uint32_t from, node, triangle; // where its first node and its first triangle go
+    };
+
+    uint32_t link_of(const Place& at) const { return summaries_[at.from].is_leaf() ? kLeafBit | at.triangle : at.node; }
+
     float surface_by_size(const BinaryNode& node, int k, int other) const {
         return tree_.nodes[node.child[k]].box.half_area() * static_cast<float>(summaries_[node.child[other]].size);
     }
 
-    double probability(const BinaryNode& node) const { return static_cast<double>(node.box.half_area()) / root_area_; }
-
-    uint32_t add_leaf(uint32_t index) {
-        const auto first = static_cast<uint32_t>(bvh_.triangles.size());
-        collect_references(tree_, index, held_);
-        for (const uint32_t reference : held_) {
-            BvhTriangle& t = bvh_.triangles.emplace_back(triangles_[reference]);
-            t.flags &= ~kLastInLeaf;
+    /// Copies a leaf, or an inner node, whose children are then put into `pending`.
+    void copy(const Place& at, std::vector<Place>& pending) {
+        if (summaries_[at.from].is_leaf()) return copy_leaf(at);
+        const BinaryNode& node = tree_.nodes[at.from];
+        // Child 0 is the one where a ray finds something sooner: more surface a triangle, as in build_tree.
+        const int first = surface_by_size(node, 0, 1) >= surface_by_size(node, 1, 0) ? 0 : 1;
+        const NodeSummary& of_first = summaries_[node.child[first]];
+        const Place places[2] = {{node.child[first], at.node + 1, at.triangle},
+                                 {node.child[1 - first], at.node + 1 + of_first.inner, at.triangle + of_first.size}};
+        for (int k = 0; k < 2; ++k) {
+            set_child(bvh_.nodes[at.node], k, tree_.nodes[places[k].from].box, link_of(places[k]));
+            pending.push_back(places[k]);
         }
-        bvh_.triangles.back().flags |= kLastInLeaf;
-        cost_ += static_cast<double>(settings_.leaf_cost) * static_cast<double>(held_.size()) *
-                 probability(tree_.nodes[index]);
-        return kLeafBit | first;
+    }
+
+    void copy_leaf(const Place& at) {
+        thread_local std::vector<uint32_t> held;
+        collect_references(tree_, at.from, held);
+        for (std::size_t i = 0; i < held.size(); ++i) {
+            BvhTriangle t = triangles_[held[i]];
+            t.flags = i + 1 == held.size() ? t.flags | kLastInLeaf : t.flags & ~kLastInLeaf;
+            bvh_.triangles[at.triangle + i] = t;
+        }
     }
 
     const BinaryTree& tree_;
     const std::vector<BvhTriangle>& triangles_;
-    const BvhBuildSettings& settings_;
     const std::vector<NodeSummary> summaries_;
-    std::vector<uint32_t> held_;
-    double root_area_ = 1, cost_ = 0;
     Bvh bvh_;
 };
+
+/// Inner nodes on the longest way down.
+int depth_of(const BinaryTree& tree) {
+    std::vector<int> depth(tree.nodes.size());
+    visit_upwards(tree, [&](uint32_t at) {
+        const BinaryNode& node = tree.nodes[at];
+        depth[at] = node.is_leaf() ? 0 : 1 + std::max(depth[node.child[0]], depth[node.child[1]]);
+    });
+    return depth[tree.root];
+}
 
 } // namespace
 
@@ -191,7 +198,7 @@ void check_reference_count(uint64_t count) {
 }
 
 void limit_depth(BinaryTree& tree, int max_depth) {
-    if (tree.root == kNoLink) return;
+    if (tree.root == kNoLink || depth_of(tree) <= max_depth) return;
     std::vector<uint32_t> height(tree.nodes.size()), leaves(tree.nodes.size());
     const std::vector<uint32_t> order = nodes_downwards(tree, tree.root);
     for (const uint32_t at : std::views::reverse(order)) {

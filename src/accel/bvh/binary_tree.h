@@ -4,8 +4,8 @@
 // chosen by cost, nodes depth first.
 //
 // Source of the choice of leaves: Meister, Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
-// Construction", TVCG 2018 (subtrees collapse where a leaf costs less). All of it is serial and a function
-// of the tree's shape: in which order the nodes lie does not matter.
+// Construction", TVCG 2018 (subtrees collapse where a leaf costs less). All of it is a function of the
+// tree's shape: in which order the nodes lie does not matter, nor on how many threads it runs.
 
 #include <bit>
 #include <cstdint>

@@ -26,12 +26,12 @@ BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const B
 
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles) {
     Bvh bvh{.nodes = std::move(tree.nodes),
-            .triangles = std::vector<BvhTriangle>(triangles.size()),
+            .triangles = std::vector<BvhTriangle>(tree.order.size()),
             .root = tree.root,
             .bounds = tree.bounds,
             .depth = tree.depth,
             .sah_cost = tree.sah_cost};
-    parallel_for(triangles.size(), kGrain, [&](uint64_t i) {
+    parallel_for(tree.order.size(), kGrain, [&](uint64_t i) {
         BvhTriangle t = triangles[tree.order[i]];
         t.flags = tree.is_last[i] ? t.flags | kLastInLeaf : t.flags & ~kLastInLeaf;
         bvh.triangles[i] = t;

@@ -15,7 +15,7 @@ Bvh build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings&
 
 /// The two halves of build_bvh, which the cache steps between.
 BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings);
-/// tree.order is a permutation of the triangles' positions.
+/// tree.order has each of the triangles' positions, that of one that is cut more than once.
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles);
 
 /// The box of each triangle, ids by position. No coordinate is -0.

@@ -1,130 +1,24 @@
 #include "accel/bvh/build_tree.h"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <bit>
 
 #include <fmt/format.h>
 
+#include "accel/bvh/binned_cut.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 
 namespace pertev {
 namespace {
 
-constexpr int kMaxBins = 64;
 constexpr uint32_t kParallelNode = 1u << 16;    // boxes from which one node's own work is shared among threads
 constexpr uint32_t kParallelSubtree = 1u << 12; // boxes from which the two halves are built at once
 constexpr uint32_t kChunk = 1u << 15;           // fixed, so that no sum depends on the number of threads
 
-struct Box { // x, y, z; the fourth lane is 0 or ignored
-    __m128 lo = _mm_set1_ps(kInfinity), hi = _mm_set1_ps(-kInfinity);
-
-    void extend(const Box& b) {
-        lo = _mm_min_ps(lo, b.lo);
-        hi = _mm_max_ps(hi, b.hi);
-    }
-    void extend_point(__m128 p) {
-        lo = _mm_min_ps(lo, p);
-        hi = _mm_max_ps(hi, p);
-    }
-};
-
-float half_area(const Box& b) {
-    const __m128 d = _mm_sub_ps(b.hi, b.lo);
-    const __m128 p = _mm_mul_ps(d, _mm_shuffle_ps(d, d, _MM_SHUFFLE(3, 0, 2, 1))); // xy, yz, zx
-    return _mm_cvtss_f32(p) + _mm_cvtss_f32(_mm_shuffle_ps(p, p, 1)) + _mm_cvtss_f32(_mm_shuffle_ps(p, p, 2));
-}
-
-Bounds3 to_bounds(const Box& b) {
-    alignas(16) float lo[4], hi[4];
-    _mm_store_ps(lo, b.lo);
-    _mm_store_ps(hi, b.hi);
-    return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
-}
-
-Box box_of(const BuildReference& r) {
-    const __m128 xyz = _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)); // the id, read as a float, would be denormal
-    return {_mm_and_ps(xyz, _mm_load_ps(&r.lo.x)), _mm_load_ps(&r.hi.x)};
-}
-__m128 centre_of(const Box& b) { return _mm_add_ps(b.lo, b.hi); } // twice the centre: nothing here needs the half
-
-struct Bins {
-    Box box[3][kMaxBins];
-    uint32_t count[3][kMaxBins];
-
-    explicit Bins(int bins) {
-        for (int axis = 0; axis < 3; ++axis) {
-            std::fill_n(box[axis], bins, Box{});
-            std::fill_n(count[axis], bins, 0u);
-        }
-    }
-};
-
-/// Which bin a box falls into, along all axes at once. Axes along which the centres do not differ give bin 0.
-struct BinMap {
-    __m128 first, scale;
-    __m128i last;
-
-    BinMap(const Box& centres, int bins) : first(centres.lo), last(_mm_set1_epi32(bins - 1)) {
-        const __m128 extent = _mm_sub_ps(centres.hi, centres.lo);
-        const __m128 s = _mm_div_ps(_mm_set1_ps(static_cast<float>(bins) * 0.9999f), extent);
-        // An extent of 0 or so small that the quotient overflows cannot be cut.
-        const __m128 usable =
-            _mm_and_ps(_mm_cmpgt_ps(extent, _mm_setzero_ps()), _mm_cmplt_ps(s, _mm_set1_ps(0x1p126f)));
-        scale = _mm_and_ps(s, usable);
-    }
-    __m128i operator()(const Box& b) const {
-        const __m128i k = _mm_cvttps_epi32(_mm_mul_ps(_mm_sub_ps(centre_of(b), first), scale));
-        return _mm_max_epi32(_mm_min_epi32(k, last), _mm_setzero_si128());
-    }
-};
-
-int lane(__m128i v, int axis) {
-    alignas(16) int32_t k[4];
-    _mm_store_si128(reinterpret_cast<__m128i*>(k), v);
-    return k[axis];
-}
-
-struct Cut {
-    int axis = -1;          // -1: none
-    int bin = 0;            // boxes of a bin below go left
-    float cost = kInfinity; // sum of half area times count over both sides
-    Box left, right;
-};
-
-Cut find_cheapest_cut(const Bins& bins, int count) {
-    Cut best;
-    for (int axis = 0; axis < 3; ++axis) {
-        float right_cost[kMaxBins];
-        Box box;
-        uint32_t n = 0;
-        for (int k = count - 1; k > 0; --k) {
-            box.extend(bins.box[axis][k]);
-            n += bins.count[axis][k];
-            right_cost[k] = n == 0 ? kInfinity : half_area(box) * static_cast<float>(n);
-        }
-        box = Box{};
-        n = 0;
-        for (int k = 1; k < count; ++k) {
-            box.extend(bins.box[axis][k - 1]);
-            n += bins.count[axis][k - 1];
-            if (n == 0) continue;
-            const float cost = half_area(box) * static_cast<float>(n) + right_cost[k];
-            if (cost < best.cost) best = {axis, k, cost, {}, {}};
-        }
-    }
-    if (best.axis >= 0) {
-        for (int k = 0; k < best.bin; ++k) best.left.extend(bins.box[best.axis][k]);
-        for (int k = best.bin; k < count; ++k) best.right.extend(bins.box[best.axis][k]);
-    }
-    return best;
-}
-
 struct Range {
     uint32_t begin, end;
-    Box box, centres;
+    Box4 box, centres;
     uint32_t size() const { return end - begin; }
 };
 
@@ -160,12 +54,12 @@ private:
     }
 
     void measure(Range& range) const {
-        std::vector<std::pair<Box, Box>> parts((range.size() - 1) / kChunk + 1);
+        std::vector<std::pair<Box4, Box4>> parts((range.size() - 1) / kChunk + 1);
         parallel_for(parts.size(), 1, [&](uint64_t chunk) {
             auto& [box, centres] = parts[chunk];
             const uint32_t begin = range.begin + static_cast<uint32_t>(chunk) * kChunk;
             for (uint32_t i = begin; i < std::min(range.end, begin + kChunk); ++i) {
-                const Box b = box_of(references_[i]);
+                const Box4 b = simd_box_of(references_[i]);
                 box.extend(b);
                 centres.extend_point(centre_of(b));
             }
@@ -187,7 +81,7 @@ private:
             cut_by_count(range, left, right);
         } else {
             const BinMap map(range.centres, settings_.bins);
-            const Cut cut = find_cheapest_cut(fill_bins(range, map), settings_.bins);
+            const BinnedCut cut = find_cheapest_cut(bins_of(range, map), settings_.bins);
             const float area = half_area(range.box);
             const float n = static_cast<float>(range.size());
             const bool worth_it = cut.axis >= 0 && settings_.node_cost * area + settings_.leaf_cost * cut.cost <
@@ -230,48 +124,30 @@ private:
         return kLeafBit | range.begin;
     }
 
-    void fill_bins_from(uint32_t begin, uint32_t end, const BinMap& map, Bins& bins) const {
-        for (uint32_t i = begin; i < end; ++i) {
-            const Box b = box_of(references_[i]);
-            alignas(16) int32_t k[4];
-            _mm_store_si128(reinterpret_cast<__m128i*>(k), map(b));
-            for (int axis = 0; axis < 3; ++axis) {
-                bins.box[axis][k[axis]].extend(b);
-                ++bins.count[axis][k[axis]];
-            }
-        }
-    }
-
-    Bins fill_bins(const Range& range, const BinMap& map) const {
+    Bins bins_of(const Range& range, const BinMap& map) const {
         Bins bins(settings_.bins);
         if (range.size() < kParallelNode) {
-            fill_bins_from(range.begin, range.end, map, bins);
+            fill_bins(&references_[range.begin], &references_[range.begin] + range.size(), map, bins);
             return bins;
         }
         std::vector<Bins> parts((range.size() - 1) / kChunk + 1, Bins(settings_.bins));
         parallel_for(parts.size(), 1, [&](uint64_t chunk) {
             const uint32_t begin = range.begin + static_cast<uint32_t>(chunk) * kChunk;
-            fill_bins_from(begin, std::min(range.end, begin + kChunk), map, parts[chunk]);
+            const BuildReference* first = references_.data() + begin;
+            fill_bins(first, first + std::min(range.end - begin, kChunk), map, parts[chunk]);
         });
-        for (const Bins& part : parts) {
-            for (int axis = 0; axis < 3; ++axis) {
-                for (int k = 0; k < settings_.bins; ++k) {
-                    bins.box[axis][k].extend(part.box[axis][k]);
-                    bins.count[axis][k] += part.count[axis][k];
-                }
-            }
-        }
+        for (const Bins& part : parts) add_bins(part, settings_.bins, bins);
         return bins;
     }
 
-    void cut_by_bin(const Range& range, const BinMap& map, const Cut& cut, Range& left, Range& right) {
+    void cut_by_bin(const Range& range, const BinMap& map, const BinnedCut& cut, Range& left, Range& right) {
         left.box = cut.left;
         right.box = cut.right;
-        const auto goes_left = [&](const BuildReference& r) { return lane(map(box_of(r)), cut.axis) < cut.bin; };
+        const auto goes_left = [&](const BuildReference& r) { return lane(map(simd_box_of(r)), cut.axis) < cut.bin; };
         if (range.size() >= kParallelNode) return cut_in_parallel(range, goes_left, left, right);
         uint32_t i = range.begin, j = range.end;
         while (i < j) {
-            const __m128 centre = centre_of(box_of(references_[i]));
+            const __m128 centre = centre_of(simd_box_of(references_[i]));
             if (goes_left(references_[i])) {
                 left.centres.extend_point(centre);
                 ++i;
@@ -287,7 +163,7 @@ private:
     void cut_in_parallel(const Range& range, const GoesLeft& goes_left, Range& left, Range& right) {
         struct Part {
             uint32_t lefts = 0, left_at = 0, right_at = 0;
-            Box left_centres, right_centres;
+            Box4 left_centres, right_centres;
         };
         std::vector<Part> parts((range.size() - 1) / kChunk + 1);
         const auto chunk_range = [&](uint64_t chunk) {
@@ -300,7 +176,7 @@ private:
             for (uint32_t i = begin; i < end; ++i) {
                 const bool to_left = goes_left(references_[i]);
                 part.lefts += to_left ? 1u : 0u;
-                (to_left ? part.left_centres : part.right_centres).extend_point(centre_of(box_of(references_[i])));
+                (to_left ? part.left_centres : part.right_centres).extend_point(centre_of(simd_box_of(references_[i])));
             }
         });
         uint32_t at = 0;
@@ -344,7 +220,7 @@ private:
         left.end = right.begin = range.begin + range.size() / 2;
         for (Range* half : {&left, &right}) {
             for (uint32_t i = half->begin; i < half->end; ++i) {
-                const Box b = box_of(references_[i]);
+                const Box4 b = simd_box_of(references_[i]);
                 half->box.extend(b);
                 half->centres.extend_point(centre_of(b));
             }

@@ -23,11 +23,15 @@ const char* bvh_builder_name(BvhBuilder builder) {
         return "insertion";
     case BvhBuilder::Reinsertion:
         return "reinsertion";
+    case BvhBuilder::SpatialReinsertion:
+        return "sbvh-reinsertion";
     }
     PERTEV_CHECK(false);
 }
 
-bool cuts_triangles(BvhBuilder builder) { return builder == BvhBuilder::SpatialSplits; }
+bool cuts_triangles(BvhBuilder builder) {
+    return builder == BvhBuilder::SpatialSplits || builder == BvhBuilder::SpatialReinsertion;
+}
 
 Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
     switch (builder) {
@@ -47,6 +51,8 @@ Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, con
         return build_insertion_bvh(triangles, settings);
     case BvhBuilder::Reinsertion:
         return optimise_bvh(build_bvh(triangles, settings), settings);
+    case BvhBuilder::SpatialReinsertion:
+        return build_spatial_reinsertion_bvh(triangles, settings);
     }
     PERTEV_CHECK(false);
 }

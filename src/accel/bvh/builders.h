@@ -13,18 +13,20 @@
 namespace pertev {
 
 enum class BvhBuilder {
-    Binned,        // top down, surface area heuristic at the edges of bins: build_bvh.h
-    Sweep,         // top down, surface area heuristic at every place
-    Median,        // top down, middle of the longest side
-    EqualCounts,   // top down, half of the triangles to each side
-    SpatialSplits, // top down, triangles may be cut too: a tree may hold one more than once
-    Ploc,          // bottom up, clusters along a Morton curve
-    Insertion,     // one triangle after the other, each where it adds least
-    Reinsertion,   // Binned, then subtrees are moved to where they add least
+    Binned,             // top down, surface area heuristic at the edges of bins: build_bvh.h
+    Sweep,              // top down, surface area heuristic at every place
+    Median,             // top down, middle of the longest side
+    EqualCounts,        // top down, half of the triangles to each side
+    SpatialSplits,      // top down, triangles may be cut too: a tree may hold one more than once
+    Ploc,               // bottom up, clusters along a Morton curve
+    Insertion,          // one triangle after the other, each where it adds least
+    Reinsertion,        // Binned, then subtrees are moved to where they add least
+    SpatialReinsertion, // SpatialSplits, then the same
 };
-inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned,      BvhBuilder::Sweep,         BvhBuilder::Median,
-                                              BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
-                                              BvhBuilder::Insertion,   BvhBuilder::Reinsertion};
+inline constexpr BvhBuilder kBvhBuilders[] = {
+    BvhBuilder::Binned,      BvhBuilder::Sweep,         BvhBuilder::Median,
+    BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
+    BvhBuilder::Insertion,   BvhBuilder::Reinsertion,   BvhBuilder::SpatialReinsertion};
 
 /// As on the command line: "binned", "equal-counts".
 const char* bvh_builder_name(BvhBuilder builder);
@@ -45,7 +47,8 @@ Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuil
 struct SpatialSplitSettings {
     float min_overlap = 1e-5f; // triangles are cut where the halves of the best cut between triangles share more than
                                // this part of the root's area
-    float max_growth = 1.0f;   // >= 0; at most (1 + this) references a triangle
+    float min_own_overlap = 0.2f; // and more than this part of their parent's: less is seldom worth a look
+    float max_growth = 1.0f;      // >= 0; at most (1 + this) references a triangle
 };
 Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {},
                             const SpatialSplitSettings& splits = {});
@@ -58,5 +61,7 @@ struct ReinsertionSettings {
 /// Any sound tree, made better by moving subtrees; its cost does not rise, unless leaves held more than
 /// settings.max_leaf or its depth has to be limited. A triangle that it holds more than once stays in as many boxes.
 Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings = {}, const ReinsertionSettings& reinsertion = {});
+
+Bvh build_spatial_reinsertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
 } // namespace pertev

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <span>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -19,8 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kMagic[8] = {'P', 'e', 'r', 't', 'e', 'v', 'B', '2'};
-constexpr uint32_t kVersion = 1; // of the file's layout and of the builder: raised when either changes
+constexpr uint32_t kVersion = 2; // of the file's layout and of the builders: raised when one changes
 constexpr uint32_t kByteOrder = 0x01020304;
+constexpr uint64_t kMaxCopies = 8;           // of a triangle that is cut, on average
 constexpr uint32_t kEndOfLeaf = 0x80000000u; // in the order's words
 
 struct Header {
@@ -33,7 +34,7 @@ struct Header {
     uint32_t root;
     int32_t depth;
     float sah_cost;
-    uint32_t unused;
+    uint32_t order_count; // triangles in leaves: more than there are where some are cut
 };
 static_assert(sizeof(Header) == 104, "no padding: its bytes are hashed");
 
@@ -47,6 +48,25 @@ Hash128 checksum_of(Header header, std::span<const BvhNode> nodes, std::span<con
 }
 
 fs::path file_of(const Hash128& key, const fs::path& folder) { return folder / (key.hex() + ".bvh"); }
+
+Hash128 hash_of(const std::vector<BvhTriangle>& triangles) {
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(triangles)));
+    return hasher.result();
+}
+
+Hash128 key_of(const Hash128& triangles, const BvhBuildSettings& settings, BvhBuilder builder) {
+    Hasher hasher;
+    hasher.add_value(kVersion);
+    hasher.add_value(builder);
+    hasher.add_value(settings.bins);
+    hasher.add_value(settings.max_leaf);
+    hasher.add_value(settings.max_depth);
+    hasher.add_value(settings.node_cost);
+    hasher.add_value(settings.leaf_cost);
+    hasher.add_value(triangles);
+    return hasher.result();
+}
 
 struct Unusable {
     std::string why;
@@ -68,25 +88,29 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
     if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) throw Unusable{"it is not a tree of Pertev's"};
     if (header.byte_order != kByteOrder || header.version != kVersion) throw Unusable{"another version wrote it"};
     if (!(header.key == key) || header.triangle_count != triangle_count) throw Unusable{"it is of another mesh"};
-    if (header.node_count >= kMaxBvhTriangles ||
-        size != sizeof header + header.node_count * sizeof(BvhNode) + header.triangle_count * sizeof(uint32_t)) {
+    if (header.node_count >= kMaxBvhTriangles || header.order_count < header.triangle_count ||
+        header.order_count > kMaxCopies * header.triangle_count ||
+        size != sizeof header + header.node_count * sizeof(BvhNode) + header.order_count * sizeof(uint32_t)) {
         throw Unusable{"its size is not what it says"};
     }
     BuiltTree tree;
     tree.nodes.resize(header.node_count);
-    tree.order.resize(triangle_count);
+    tree.order.resize(header.order_count);
     read_values(file, std::span(tree.nodes));
     read_values(file, std::span(tree.order));
     if (!(checksum_of(header, tree.nodes, tree.order) == header.checksum)) throw Unusable{"its checksum is wrong"};
 
-    tree.is_last.resize(triangle_count);
+    tree.is_last.resize(tree.order.size());
     std::vector<bool> seen(triangle_count);
-    for (std::size_t i = 0; i < triangle_count; ++i) {
+    std::size_t missing = triangle_count;
+    for (std::size_t i = 0; i < tree.order.size(); ++i) {
         tree.is_last[i] = (tree.order[i] & kEndOfLeaf) != 0;
         tree.order[i] &= ~kEndOfLeaf;
-        if (tree.order[i] >= triangle_count || seen[tree.order[i]]) throw Unusable{"its order of triangles is broken"};
+        if (tree.order[i] >= triangle_count) throw Unusable{"its order of triangles is broken"};
+        missing -= seen[tree.order[i]] ? 0 : 1;
         seen[tree.order[i]] = true;
     }
+    if (missing > 0) throw Unusable{"its order of triangles is broken"};
     tree.root = header.root;
     tree.bounds = header.bounds;
     tree.depth = header.depth;
@@ -130,6 +154,27 @@ void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
     }
 }
 
+/// Any builder's tree as a file holds it: which triangle lies where in its leaves.
+BuiltTree build_by_position(BvhBuilder builder, const std::vector<BvhTriangle>& triangles,
+                            const BvhBuildSettings& settings) {
+    if (builder == BvhBuilder::Binned) return build_triangle_tree(triangles, settings);
+    std::vector<BvhTriangle> numbered = triangles; // the tree then says which is which
+    for (std::size_t i = 0; i < numbered.size(); ++i) numbered[i].primitive = static_cast<uint32_t>(i);
+    Bvh bvh = build_bvh(builder, numbered, settings);
+    BuiltTree tree = {.nodes = std::move(bvh.nodes),
+                      .order = std::vector<uint32_t>(bvh.triangles.size()),
+                      .is_last = std::vector<bool>(bvh.triangles.size()),
+                      .root = bvh.root,
+                      .bounds = bvh.bounds,
+                      .depth = bvh.depth,
+                      .sah_cost = bvh.sah_cost};
+    for (std::size_t i = 0; i < bvh.triangles.size(); ++i) {
+        tree.order[i] = bvh.triangles[i].primitive;
+        tree.is_last[i] = (bvh.triangles[i].flags & kLastInLeaf) != 0;
+    }
+    return tree;
+}
+
 } // namespace
 
 std::optional<fs::path> bvh_cache_folder() {
@@ -143,16 +188,8 @@ std::optional<fs::path> bvh_cache_folder() {
     return std::nullopt;
 }
 
-Hash128 bvh_cache_key(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
-    Hasher hasher;
-    hasher.add_value(kVersion);
-    hasher.add_value(settings.bins);
-    hasher.add_value(settings.max_leaf);
-    hasher.add_value(settings.max_depth);
-    hasher.add_value(settings.node_cost);
-    hasher.add_value(settings.leaf_cost);
-    hasher.add(std::as_bytes(std::span(triangles)));
-    return hasher.result();
+Hash128 bvh_cache_key(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings, BvhBuilder builder) {
+    return key_of(hash_of(triangles), settings, builder);
 }
 
 std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
@@ -174,8 +211,8 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
     return std::nullopt;
 }
 
-void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTree& tree, Messages& messages,
-                      uint64_t max_bytes) {
+void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTree& tree, std::size_t triangle_count,
+                      Messages& messages, uint64_t max_bytes) {
     std::vector<uint32_t> order(tree.order.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = tree.order[i] | (tree.is_last[i] ? kEndOfLeaf : 0u);
     Header header = {.magic = {},
@@ -184,12 +221,12 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
                      .key = key,
                      .checksum = {},
                      .node_count = tree.nodes.size(),
-                     .triangle_count = order.size(),
+                     .triangle_count = triangle_count,
                      .bounds = tree.bounds,
                      .root = tree.root,
                      .depth = tree.depth,
                      .sah_cost = tree.sah_cost,
-                     .unused = 0};
+                     .order_count = static_cast<uint32_t>(order.size())};
     std::memcpy(header.magic, kMagic, sizeof kMagic);
     header.checksum = checksum_of(header, tree.nodes, order);
 
@@ -212,13 +249,22 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
     }
 }
 
-Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings,
-                      const std::optional<fs::path>& folder, Messages& messages) {
-    if (!folder || triangles.size() < kMinCachedTriangles) return build_bvh(triangles, settings);
-    const Hash128 key = bvh_cache_key(triangles, settings);
-    if (std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, messages)) return std::move(*bvh);
-    BuiltTree tree = build_triangle_tree(triangles, settings);
-    store_cached_bvh(key, *folder, tree, messages);
+Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const BvhBuilder> builders,
+                      const BvhBuildSettings& settings, const std::optional<fs::path>& folder, Messages& messages,
+                      BvhBuilder* taken) {
+    const BvhBuilder builder = builders.front();
+    if (taken != nullptr) *taken = builder;
+    if (!folder || triangles.size() < kMinCachedTriangles) return build_bvh(builder, triangles, settings);
+    const Hash128 hash = hash_of(triangles);
+    for (const BvhBuilder stored : std::views::reverse(builders)) {
+        const Hash128 key = key_of(hash, settings, stored);
+        std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, messages);
+        if (!bvh) continue;
+        if (taken != nullptr) *taken = stored;
+        return std::move(*bvh);
+    }
+    BuiltTree tree = build_by_position(builder, triangles, settings);
+    store_cached_bvh(key_of(hash, settings, builder), *folder, tree, triangles.size(), messages);
     return make_bvh(std::move(tree), triangles);
 }
 

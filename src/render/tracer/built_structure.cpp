@@ -88,14 +88,14 @@ void BuiltStructure::list(const std::vector<T>& values) {
 }
 
 template <class Tree, class ViewOf>
-void BuiltStructure::take(const TopLevelBvh& top_level, std::shared_ptr<const std::vector<Tree>> parts,
+void BuiltStructure::take(const TopLevelBvh& top_level, const std::vector<std::shared_ptr<const Tree>>& parts,
                           const ViewOf& view_of_part) {
-    using View = decltype(view_of_part(parts->front()));
+    using View = decltype(view_of_part(*parts.front()));
     std::size_t largest = 0; // the tree whose cost and depth stand for all
     const auto meshes = std::make_shared<std::vector<View>>();
     SceneTrees<View> scene;
-    for (std::size_t part = 0; part < parts->size(); ++part) {
-        const Tree& tree = (*parts)[part];
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        const Tree& tree = *parts[part];
         const View view = view_of_part(tree);
         if constexpr (requires { view.nodes; }) {
             figures_.nodes += tree.nodes.size();
@@ -133,35 +133,42 @@ void BuiltStructure::take(const TopLevelBvh& top_level, std::shared_ptr<const st
     scene.top_growth = top->growth;
     has_instances_ = !top->instances.empty();
     trees_ = scene;
-    memory_ = {parts, meshes, top};
+    parts_.assign(parts.begin(), parts.end());
+    memory_ = {meshes, top};
 }
 
-/// Makes each part's tree, timed.
+/// Makes each part's tree, timed, but for those that are the same as before.
 template <class Make>
-void BuiltStructure::build(const TopLevelBvh& top_level, std::size_t count, const Make& make) {
+void BuiltStructure::build(const TopLevelBvh& top_level, std::size_t count, const Before* before, const Make& make) {
     using Tree = std::remove_cvref_t<decltype(make(std::size_t(0)))>;
-    const auto parts = std::make_shared<std::vector<Tree>>();
+    std::vector<std::shared_ptr<const Tree>> parts;
     const Stopwatch watch;
-    for (std::size_t part = 0; part < count; ++part) parts->push_back(make(part));
+    for (std::size_t part = 0; part < count; ++part) {
+        if (before != nullptr && before->changes[part] == PartChange::None) {
+            parts.push_back(std::static_pointer_cast<const Tree>(before->structure.parts_[part]));
+        } else {
+            parts.push_back(std::make_shared<const Tree>(make(part)));
+        }
+    }
     figures_.build_s += watch.seconds();
     take<Tree>(top_level, parts, [](const Tree& tree) { return view_of(tree); });
 }
 
 BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout,
-                               const BinaryTrees& trees) {
+                               const BinaryTrees& trees, const Before* before) {
     figures_.name = std::string(name_of(kind)) + suffix_of(layout);
     figures_.build_s = trees.build_s;
-    const std::vector<Bvh>& parts = *trees.parts;
+    const std::vector<std::shared_ptr<const Bvh>>& parts = trees.parts;
     const auto convert = [&](const auto& make) {
-        build(top_level, parts.size(), [&](std::size_t part) { return make(parts[part]); });
+        build(top_level, parts.size(), before, [&](std::size_t part) { return make(*parts[part]); });
     };
     switch (layout) {
     case TreeLayout::Triangles:
-        take<Bvh>(top_level, trees.parts, triangle_array_of);
+        take<Bvh>(top_level, parts, triangle_array_of);
         figures_.sah_cost.reset(), figures_.depth.reset(); // are the tree's, which is not walked
         break;
     case TreeLayout::Binary:
-        take<Bvh>(top_level, trees.parts, [](const Bvh& bvh) { return view_of(bvh); });
+        take<Bvh>(top_level, parts, [](const Bvh& bvh) { return view_of(bvh); });
         break;
     case TreeLayout::Linked:
         convert([](Bvh bvh) {
@@ -171,7 +178,8 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
         break;
     case TreeLayout::Skip: {
         convert([](const Bvh& bvh) { return make_skip_bvh(bvh); });
-        const Bvh& largest = *std::ranges::max_element(parts, {}, [](const Bvh& bvh) { return bvh.triangles.size(); });
+        const Bvh& largest =
+            **std::ranges::max_element(parts, {}, [](const auto& bvh) { return bvh->triangles.size(); });
         figures_.sah_cost = static_cast<double>(largest.sah_cost), figures_.depth = largest.depth; // the same tree
         break;
     }
@@ -196,13 +204,15 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
     }
 }
 
-BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles) {
+BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles,
+                               const Before* before) {
     figures_.name = name_of(kind);
     if (kind == StructureKind::Octree) {
-        build(top_level, triangles.parts(), [&](std::size_t part) { return build_octree(triangles.part(part)); });
+        build(top_level, triangles.parts(), before,
+              [&](std::size_t part) { return build_octree(triangles.part(part)); });
     } else {
         const KdTreeSettings settings = {.split = kind == StructureKind::KdSah ? KdSplit::Sah : KdSplit::SpatialMedian};
-        build(top_level, triangles.parts(),
+        build(top_level, triangles.parts(), before,
               [&](std::size_t part) { return build_kd_tree(triangles.part(part), settings); });
     }
 }

@@ -59,10 +59,19 @@ struct StructureFigures {
 /// In the host's memory.
 class BuiltStructure {
 public:
+    /// The same structure before a change of the scene, in the same layout: parts without a change are taken from it.
+    struct Before {
+        const BuiltStructure& structure;
+        std::vector<PartChange> changes;
+    };
+
     /// Of binary trees, which `kind` names. `trees` may go away afterwards. Throws Error(OverLimit), std::bad_alloc.
-    BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout, const BinaryTrees& trees);
-    /// A kd-tree or an octree. Throws the same.
-    BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles);
+    BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
+                   const Before* before = nullptr);
+    /// A kd-tree or an octree. Planes of space do not move with triangles: deformed parts are built anew. Throws the
+    /// same.
+    BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles,
+                   const Before* before = nullptr);
 
     /// As a walk on the host reads it.
     const AnyTrees& trees() const { return trees_; }
@@ -81,9 +90,10 @@ public:
 
 private:
     template <class Make>
-    void build(const TopLevelBvh& top_level, std::size_t parts, const Make& make);
+    void build(const TopLevelBvh& top_level, std::size_t parts, const Before* before, const Make& make);
     template <class Tree, class ViewOf>
-    void take(const TopLevelBvh& top_level, std::shared_ptr<const std::vector<Tree>> parts, const ViewOf& view_of_part);
+    void take(const TopLevelBvh& top_level, const std::vector<std::shared_ptr<const Tree>>& parts,
+              const ViewOf& view_of_part);
     template <class T>
     void list(const std::vector<T>& values);
     void list_bytes(std::span<const std::byte> bytes);
@@ -91,7 +101,8 @@ private:
     AnyTrees trees_;
     StructureFigures figures_;
     bool has_instances_ = false;
-    std::vector<std::shared_ptr<const void>> memory_; // what the views point to
+    std::vector<std::shared_ptr<const void>> parts_;  // the trees, of a type that the layout says
+    std::vector<std::shared_ptr<const void>> memory_; // what else the views point to
     std::vector<Array> arrays_;
     std::unordered_map<const void*, std::size_t> offsets_;
     std::size_t device_bytes_ = 0;

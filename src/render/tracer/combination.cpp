@@ -8,10 +8,11 @@
 namespace pertev {
 namespace {
 
-constexpr std::array kStructures = {StructureKind::Binned,      StructureKind::Sweep,         StructureKind::Median,
-                                    StructureKind::EqualCounts, StructureKind::SpatialSplits, StructureKind::Ploc,
-                                    StructureKind::Insertion,   StructureKind::Reinsertion,   StructureKind::KdMedian,
-                                    StructureKind::KdSah,       StructureKind::Octree};
+constexpr std::array kStructures = {
+    StructureKind::Binned,      StructureKind::Sweep,         StructureKind::Median,
+    StructureKind::EqualCounts, StructureKind::SpatialSplits, StructureKind::Ploc,
+    StructureKind::Insertion,   StructureKind::Reinsertion,   StructureKind::SpatialReinsertion,
+    StructureKind::KdMedian,    StructureKind::KdSah,         StructureKind::Octree};
 constexpr std::array kWalks = {
     WalkKind::IfIf,       WalkKind::WhileWhile,  WalkKind::Speculative, WalkKind::BruteForce, WalkKind::RestartTrail,
     WalkKind::ShortStack, WalkKind::ParentLinks, WalkKind::SkipLinks,   WalkKind::Packet,     WalkKind::Wide4,
@@ -55,6 +56,8 @@ std::optional<BvhBuilder> builder_of(StructureKind kind) {
         return BvhBuilder::Insertion;
     case StructureKind::Reinsertion:
         return BvhBuilder::Reinsertion;
+    case StructureKind::SpatialReinsertion:
+        return BvhBuilder::SpatialReinsertion;
     case StructureKind::KdMedian:
     case StructureKind::KdSah:
     case StructureKind::Octree:

@@ -15,14 +15,15 @@
 namespace pertev {
 
 enum class StructureKind {
-    Binned,        // binary trees: SAH over bins,
-    Sweep,         // SAH over every cut,
-    Median,        // halves of space,
-    EqualCounts,   // halves of the triangles,
-    SpatialSplits, // SBVH,
-    Ploc,          // bottom-up,
-    Insertion,     // one triangle after the other,
-    Reinsertion,   // binned, then improved by moving subtrees
+    Binned,             // binary trees: SAH over bins,
+    Sweep,              // SAH over every cut,
+    Median,             // halves of space,
+    EqualCounts,        // halves of the triangles,
+    SpatialSplits,      // SBVH,
+    Ploc,               // bottom-up,
+    Insertion,          // one triangle after the other,
+    Reinsertion,        // binned, then improved by moving subtrees,
+    SpatialReinsertion, // SBVH, then the same
     KdMedian,
     KdSah,
     Octree,

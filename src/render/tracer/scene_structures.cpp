@@ -7,13 +7,16 @@ namespace pertev {
 
 namespace {
 
-/// In the order of the scene, as whoever prepared it gave them to the builder.
+/// In the order of the scene, as whoever prepared it gave them to the builder; each once, though it may be cut.
 SceneTriangles triangles_of(const BinaryTrees& trees) {
     SceneTriangles triangles;
-    for (std::size_t part = 0; part < trees.parts->size(); ++part) {
-        std::vector<BvhTriangle> list = (*trees.parts)[part].triangles;
+    for (std::size_t part = 0; part < trees.parts.size(); ++part) {
+        std::vector<BvhTriangle> list = trees.parts[part]->triangles;
         for (BvhTriangle& triangle : list) triangle.flags = 0;
-        std::ranges::sort(list, {}, [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); });
+        const auto place = [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); };
+        std::ranges::sort(list, {}, place);
+        const auto copies = std::ranges::unique(list, {}, place);
+        list.erase(copies.begin(), copies.end());
         if (part == 0) {
             triangles.baked = std::move(list);
         } else {
@@ -25,15 +28,39 @@ SceneTriangles triangles_of(const BinaryTrees& trees) {
 
 } // namespace
 
-SceneStructures::SceneStructures(BinaryTrees binned, TopLevelBvh top_level) : top_level_(std::move(top_level)) {
-    for (const Bvh& bvh : *binned.parts) triangle_count_ += bvh.triangles.size();
-    binary_.emplace(BvhBuilder::Binned, std::move(binned));
+SceneStructures::SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level)
+    : builder_(builder), top_level_(std::move(top_level)) {
+    triangle_count_ = trees.triangle_count();
+    binary_.emplace(builder, std::move(trees));
+}
+
+std::shared_ptr<SceneStructures> SceneStructures::updated(BinaryTrees trees, TopLevelBvh top_level,
+                                                          const std::vector<PartChange>& changes,
+                                                          const SceneTriangles& triangles) {
+    const std::lock_guard lock(mutex_);
+    const auto after = std::make_shared<SceneStructures>(builder_, std::move(trees), std::move(top_level));
+    for (const auto& [builder, before] : binary_) {
+        if (builder == builder_) continue;
+        after->binary_.emplace(builder, update_binary_trees(before, builder, changes, triangles));
+    }
+    for (const auto& [what, structure] : built_) {
+        const auto& [kind, layout] = what;
+        const BuiltStructure::Before before = {*structure, changes};
+        auto& built = after->built_[what];
+        if (const auto builder = builder_of(kind)) {
+            built = std::make_shared<const BuiltStructure>(after->top_level_, kind, layout, after->binary_.at(*builder),
+                                                           &before);
+        } else {
+            built = std::make_shared<const BuiltStructure>(after->top_level_, kind, triangles, &before);
+        }
+    }
+    return after;
 }
 
 const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {
     const auto at = binary_.find(builder);
     if (at != binary_.end()) return at->second;
-    const SceneTriangles triangles = triangles_of(binary_.at(BvhBuilder::Binned));
+    const SceneTriangles triangles = triangles_of(binary_.at(builder_));
     return binary_.emplace(builder, build_binary_trees(triangles, builder)).first->second;
 }
 
@@ -46,7 +73,7 @@ std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& co
     if (const auto builder = builder_of(kind)) {
         built = std::make_shared<const BuiltStructure>(top_level_, kind, layout, binary_trees(*builder));
     } else {
-        const SceneTriangles triangles = triangles_of(binary_.at(BvhBuilder::Binned));
+        const SceneTriangles triangles = triangles_of(binary_.at(builder_));
         built = std::make_shared<const BuiltStructure>(top_level_, kind, triangles);
     }
     return built;

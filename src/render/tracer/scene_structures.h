@@ -16,13 +16,21 @@ namespace pertev {
 
 class SceneStructures {
 public:
-    /// `binned`: trees by the builder that pictures are made with, each triangle once; others are made from theirs.
-    SceneStructures(BinaryTrees binned, TopLevelBvh top_level);
+    /// `trees` are by `builder`; others are made from their triangles.
+    SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level);
+
+    /// The scene after a change. `trees`: those given before, updated. Whatever else has been built is brought up to
+    /// date too, parts without a change as they are. Of `triangles` only parts that change are looked at. Throws as
+    /// get.
+    std::shared_ptr<SceneStructures> updated(BinaryTrees trees, TopLevelBvh top_level,
+                                             const std::vector<PartChange>& changes, const SceneTriangles& triangles);
 
     /// For the walk of `combination`. May be called from several threads. Throws Error(OverLimit), std::bad_alloc.
     std::shared_ptr<const BuiltStructure> get(const Combination& combination);
 
-    uint64_t triangle_count() const { return triangle_count_; }
+    /// Of the trees given at first.
+    BvhBuilder builder() const { return builder_; }
+    uint64_t triangle_count() const { return triangle_count_; } // in them
 
     /// Bytes of a device's memory that the structures of a choice take; those not there yet are built.
     std::size_t device_bytes(const TracerChoice& choice);
@@ -30,8 +38,9 @@ public:
 private:
     const BinaryTrees& binary_trees(BvhBuilder builder);
 
+    BvhBuilder builder_;
     TopLevelBvh top_level_;
-    uint64_t triangle_count_ = 0; // in all trees
+    uint64_t triangle_count_ = 0;
     std::mutex mutex_;
     std::map<BvhBuilder, BinaryTrees> binary_;
     std::map<std::pair<StructureKind, TreeLayout>, std::shared_ptr<const BuiltStructure>> built_;

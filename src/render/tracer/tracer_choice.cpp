@@ -21,18 +21,57 @@ const Combination& TracerChoice::operator[](RayKind kind) const {
 
 TracerChoice same_for_all(const Combination& combination) { return {combination, combination, combination}; }
 
-TracerChoice default_tracers(bool on_cuda) {
+const char* name_of(TreeBuild build) {
+    switch (build) {
+    case TreeBuild::Fast:
+        return "fast";
+    case TreeBuild::Balanced:
+        return "balanced";
+    case TreeBuild::Best:
+        break;
+    }
+    return "best";
+}
+
+std::optional<TreeBuild> tree_build_named(const std::string& name) {
+    for (const TreeBuild build : kTreeBuilds) {
+        if (name == name_of(build)) return build;
+    }
+    return std::nullopt;
+}
+
+StructureKind structure_of(TreeBuild build) {
+    switch (build) {
+    case TreeBuild::Fast:
+        return StructureKind::Binned;
+    case TreeBuild::Balanced:
+        return StructureKind::SpatialSplits;
+    case TreeBuild::Best:
+        break;
+    }
+    return StructureKind::SpatialReinsertion;
+}
+
+TracerChoice default_tracers(bool on_cuda, TreeBuild build) {
+    const StructureKind structure = structure_of(build);
     if (on_cuda) { // rays from the camera go together, by binary nodes; scattered ones go alone, by compressed ones
-        const Combination together = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
-        const Combination alone = {.structure = StructureKind::Binned,
+        const Combination together = {.structure = structure, .walk = WalkKind::WhileWhile};
+        const Combination alone = {.structure = structure,
                                    .walk = WalkKind::Compressed,
                                    .options = {.rta_at_pops = false},
                                    .distribution = Distribution::DynamicFetch};
         return {together, alone, alone};
     }
-    TracerChoice choice = same_for_all({.structure = StructureKind::Binned, .walk = WalkKind::Wide8Simd});
+    TracerChoice choice = same_for_all({.structure = structure, .walk = WalkKind::Wide8Simd});
     choice.shadow.options.near_first = false; // of several children, the first is where any-hit searches end sooner
     return choice;
+}
+
+BvhBuilder builder_of(const TracerChoice& choice) {
+    for (const RayKind kind : {RayKind::Bounce, RayKind::Shadow, RayKind::Camera}) {
+        if (const auto builder = builder_of(choice[kind].structure)) return *builder;
+    }
+    return *builder_of(structure_of(kDefaultBuild));
 }
 
 bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {

@@ -1,0 +1,80 @@
+#include "render/update_scene.h"
+
+#include <algorithm>
+
+#include "base/stopwatch.h"
+#include "image/srgb_table.h"
+#include "render/balance_lights.h"
+#include "render/place_meshes.h"
+#include "render/scene_on_device.h"
+
+namespace pertev {
+namespace {
+
+/// Of each part of the trees.
+std::vector<PartChange> changes_of(const Scene& scene, const MeshPlacement& placement, const SceneUpdate& update) {
+    std::vector<PartChange> changes(1 + placement.mesh_tree_count, PartChange::None);
+    const auto raise = [&](std::size_t part, PartChange change) { changes[part] = std::max(changes[part], change); };
+    const auto mesh_changes = [&](const std::vector<uint32_t>& meshes, PartChange change) {
+        for (const uint32_t mesh : meshes) {
+            if (placement.tree_of_mesh[mesh] != kBakedMesh) raise(1 + placement.tree_of_mesh[mesh], change);
+            for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+                if (placement.is_baked[i] && scene.instances[i].mesh == mesh) raise(0, change);
+            }
+        }
+    };
+    mesh_changes(update.deformed_meshes, PartChange::Deformed);
+    mesh_changes(update.replaced_meshes, PartChange::Replaced);
+    for (const uint32_t instance : update.moved_instances) {
+        if (placement.is_baked[instance]) raise(0, PartChange::Deformed);
+    }
+    return changes;
+}
+
+/// Those of the parts that change; the others are left empty.
+SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placement,
+                                 const std::vector<PartChange>& changes) {
+    SceneTriangles triangles;
+    triangles.meshes.resize(placement.mesh_tree_count);
+    if (changes[0] != PartChange::None) triangles.baked = baked_triangles(scene, placement);
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        const uint32_t tree = placement.tree_of_mesh[mesh];
+        if (tree == kBakedMesh || changes[1 + tree] == PartChange::None) continue;
+        triangles.meshes[tree] = mesh_triangles(scene.meshes[mesh]);
+    }
+    return triangles;
+}
+
+} // namespace
+
+PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
+                           Messages& messages) {
+    const Stopwatch watch;
+    const MeshPlacement placement = place_meshes(scene, before.centre);
+    if (placement.is_baked != before.is_baked || 1 + placement.mesh_tree_count != before.trees.parts.size()) {
+        PrepareOptions options;
+        options.centre = before.centre;
+        options.builder = before.structures->builder();
+        return prepare_scene(scene, options, messages);
+    }
+    PreparedScene after = before;
+    after.scene = &scene;
+    const std::vector<PartChange> changes = changes_of(scene, placement, update);
+    const SceneTriangles triangles = changed_triangles(scene, placement, changes);
+    after.trees = update_binary_trees(before.trees, before.structures->builder(), changes, triangles);
+    after.top_level = build_top_level_bvh(placed_trees(scene, placement, after.trees.mesh_bounds()));
+    after.structures = before.structures->updated(after.trees, after.top_level, changes, triangles);
+    after.triangles = after.trees.triangle_count();
+    after.build_seconds = watch.seconds();
+    after.lights = build_light_set(scene, srgb_decode_table().data(), messages, after.centre);
+    balance_lights(after, srgb_decode_table().data());
+    return after;
+}
+
+uint32_t parts_of(const SceneUpdate& update) {
+    uint32_t parts = kPartTrees | kPartInstances | kPartLights;
+    if (!update.deformed_meshes.empty() || !update.replaced_meshes.empty()) parts |= kPartGeometry;
+    return parts;
+}
+
+} // namespace pertev

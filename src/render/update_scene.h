@@ -1,0 +1,36 @@
+#pragma once
+
+// A prepared scene after a frame's change: what did not change is shared with the scene before, trees above all. The
+// world's centre stays, as it follows no motion. The picture is, to the bit, that of the changed scene prepared afresh
+// with this centre.
+
+#include <cstdint>
+#include <vector>
+
+#include "render/prepare_scene.h"
+
+namespace pertev {
+
+/// What has become another since the scene was prepared; indices into Scene::instances and Scene::meshes. Which
+/// materials there are, how many instances and meshes, which mesh an instance shows and what may move stay.
+struct SceneUpdate {
+    std::vector<uint32_t> moved_instances; // world_from_local is another
+    std::vector<uint32_t> deformed_meshes; // the same triangles (indices) with other positions or normals
+    std::vector<uint32_t> replaced_meshes; // anything about them
+};
+
+/// `scene` is valid and has the changes in it; it outlives what is returned. Of the trees,
+///   moved instances     take a new top level; none of the meshes' trees. One that is baked (MeshPlacement) counts as a
+///                       deformed mesh of the tree over all baked ones: whoever moves often should be able to move
+///                       (scene/animation.h), so that it is not
+///   deformed meshes     have theirs refitted, or at first replaced by one that can be (update_binary_trees), and its
+///                       other layouts made anew of it; kd-trees and octrees, whose planes do not move along, are built
+///   replaced meshes     have theirs built anew
+/// Where other instances would have to be baked than before, all is prepared anew. Throws as prepare_scene.
+PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
+                           Messages& messages);
+
+/// The parts (ScenePart) that Session::update_scene then takes.
+uint32_t parts_of(const SceneUpdate& update);
+
+} // namespace pertev

@@ -1,0 +1,178 @@
+// A scene that is updated gives the picture of one prepared afresh with the same centre, by every structure, and
+// rebuilds no tree that its change does not touch.
+
+#include "render/update_scene.h"
+
+#include <doctest/doctest.h>
+
+#include "render/tracer/walk_kernels.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+RenderSettings small_settings() {
+    RenderSettings settings;
+    settings.width = 24, settings.height = 16;
+    settings.samples = 2;
+    settings.path.max_depth = 4;
+    settings.aovs = kAovNormal | kAovDepth | kAovIds;
+    return settings;
+}
+
+Hash128 hash_of(const RenderResult& result) {
+    Hasher hasher;
+    test::add_picture(hasher, result);
+    return hasher.result();
+}
+
+PreparedScene prepare_afresh(const Scene& scene, Vec3 centre) {
+    Messages messages;
+    PrepareOptions options;
+    options.centre = centre;
+    return prepare_scene(scene, options, messages);
+}
+
+void twist(Mesh& mesh) {
+    for (Vec3& p : mesh.positions) p = {p.x + 0.3f * p.y * p.y, 1.1f * p.y, p.z - 0.2f * p.x};
+}
+
+/// Of the mixed scene: two spheres share mesh 0, which keeps a tree of its own; mesh 3 is baked.
+struct Step {
+    const char* what;
+    void (*change)(Scene&);
+    SceneUpdate update;
+};
+
+std::vector<Step> steps() {
+    return {
+        {"an instance of a shared mesh moves",
+         [](Scene& scene) { scene.instances[1].world_from_local.translation.x += 0.25f; },
+         {.moved_instances = {1}, .deformed_meshes = {}, .replaced_meshes = {}}},
+        {"a baked instance moves",
+         [](Scene& scene) { scene.instances[4].world_from_local.translation.z += 0.25f; },
+         {.moved_instances = {4}, .deformed_meshes = {}, .replaced_meshes = {}}},
+        {"a shared mesh is deformed",
+         [](Scene& scene) { twist(scene.meshes[0]); },
+         {.moved_instances = {}, .deformed_meshes = {0}, .replaced_meshes = {}}},
+        {"a baked mesh is deformed",
+         [](Scene& scene) { twist(scene.meshes[3]); },
+         {.moved_instances = {}, .deformed_meshes = {3}, .replaced_meshes = {}}},
+        {"a shared mesh is replaced by another",
+         [](Scene& scene) { scene.meshes[0] = scene.meshes[3]; },
+         {.moved_instances = {}, .deformed_meshes = {}, .replaced_meshes = {0}}},
+        {"all at once",
+         [](Scene& scene) {
+             scene.instances[2].world_from_local.translation.y += 0.125f;
+             twist(scene.meshes[0]);
+             scene.meshes[3].indices.resize(scene.meshes[3].indices.size() / 2);
+         },
+         {.moved_instances = {2}, .deformed_meshes = {0}, .replaced_meshes = {3}}},
+    };
+}
+
+} // namespace
+
+TEST_CASE("an updated scene gives the picture of one prepared afresh, by every structure and walk") {
+    Messages messages;
+    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    RenderSettings settings = small_settings();
+    const Camera camera = test::mixed_scene_camera();
+    std::vector<Hash128> fresh; // after each step
+    Scene changed = test::make_mixed_scene();
+    const Vec3 centre = prepare_scene(changed, {}, messages).centre;
+    for (const Step& step : steps()) {
+        step.change(changed);
+        fresh.push_back(hash_of(render_picture(cpu, prepare_afresh(changed, centre), camera, settings)));
+    }
+    int pictures = 0;
+    for (const StructureKind structure : all_structures()) {
+        for (const WalkKind walk : all_walks()) {
+            const Combination c = {.structure = structure, .walk = walk};
+            if (why_no_tracer(c, queue.is_cuda())) continue;
+            // Every walk once by the default's tree, and every structure once.
+            const bool first_walk = walk == WalkKind::WhileWhile || walk == WalkKind::Kd || walk == WalkKind::Octree;
+            if (structure != structure_of(kDefaultBuild) && structure != StructureKind::Reinsertion && !first_walk)
+                continue;
+            CAPTURE(name_of(c));
+            settings.tracers = same_for_all(c);
+            std::vector<Scene> scenes(1, test::make_mixed_scene());
+            scenes.reserve(1 + steps().size());
+            PreparedScene prepared = prepare_scene(scenes[0], {}, messages);
+            Session session(queue, prepared, camera, settings);
+            session.render(settings.samples);
+            for (std::size_t k = 0; k < fresh.size(); ++k) {
+                const Step step = steps()[k];
+                CAPTURE(step.what);
+                Scene& scene = scenes.emplace_back(scenes.back());
+                step.change(scene);
+                prepared = update_scene(prepared, scene, step.update, messages);
+                const Hash128 before = hash_of(session.result());
+                session.update_scene(prepared, parts_of(step.update));
+                session.render(settings.samples);
+                const Hash128 after = hash_of(session.result());
+                CHECK(after == fresh[k]);
+                CHECK(after != before);
+                ++pictures;
+            }
+        }
+    }
+    CHECK(pictures >= 6 * 20);
+}
+
+TEST_CASE("a change rebuilds no tree but those of what changed") {
+    Messages messages;
+    Scene scene = test::make_mixed_scene();
+    for (const TreeBuild build : kTreeBuilds) {
+        PrepareOptions options;
+        options.tracers = default_tracers(false, build);
+        const PreparedScene before = prepare_scene(scene, options, messages);
+        REQUIRE(before.trees.parts.size() > 2);
+        const auto same = [&](const PreparedScene& after) {
+            std::vector<bool> is_same;
+            for (std::size_t i = 0; i < after.trees.parts.size(); ++i) {
+                is_same.push_back(after.trees.parts[i] == before.trees.parts[i]);
+            }
+            return is_same;
+        };
+        std::vector<bool> all(before.trees.parts.size(), true);
+        SceneUpdate update;
+        update.moved_instances = {1};
+        CHECK(same(update_scene(before, scene, update, messages)) == all);
+        update.deformed_meshes = {0}; // whose tree is the first after the baked one, or the second
+        std::vector<bool> found = same(update_scene(before, scene, update, messages));
+        CHECK(std::ranges::count(found, false) == 1);
+        CHECK(found[0]);
+        update.deformed_meshes = {3};
+        found = same(update_scene(before, scene, update, messages));
+        CHECK(std::ranges::count(found, false) == 1);
+        CHECK(!found[0]);
+        // What was made of the trees is shared alike.
+        const auto nodes_of = [&](const PreparedScene& of) {
+            const auto built = of.structures->get(options.tracers->bounce);
+            return std::get<HostTrees>(built->trees()).meshes[0].nodes;
+        };
+        const PreparedScene after = update_scene(before, scene, update, messages);
+        CHECK(nodes_of(after) == nodes_of(before));
+    }
+}
+
+TEST_CASE("where a change would have other instances baked, all is prepared anew, with the same centre") {
+    Messages messages;
+    Scene scene = test::make_mixed_scene();
+    const PreparedScene before = prepare_scene(scene, {}, messages);
+    Scene after = scene;
+    after.instances[1].world_from_local = make_scale({1, 1e-5f, 1}); // too skewed for a space of its own
+    SceneUpdate update;
+    update.moved_instances = {1};
+    const PreparedScene updated = update_scene(before, after, update, messages);
+    CHECK(updated.is_baked != before.is_baked);
+    CHECK(updated.centre == before.centre);
+    Queue cpu = Queue::make_cpu();
+    const Camera camera = test::mixed_scene_camera();
+    CHECK(hash_of(render_picture(cpu, updated, camera, small_settings())) ==
+          hash_of(render_picture(cpu, prepare_afresh(after, before.centre), camera, small_settings())));
+}

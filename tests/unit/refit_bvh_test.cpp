@@ -1,0 +1,128 @@
+// A tree that is refitted to moved triangles is sound, and walks find in it what they find in one built afresh.
+
+#include "accel/bvh/refit_bvh.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "accel/bvh/build_bvh.h"
+#include "accel/bvh/check_bvh.h"
+#include "accel/bvh/compressed_bvh.h"
+#include "accel/bvh/wide_bvh.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "render/tracer/binary_trees.h"
+#include "tests/support/check_walk.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+/// One instance's primitives from 0 up, as scenes have them.
+std::vector<BvhTriangle> numbered(std::vector<BvhTriangle> triangles) {
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        triangles[i].primitive = static_cast<uint32_t>(i), triangles[i].instance = 0;
+    }
+    return triangles;
+}
+
+/// Turned about z, squeezed along it, and sheared.
+std::vector<BvhTriangle> deformed(std::vector<BvhTriangle> triangles) {
+    for (BvhTriangle& t : triangles) {
+        for (Vec3* p : {&t.a, &t.b, &t.c}) *p = {p->y + 0.25f * p->z, -p->x, 0.5f * p->z};
+    }
+    return triangles;
+}
+
+} // namespace
+
+TEST_CASE("a refitted tree is sound and finds what testing every triangle finds, by each builder, on nasty meshes") {
+    for (const NastyMesh& nasty : nasty_meshes()) {
+        CAPTURE(nasty.name);
+        const std::vector<BvhTriangle> before = numbered(nasty.triangles), after = deformed(before);
+        NastyMesh mesh = nasty;
+        mesh.triangles = after;
+        mesh.centre = {nasty.centre.y + 0.25f * nasty.centre.z, -nasty.centre.x, 0.5f * nasty.centre.z};
+        const std::vector<Ray> rays = nasty_rays(500, mesh, 41);
+        const std::vector<Hit> hits = hits_by_brute_force(after, rays, AcceptAll{});
+        for (const BvhBuilder builder : kBvhBuilders) {
+            CAPTURE(std::string(bvh_builder_name(builder)));
+            const Bvh refitted = refit_bvh(build_bvh(builder, before), after);
+            const auto fault = cuts_triangles(builder) ? find_split_fault(refitted, after) : find_fault(refitted);
+            CHECK_MESSAGE(!fault, fault.value_or(""));
+            CHECK(is_finite(refitted.sah_cost));
+            check_walk(scene_of(view_of(refitted)), rays, hits, AcceptAll{});
+        }
+    }
+}
+
+TEST_CASE("a tree that is refitted to where it was is the tree that was built") {
+    const std::vector<BvhTriangle> triangles = triangles_of(make_torus(80, 60));
+    for (const BvhBuilder builder : {BvhBuilder::Binned, BvhBuilder::Reinsertion}) {
+        const Bvh built = build_bvh(builder, triangles);
+        for (const int threads : {1, 5}) {
+            set_thread_count(threads);
+            const Bvh refitted = refit_bvh(refit_bvh(built, deformed(triangles)), triangles);
+            CHECK(std::memcmp(refitted.nodes.data(), built.nodes.data(), built.nodes.size() * sizeof(BvhNode)) == 0);
+            CHECK(std::memcmp(refitted.triangles.data(), built.triangles.data(),
+                              built.triangles.size() * sizeof(BvhTriangle)) == 0);
+            CHECK(refitted.bounds == built.bounds);
+            CHECK(refitted.sah_cost == doctest::Approx(built.sah_cost).epsilon(1e-4));
+        }
+    }
+    set_thread_count(0);
+}
+
+TEST_CASE("a tree is not refitted to other triangles, and builders that cut them say why theirs are not at all") {
+    const std::vector<BvhTriangle> triangles = triangles_of(make_torus(20, 10));
+    std::vector<BvhTriangle> fewer = triangles;
+    fewer.pop_back();
+    CHECK_THROWS_AS(refit_bvh(build_bvh(triangles), fewer), Error);
+    for (const BvhBuilder builder : kBvhBuilders) CHECK(why_no_refit(builder).has_value() == cuts_triangles(builder));
+}
+
+TEST_CASE("an update shares trees that stay, refits those that are deformed, and builds anew those refits spoil") {
+    const std::vector<BvhTriangle> torus = triangles_of(make_torus(40, 30));
+    SceneTriangles before;
+    before.baked = torus;
+    before.meshes = {torus, torus, torus};
+    const auto soup = [&] { // the same triangles, each somewhere else
+        std::vector<BvhTriangle> moved = torus;
+        for (BvhTriangle& t : moved) {
+            const Vec3 by = {static_cast<float>(t.primitive * 7919u % 101u), static_cast<float>(t.primitive % 97u), 0};
+            t.a = t.a + by, t.b = t.b + by, t.c = t.c + by;
+        }
+        return moved;
+    };
+    SceneTriangles after;
+    after.meshes = {deformed(torus), soup(), triangles_of(make_torus(10, 10))};
+    const std::vector<PartChange> changes = {PartChange::None, PartChange::Deformed, PartChange::Deformed,
+                                             PartChange::Replaced};
+    for (const BvhBuilder builder : kBvhBuilders) {
+        CAPTURE(std::string(bvh_builder_name(builder)));
+        const BinaryTrees built = build_binary_trees(before, builder);
+        const BinaryTrees updated = update_binary_trees(built, builder, changes, after);
+        CHECK(updated.parts[0] == built.parts[0]);
+        const auto same_links = [](const Bvh& a, const Bvh& b) {
+            for (std::size_t i = 0; i < a.nodes.size() && i < b.nodes.size(); ++i) {
+                if (a.nodes[i].child[0] != b.nodes[i].child[0] || a.nodes[i].child[1] != b.nodes[i].child[1])
+                    return false;
+            }
+            return a.nodes.size() == b.nodes.size();
+        };
+        if (cuts_triangles(builder)) {
+            CHECK(updated.builders[1] == kRefittedBuilder);
+            const BinaryTrees again = update_binary_trees(updated, builder, changes, after);
+            CHECK(same_links(*again.parts[1], *updated.parts[1])); // refitted from now on
+        } else {
+            CHECK(same_links(*updated.parts[1], *built.parts[1]));
+            CHECK(updated.builders[1] == builder);
+        }
+        CHECK(updated.builders[3] == builder);
+        CHECK(updated.parts[2]->sah_cost <= kMaxRefitCost * updated.built_cost[2]);
+        CHECK(updated.parts[3]->sah_cost == build_bvh(builder, after.meshes[2]).sah_cost);
+        CHECK(updated.triangle_count() == 3 * torus.size() + after.meshes[2].size());
+    }
+}

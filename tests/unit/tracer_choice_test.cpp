@@ -1,0 +1,44 @@
+// Which trees stand behind pictures.
+
+#include "render/tracer/tracer_choice.h"
+
+#include <doctest/doctest.h>
+
+#include "accel/bvh/refit_bvh.h"
+#include "render/prepare_scene.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+TEST_CASE("each --build names a structure, which all default tracers of both devices walk") {
+    CHECK(structure_of(TreeBuild::Fast) == StructureKind::Binned);
+    CHECK(structure_of(TreeBuild::Balanced) == StructureKind::SpatialSplits);
+    CHECK(structure_of(TreeBuild::Best) == StructureKind::SpatialReinsertion);
+    for (const TreeBuild build : kTreeBuilds) {
+        CHECK(tree_build_named(name_of(build)) == build);
+        for (const bool on_cuda : {false, true}) {
+            const TracerChoice choice = default_tracers(on_cuda, build);
+            for (const RayKind kind : kRayKinds) CHECK(choice[kind].structure == structure_of(build));
+            CHECK(builder_of(choice) == builder_of(structure_of(build)));
+        }
+    }
+    CHECK(default_tracers(false) == default_tracers(false, kDefaultBuild));
+    CHECK(!tree_build_named("sbvh"));
+}
+
+TEST_CASE("what is built fast can be refitted") { CHECK(!why_no_refit(*builder_of(structure_of(TreeBuild::Fast)))); }
+
+TEST_CASE("a scene is prepared with the trees that most of its rays go through, and no others") {
+    const Scene scene = test::make_mixed_scene();
+    Messages messages;
+    PrepareOptions options;
+    CHECK(prepare_scene(scene, options, messages).structures->builder() == *builder_of(structure_of(kDefaultBuild)));
+    options.tracers = default_tracers(false, TreeBuild::Fast);
+    CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Binned);
+    options.tracers->bounce = {.structure = StructureKind::Ploc, .walk = WalkKind::WhileWhile};
+    CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Ploc);
+    options.tracers->bounce = {.structure = StructureKind::Octree, .walk = WalkKind::Octree};
+    CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Binned);
+    options.builder = BvhBuilder::Sweep;
+    CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Sweep);
+}
