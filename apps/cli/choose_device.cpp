@@ -1,6 +1,7 @@
 #include "apps/cli/choose_device.h"
 
 #include <charconv>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,12 +13,7 @@ namespace pertev {
 
 std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages) {
     if (name == "cpu") return std::make_unique<Queue>(Queue::make_cpu());
-    if (name == "auto") {
-        const std::string reason = why_no_cuda(0);
-        if (reason.empty()) return std::make_unique<Queue>(Queue::make_cuda(0));
-        messages.note(fmt::format("using the CPU: {}", reason));
-        return std::make_unique<Queue>(Queue::make_cpu());
-    }
+    if (name == "auto") return ComingMachine({}, messages).take();
     int index = 0;
     const char* const end = name.data() + name.size();
     const bool numbered = name.starts_with("cuda:");
@@ -46,6 +42,36 @@ void add_machine_flags(CLI::App& verb, MachineFlags& flags, const char* group) {
 std::unique_ptr<Queue> take_machine(const MachineFlags& flags, Messages& messages) {
     if (flags.threads > 0) set_thread_count(flags.threads);
     return choose_device(flags.device, messages);
+}
+
+ComingMachine::ComingMachine(const MachineFlags& flags, Messages& messages) : messages_(messages) {
+    if (flags.device != "auto") {
+        queue_ = take_machine(flags, messages);
+        is_cuda_ = queue_->is_cuda();
+        return;
+    }
+    if (flags.threads > 0) set_thread_count(flags.threads);
+    std::promise<std::string> why_no_gpu;
+    why_no_gpu_ = why_no_gpu.get_future();
+    coming_ = std::async(std::launch::async, [why_no_gpu = std::move(why_no_gpu)]() mutable {
+        const std::string reason = why_no_cuda(0);
+        why_no_gpu.set_value(reason);
+        return std::make_unique<Queue>(reason.empty() ? Queue::make_cuda(0) : Queue::make_cpu());
+    });
+}
+
+bool ComingMachine::is_cuda() {
+    if (!is_cuda_) {
+        const std::string reason = why_no_gpu_.get();
+        if (!reason.empty()) messages_.note(fmt::format("using the CPU: {}", reason));
+        is_cuda_ = reason.empty();
+    }
+    return *is_cuda_;
+}
+
+std::unique_ptr<Queue> ComingMachine::take() {
+    is_cuda(); // with its notice
+    return queue_ ? std::move(queue_) : coming_.get();
 }
 
 } // namespace pertev

@@ -2,7 +2,9 @@
 
 // What a verb renders on: --device auto, cpu, cuda or cuda:N, and --threads.
 
+#include <future>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/messages.h"
@@ -26,5 +28,25 @@ struct MachineFlags {
 void add_machine_flags(CLI::App& verb, MachineFlags& flags, const char* group = "Options");
 /// Sets the number of threads, and gives the device's queue as choose_device does.
 std::unique_ptr<Queue> take_machine(const MachineFlags& flags, Messages& messages);
+
+/// The same for a verb that has a scene to read meanwhile: a GPU's driver takes as long to start as that does. A device
+/// that is named is taken at once, since it may not be there; what `auto` takes is looked for behind.
+class ComingMachine {
+public:
+    /// Throws as choose_device. `messages` outlives it.
+    ComingMachine(const MachineFlags& flags, Messages& messages);
+
+    /// Waits until that is known.
+    bool is_cuda();
+    /// Waits for it; to be called once. Throws Error(BadInput, DeviceFault).
+    std::unique_ptr<Queue> take();
+
+private:
+    Messages& messages_;
+    std::future<std::string> why_no_gpu_;
+    std::future<std::unique_ptr<Queue>> coming_;
+    std::unique_ptr<Queue> queue_; // of a named device
+    std::optional<bool> is_cuda_;
+};
 
 } // namespace pertev

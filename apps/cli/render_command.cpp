@@ -96,8 +96,9 @@ int render(RenderFlags flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     check_render_flags(flags, messages);
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
-    const std::optional<TracerChoice> tracers = tracer_choice(flags.tracer, queue->is_cuda());
+    ComingMachine machine(flags.machine, messages);
+    std::optional<TracerChoice> tracers; // what does not fit the device is refused before the scene is read
+    if (!flags.tracer.are_empty()) tracers = tracer_choice(flags.tracer, machine.is_cuda());
     reporter.say_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const Stopwatch watch;
@@ -110,11 +111,12 @@ int render(RenderFlags flags) {
     const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
     const double load_s = watch.seconds();
     PrepareOptions prepare;
-    prepare.tracers = tracers.value_or(default_tracers(queue->is_cuda()));
+    prepare.tracers = tracers.value_or(default_tracers(machine.is_cuda()));
     prepare.may_be_better = may_be_better(flags.tracer);
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
     const PreparedScene prepared = prepare_scene(scene, prepare, messages);
+    const std::unique_ptr<Queue> queue = machine.take();
     reporter.say_messages();
     listen_for_interrupt();
     report_start(flags, scene, prepared, settings, *queue, load_s, reporter);

@@ -92,10 +92,7 @@ void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group) {
 }
 
 std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda) {
-    if (flags.build.empty() && flags.structures.empty() && flags.walks.empty() && flags.rta.empty() &&
-        flags.order.empty() && flags.distributions.empty()) {
-        return std::nullopt;
-    }
+    if (flags.are_empty()) return std::nullopt;
     TracerChoice choice = default_tracers(on_cuda, tree_build_named(flags.build).value_or(kDefaultBuild));
     std::set<const Combination*> structure_named, walk_named;
     apply("--structure", flags.structures, choice, list_of(all_structures()),

@@ -20,6 +20,11 @@ namespace pertev {
 struct TracerFlags {
     std::string build; // empty: kDefaultBuild
     std::vector<std::string> structures, walks, rta, order, distributions;
+
+    bool are_empty() const {
+        return build.empty() && structures.empty() && walks.empty() && rta.empty() && order.empty() &&
+               distributions.empty();
+    }
 };
 
 void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group);
