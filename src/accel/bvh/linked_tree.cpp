@@ -16,24 +16,9 @@ LinkedTree::LinkedTree(BinaryTree tree) : tree_(std::move(tree)), parent_(tree_.
     }
 }
 
-bool LinkedTree::is_beneath(uint32_t index, uint32_t ancestor) const {
-    while (index != ancestor && index != kNoLink) index = parent_[index];
-    return index == ancestor;
-}
-
-uint32_t LinkedTree::remove(uint32_t index) {
-    const uint32_t free = parent_[index], other = sibling(index), above = parent_[free];
-    area_change_ -= area(free);
-    replace_child(above, free, other);
-    parent_[index] = parent_[free] = kNoLink;
-    refit_upwards(above);
-    return free;
-}
-
 void LinkedTree::insert(uint32_t index, uint32_t target, uint32_t parent) {
     const uint32_t above = parent_[target];
     tree_.nodes[parent] = make_inner(tree_, target, index);
-    area_change_ += area(parent);
     replace_child(above, target, parent);
     parent_[target] = parent_[index] = parent;
     refit_upwards(above);
@@ -54,9 +39,7 @@ void LinkedTree::refit_upwards(uint32_t index) {
         BinaryNode& node = tree_.nodes[index];
         const BinaryNode refitted = make_inner(tree_, node.child[0], node.child[1]);
         if (refitted.box == node.box) return; // nor does anything above change
-        area_change_ -= area(index);
         node.box = refitted.box;
-        area_change_ += area(index);
     }
 }
 
