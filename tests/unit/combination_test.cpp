@@ -13,7 +13,7 @@ TEST_CASE("every structure and walk of the laboratory has a name of its own, by 
         CHECK(structure_named(name_of(kind)) == kind);
         CHECK(names.insert(name_of(kind)).second);
     }
-    CHECK(names.size() == 11);
+    CHECK(names.size() == 12);
     CHECK(!structure_named("no such structure"));
     names.clear();
     for (const WalkKind kind : all_walks()) {
