@@ -23,7 +23,8 @@ class Errors(CliTest):
         return last
 
     def test_an_error_of_the_line_is_an_object_for_every_verb_and_without_one(self):
-        for verb in ["", "render", "info", "compare", "bench", "bench rays", "bench render", "lab", "lab --thesis"]:
+        for verb in ["", "render", "info", "compare", "bench", "bench rays", "bench build", "bench render", "lab",
+                     "lab --thesis"]:
             for rest, says in [("--foo --json", "--foo"), ("--json --foo", "--foo"), ("--json --threads", "--threads")]:
                 with self.subTest(verb=verb, rest=rest):
                     last = self.fail_in_json(2, *verb.split(), *rest.split())

@@ -23,6 +23,7 @@ FLAGS = {
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
+    "bench build": "--scene --runs --compare --device --threads --quiet -q --json",
     "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --quiet -q --json",
 }
 

@@ -27,7 +27,7 @@ using namespace pertev::test::lane; // NOLINT: before the name means something e
 #define pertev pertev_emulated
 #define __device__
 #define __global__
-#define __launch_bounds__(threads)
+#define __launch_bounds__(...)
 
 namespace pertev {
 

@@ -11,6 +11,7 @@
 #include "accel/bvh/build_bvh.h"
 #include "accel/bvh/builders.h"
 #include "base/parallel_for.h"
+#include "math/morton_code.h"
 
 namespace pertev {
 namespace {
@@ -18,15 +19,6 @@ namespace {
 constexpr uint32_t kRadius = 16;      // neighbours looked at to either side
 constexpr uint32_t kFewMerges = 16;   // fewer merges than clusters / this: a chain, which one merge a round would take
 constexpr uint32_t kChunk = 1u << 13; // fixed, so that nothing depends on the number of threads
-
-/// Spreads 21 bits to every third of 63.
-uint64_t spread_bits(uint64_t x) {
-    x = (x | x << 32) & 0x1f00000000ffffull;
-    x = (x | x << 16) & 0x1f0000ff0000ffull;
-    x = (x | x << 8) & 0x100f00f00f00f00full;
-    x = (x | x << 4) & 0x10c30c30c30c30c3ull;
-    return (x | x << 2) & 0x1249249249249249ull;
-}
 
 struct Place {
     uint64_t code;

@@ -19,6 +19,8 @@ const char* bvh_builder_name(BvhBuilder builder) {
         return "sbvh";
     case BvhBuilder::Ploc:
         return "ploc";
+    case BvhBuilder::Hploc:
+        return "hploc";
     case BvhBuilder::Insertion:
         return "insertion";
     case BvhBuilder::Reinsertion:
@@ -47,6 +49,8 @@ Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, con
         return build_spatial_split_bvh(triangles, settings);
     case BvhBuilder::Ploc:
         return build_ploc_bvh(triangles, settings);
+    case BvhBuilder::Hploc:
+        return build_hploc_bvh(triangles, settings);
     case BvhBuilder::Insertion:
         return build_insertion_bvh(triangles, settings);
     case BvhBuilder::Reinsertion:

@@ -19,14 +19,16 @@ enum class BvhBuilder {
     EqualCounts,        // top down, half of the triangles to each side
     SpatialSplits,      // top down, triangles may be cut too: a tree may hold one more than once
     Ploc,               // bottom up, clusters along a Morton curve
+    Hploc,              // the same, in the parts that the curve has: what is built on a GPU (accel/hploc)
     Insertion,          // one triangle after the other, each where it adds least
     Reinsertion,        // Binned, then subtrees are moved to where they add least
     SpatialReinsertion, // SpatialSplits, then the same
 };
-inline constexpr BvhBuilder kBvhBuilders[] = {
-    BvhBuilder::Binned,      BvhBuilder::Sweep,         BvhBuilder::Median,
-    BvhBuilder::EqualCounts, BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
-    BvhBuilder::Insertion,   BvhBuilder::Reinsertion,   BvhBuilder::SpatialReinsertion};
+inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned,        BvhBuilder::Sweep,
+                                              BvhBuilder::Median,        BvhBuilder::EqualCounts,
+                                              BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
+                                              BvhBuilder::Hploc,         BvhBuilder::Insertion,
+                                              BvhBuilder::Reinsertion,   BvhBuilder::SpatialReinsertion};
 
 /// As on the command line: "binned", "equal-counts".
 const char* bvh_builder_name(BvhBuilder builder);
@@ -41,6 +43,7 @@ Bvh build_sweep_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSet
 Bvh build_median_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 Bvh build_equal_counts_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 Bvh build_ploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
+Bvh build_hploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
 Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 

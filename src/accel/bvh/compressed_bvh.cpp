@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "accel/bvh/compress_boxes.h"
 #include "base/error.h"
 
 namespace pertev {
@@ -15,48 +16,6 @@ Bounds3 child_box(const WideBvhNode<8>& node, int k) {
             {node.planes[1][k], node.planes[3][k], node.planes[5][k]}};
 }
 
-/// a - b without error: value + rest.
-struct Difference {
-    double value, rest;
-};
-
-Difference difference(float a, float b) {
-    const double x = static_cast<double>(a), y = static_cast<double>(b);
-    const double value = x - y, back = value - x;
-    return {value, (x - (value - back)) - (y + back)};
-}
-
-/// Largest whole number of quanta from `origin` that does not pass x; x >= origin.
-int quanta_below(float x, float origin, double quantum) {
-    const Difference d = difference(x, origin);
-    const double quotient = d.value / quantum; // a power of two: exact
-    const int q = static_cast<int>(quotient);
-    return static_cast<double>(q) == quotient && d.rest < 0 ? q - 1 : q;
-}
-
-/// Least whole number that is not short of it.
-int quanta_above(float x, float origin, double quantum) {
-    const Difference d = difference(x, origin);
-    const double quotient = d.value / quantum;
-    const int q = static_cast<int>(quotient);
-    return static_cast<double>(q) < quotient || (static_cast<double>(q) == quotient && d.rest > 0) ? q + 1 : q;
-}
-
-double quantum_of(uint32_t exponent) { return static_cast<double>(float_of(exponent << 23)); }
-
-/// The least exponent whose grid of 255 quanta reaches from lo to hi.
-uint32_t choose_exponent(float lo, float hi) {
-    const uint32_t of_extent = bits_of(hi - lo) >> 23; // 255 quanta of 2^-8 of this reach, or those of twice that do
-    uint32_t exponent = max(of_extent, kMinQuantumExponent + 9) - 9;
-    while (quanta_above(hi, lo, quantum_of(exponent)) > 255) ++exponent;
-    return exponent;
-}
-
-void set_byte(uint32_t (&words)[2], int slot, int value) {
-    const int shift = 8 * (slot % 4);
-    words[slot / 4] = (words[slot / 4] & ~(0xffu << shift)) | static_cast<uint32_t>(value) << shift;
-}
-
 int byte_of(const uint32_t (&words)[2], int slot) { return static_cast<int>(words[slot / 4] >> 8 * (slot % 4) & 0xff); }
 
 } // namespace
@@ -65,21 +24,9 @@ void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]) {
     Bounds3 all;
     for (const Bounds3& box : slots) all.extend(box);
     PERTEV_CHECK(!all.is_empty());
-    node.exponents_and_inner &= 0xff000000u;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float origin = component(all.lo, axis);
-        const uint32_t exponent = choose_exponent(origin, component(all.hi, axis));
-        PERTEV_CHECK(exponent <= kMaxQuantumExponent);
-        node.origin[axis] = origin;
-        node.exponents_and_inner |= exponent << (8 * axis);
-        for (int s = 0; s < 8; ++s) {
-            const bool empty = slots[s].is_empty();
-            const double step = quantum_of(exponent);
-            set_byte(node.planes[2 * axis], s, empty ? 255 : quanta_below(component(slots[s].lo, axis), origin, step));
-            set_byte(node.planes[2 * axis + 1], s,
-                     empty ? 0 : quanta_above(component(slots[s].hi, axis), origin, step));
-        }
-    }
+    compress_boxes(node, all, slots);
+    for (int axis = 0; axis < 3; ++axis)
+        PERTEV_CHECK((node.exponents_and_inner >> (8 * axis) & 0xff) <= kMaxQuantumExponent);
 }
 
 bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box) {

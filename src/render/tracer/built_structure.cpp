@@ -9,6 +9,7 @@
 #include "accel/octree/build_octree.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "render/tracer/hploc/device_builder.h"
 
 namespace pertev {
 namespace {
@@ -196,6 +197,12 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
         convert([](const Bvh& bvh) { return make_wide_bvh<kWideChildren>(bvh, kSimdCollapse); });
         break;
     case TreeLayout::Compressed:
+        if (kind == StructureKind::Hploc) { // by the builder itself, as on a GPU, and not of its binary tree
+            Queue queue = Queue::make_cpu();
+            figures_.build_s = 0;
+            convert([&](const Bvh& bvh) { return build_compressed_bvh(queue, bvh.triangles); });
+            break;
+        }
         convert([](const Bvh& bvh) { return make_compressed_bvh(bvh); });
         break;
     case TreeLayout::Kd:

@@ -8,11 +8,13 @@
 namespace pertev {
 namespace {
 
-constexpr std::array kStructures = {
-    StructureKind::Binned,      StructureKind::Sweep,         StructureKind::Median,
-    StructureKind::EqualCounts, StructureKind::SpatialSplits, StructureKind::Ploc,
-    StructureKind::Insertion,   StructureKind::Reinsertion,   StructureKind::SpatialReinsertion,
-    StructureKind::KdMedian,    StructureKind::KdSah,         StructureKind::Octree};
+constexpr std::array kStructures = {StructureKind::Binned,        StructureKind::Sweep,
+                                    StructureKind::Median,        StructureKind::EqualCounts,
+                                    StructureKind::SpatialSplits, StructureKind::Ploc,
+                                    StructureKind::Hploc,         StructureKind::Insertion,
+                                    StructureKind::Reinsertion,   StructureKind::SpatialReinsertion,
+                                    StructureKind::KdMedian,      StructureKind::KdSah,
+                                    StructureKind::Octree};
 constexpr std::array kWalks = {
     WalkKind::IfIf,       WalkKind::WhileWhile,  WalkKind::Speculative, WalkKind::BruteForce, WalkKind::RestartTrail,
     WalkKind::ShortStack, WalkKind::ParentLinks, WalkKind::SkipLinks,   WalkKind::Packet,     WalkKind::Wide4,
@@ -52,6 +54,8 @@ std::optional<BvhBuilder> builder_of(StructureKind kind) {
         return BvhBuilder::SpatialSplits;
     case StructureKind::Ploc:
         return BvhBuilder::Ploc;
+    case StructureKind::Hploc:
+        return BvhBuilder::Hploc;
     case StructureKind::Insertion:
         return BvhBuilder::Insertion;
     case StructureKind::Reinsertion:

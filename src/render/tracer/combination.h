@@ -21,6 +21,7 @@ enum class StructureKind {
     EqualCounts,        // halves of the triangles,
     SpatialSplits,      // SBVH,
     Ploc,               // bottom-up,
+    Hploc,              // bottom-up, as a GPU builds it,
     Insertion,          // one triangle after the other,
     Reinsertion,        // binned, then improved by moving subtrees,
     SpatialReinsertion, // SBVH, then the same

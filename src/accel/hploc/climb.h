@@ -1,0 +1,162 @@
+#pragma once
+
+// The bottom-up build: threads climb the radix tree of the Morton codes from its leaves; whoever comes second to a node
+// joins the clusters of its two children by nearest neighbours until few are left, and the root's become one.
+//
+// Source: Benthin, Meister, Barczak, Mehalwal, Tsakok, Kensler, "H-PLOC: Hierarchical Parallel Locally-Ordered
+// Clustering for Bounding Volume Hierarchy Construction", HPG 2024, sections 3 and 4; the climb is Apetrei's, "Fast and
+// Simple Agglomerative LBVH Construction", CGVC 2014. What a node of the radix tree is left with is a function of what
+// its children were left with, so the tree does not depend on who comes when. Ties as in accel/bvh/build_ploc.cpp.
+//
+// Here is the form of one thread a leaf, for the CPU; render/tracer/hploc/warp_kernels.h has
+// the same with a warp a node.
+
+#include <cstdint>
+
+#include "accel/hploc/cluster_tree.h"
+#include "base/host_device.h"
+#include "math/bits.h"
+
+namespace pertev::hploc {
+
+inline constexpr uint32_t kKept = 16;        // clusters that a node of the radix tree leaves to its parent, at most
+inline constexpr uint32_t kMost = 2 * kKept; // it begins with
+inline constexpr uint32_t kSearchRadius = 8; // neighbours looked at to either side
+
+struct Climb {
+    ClusterTree tree;
+    const uint64_t* codes; // [n], ascending; null: halves of equal counts, and one cluster a node
+    Cluster* clusters;     // [n]: what the node with leaves [first, last], more than kKept, was left with stands from
+                           // `first` on; fewer than kKept end with kNone
+    uint32_t* ends;        // [n], kNone at first: for the gap after leaf i, the far end of the range that came there
+    uint32_t* root;        // the tree's, when all is done
+
+    HD uint32_t kept() const { return codes != nullptr ? kKept : 1; }
+};
+
+/// A node of the radix tree: leaves [first, middle) and [middle, last].
+struct LeafRange {
+    uint32_t first, middle, last;
+
+    HD uint32_t size() const { return last - first + 1; }
+};
+
+/// Whether the gap after leaf i lies deeper in the radix tree than that after leaf k.
+HD inline bool is_deeper(const uint64_t* codes, uint32_t i, uint32_t k) {
+    if (codes == nullptr) return (i ^ (i + 1)) < (k ^ (k + 1));
+    const uint64_t of_i = codes[i] ^ codes[i + 1], of_k = codes[k] ^ codes[k + 1];
+    if (of_i != of_k) return of_i < of_k;
+    return (i ^ (i + 1)) < (k ^ (k + 1)); // only of equal codes: 0
+}
+
+HD inline uint32_t exchange(uint32_t* target, uint32_t value) {
+#if defined(__CUDA_ARCH__)
+    return atomicExch(target, value);
+#else
+    return __atomic_exchange_n(target, value, __ATOMIC_ACQ_REL);
+#endif
+}
+
+/// Goes from a node (leaves [first, last], not all) to its parent. False where the other child is still to come.
+HD inline bool go_up(const Climb& climb, LeafRange& range) {
+    const uint32_t n = climb.tree.count;
+    const bool is_left =
+        range.first == 0 || (range.last != n - 1 && is_deeper(climb.codes, range.last, range.first - 1));
+    const uint32_t other =
+        is_left ? exchange(climb.ends + range.last, range.first) : exchange(climb.ends + (range.first - 1), range.last);
+    if (other == kNone) return false;
+    if (is_left) {
+        range.middle = range.last + 1;
+        range.last = other;
+    } else {
+        range.middle = range.first;
+        range.first = other;
+    }
+    return true;
+}
+
+/// Whether what a node holds must be joined: else its clusters are its leaves.
+HD inline bool needs_joining(const Climb& climb, const LeafRange& range) {
+    return range.size() > climb.kept() || range.size() == climb.tree.count;
+}
+
+/// How many are left when a node is done.
+HD inline uint32_t clusters_to_leave(const Climb& climb, const LeafRange& range) {
+    return range.size() == climb.tree.count ? 1 : climb.kept();
+}
+
+/// How much two neighbours at positions i and k would like to be one: the less, the more. Areas are not negative.
+HD inline uint64_t preference(float area, uint32_t i, uint32_t k) {
+    return static_cast<uint64_t>(bits_of(area)) << 32 | (i ^ k);
+}
+
+/// Cluster number `place` of those that the node with leaves [first, end) was left with; kNone: there are no more.
+HD inline Cluster cluster_left(const Climb& climb, uint32_t first, uint32_t end, uint32_t place) {
+    if (end - first <= climb.kept()) return {first + place, first + place}; // its leaves
+    return load_fresh(climb.clusters + first + place);
+}
+
+/// The clusters of a node, by one thread.
+HD inline void join_range(const Climb& climb, const LeafRange& range) {
+    Cluster clusters[kMost];
+    Bounds3 boxes[kMost];
+    uint32_t count = 0;
+    const auto take = [&](uint32_t first, uint32_t end) {
+        const uint32_t most = end - first < climb.kept() ? end - first : climb.kept();
+        for (uint32_t i = 0; i < most; ++i) {
+            const Cluster cluster = cluster_left(climb, first, end, i);
+            if (cluster.node == kNone) break;
+            clusters[count] = cluster;
+            boxes[count++] = load_fresh(climb.tree.nodes + cluster.node).box();
+        }
+    };
+    take(range.first, range.middle);
+    take(range.middle, range.last + 1);
+    const uint32_t leave = clusters_to_leave(climb, range);
+    while (count > leave) {
+        uint64_t best[kMost];
+        for (uint32_t i = 0; i < count; ++i) best[i] = ~uint64_t(0);
+        for (uint32_t i = 0; i < count; ++i) {
+            for (uint32_t k = i + 1; k < count && k <= i + kSearchRadius; ++k) {
+                Bounds3 both = boxes[i];
+                both.extend(boxes[k]);
+                const uint64_t wish = preference(both.half_area(), i, k);
+                if (wish < best[i]) best[i] = wish;
+                if (wish < best[k]) best[k] = wish;
+            }
+        }
+        uint32_t kept = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            const uint32_t k = i ^ static_cast<uint32_t>(best[i]);
+            const bool agrees = (k ^ static_cast<uint32_t>(best[k])) == i;
+            if (agrees && k < i) continue;
+            Cluster cluster = clusters[i];
+            Bounds3 box = boxes[i];
+            if (agrees) {
+                cluster = join(climb.tree, cluster, box, clusters[k], boxes[k]);
+                box.extend(boxes[k]);
+            }
+            clusters[kept] = cluster;
+            boxes[kept++] = box;
+        }
+        count = kept;
+    }
+    const uint32_t room = range.size() < climb.kept() ? range.size() : climb.kept();
+    for (uint32_t i = 0; i < room; ++i) climb.clusters[range.first + i] = i < count ? clusters[i] : Cluster{kNone, 0};
+    if (range.size() == climb.tree.count) *climb.root = clusters[0].node;
+}
+
+/// One leaf each: climbs as far as it is the second to come.
+struct ClimbFromLeaves {
+    Climb climb;
+
+    HD void operator()(uint32_t leaf) const {
+        LeafRange range = {leaf, leaf, leaf};
+        while (range.size() < climb.tree.count && go_up(climb, range)) {
+            if (needs_joining(climb, range)) join_range(climb, range);
+        }
+        if (climb.tree.count == 1) *climb.root = 0;
+    }
+};
+
+} // namespace pertev::hploc

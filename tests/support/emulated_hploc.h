@@ -1,0 +1,15 @@
+#pragma once
+
+// The builder's kernels for CUDA (render/tracer/hploc/warp_kernels.h) on emulated warps.
+
+#include <cstdint>
+#include <string>
+
+namespace pertev::test {
+
+/// As launch_climb and launch_emit on a GPU, once what is to be cleared is: of a hploc::Climb for so many triangles and
+/// of a hploc::EmitWide, whose layouts are the device's. Return what went wrong, or nothing.
+std::string climb_on_emulated_warps(const void* climb, uint32_t triangles, uint32_t seed);
+std::string emit_on_emulated_warps(const void* emit, uint32_t warps, uint32_t seed);
+
+} // namespace pertev::test

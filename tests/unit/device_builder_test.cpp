@@ -1,0 +1,207 @@
+// The builder that runs on the device: sound trees of every mesh, as good as those of its kind should be, and the same
+// bytes by any number of threads and by warps.
+
+#include "render/tracer/hploc/device_builder.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "accel/bvh/builders.h"
+#include "tests/support/emulated_hploc.h"
+#include "tests/support/nasty_meshes.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+CompressedBvh build(Queue& queue, const std::vector<BvhTriangle>& triangles, bool balanced = false) {
+    const auto count = static_cast<uint32_t>(triangles.size());
+    const Buffer<BvhTriangle> there(queue, std::span(triangles), "triangles");
+    DeviceBuilder builder(queue, count);
+    builder.set_balanced(balanced);
+    builder.start(there.data(), count);
+    builder.finish();
+    return builder.download();
+}
+
+/// All bytes, empty arrays too.
+template <class T>
+bool are_same(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool are_same(const CompressedBvh& a, const CompressedBvh& b) {
+    return are_same(a.nodes, b.nodes) && are_same(a.triangles, b.triangles) && a.depth == b.depth &&
+           a.sah_cost == b.sah_cost && a.bounds == b.bounds;
+}
+
+/// Those that break builders, and sizes around those at which warps and groups end.
+std::vector<NastyMesh> meshes() {
+    std::vector<NastyMesh> all = nasty_meshes(700);
+    for (const uint32_t count : {2u, 3u, 4u, 15u, 16u, 17u, 31u, 32u, 33u, 34u, 63u, 65u, 129u, 300u}) {
+        all.push_back({"a small soup", make_soup(count, 0), {}});
+    }
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("trees that are built on the device are sound, and hold each triangle once") {
+    Queue queue = Queue::make_cpu();
+    for (const NastyMesh& mesh : meshes()) {
+        for (const bool balanced : {false, true}) {
+            CAPTURE(mesh.name);
+            CAPTURE(mesh.triangles.size());
+            CAPTURE(balanced);
+            const CompressedBvh bvh = build(queue, mesh.triangles, balanced);
+            CHECK(bvh.triangles.size() == mesh.triangles.size());
+            const auto fault = find_fault(bvh);
+            CHECK_MESSAGE(!fault, fault.value_or(""));
+            std::vector<bool> seen(mesh.triangles.size());
+            for (const BvhTriangle& t : bvh.triangles) {
+                const auto at = std::ranges::find_if(mesh.triangles, [&](const BvhTriangle& m) {
+                    return m.instance == t.instance && m.primitive == t.primitive &&
+                           std::memcmp(&m.a, &t.a, sizeof(Vec3)) == 0 &&
+                           !seen[static_cast<std::size_t>(&m - mesh.triangles.data())];
+                });
+                REQUIRE(at != mesh.triangles.end());
+                seen[static_cast<std::size_t>(at - mesh.triangles.begin())] = true;
+            }
+        }
+    }
+}
+
+TEST_CASE("trees that are built on the device cost rays little more than those by PLOC on the host") {
+    Queue queue = Queue::make_cpu();
+    for (const NastyMesh& mesh : nasty_meshes()) {
+        if (mesh.triangles.size() < 1000) continue;
+        CAPTURE(mesh.name);
+        const float by_host = make_compressed_bvh(build_ploc_bvh(mesh.triangles)).sah_cost;
+        CHECK(build(queue, mesh.triangles).sah_cost < 1.06f * by_host);
+        // Halves of the curve know nothing of boxes; a line has nothing else.
+        CHECK(build(queue, mesh.triangles).sah_cost <= 1.05f * build(queue, mesh.triangles, true).sah_cost);
+    }
+}
+
+TEST_CASE("a builder is used again for meshes of other sizes") {
+    Queue queue = Queue::make_cpu();
+    const std::vector<BvhTriangle> large = make_soup(1000, 0), small = make_soup(40, 5);
+    DeviceBuilder builder(queue, 1000);
+    for (const auto* mesh : {&large, &small, &large}) {
+        builder.start(mesh->data(), static_cast<uint32_t>(mesh->size()));
+        CHECK(builder.finish().triangles == mesh->size());
+        CHECK(are_same(builder.download(), build(queue, *mesh)));
+    }
+}
+
+TEST_CASE("warps make the bytes that single threads make") {
+    Queue queue = Queue::make_cpu();
+    for (const NastyMesh& mesh : meshes()) {
+        const auto n = static_cast<uint32_t>(mesh.triangles.size());
+        if (n == 0 || n > 1000) continue;
+        CAPTURE(mesh.name);
+        CAPTURE(n);
+        for (const bool balanced : {false, true}) {
+            CAPTURE(balanced);
+            DeviceBuilder builder(queue, n);
+            builder.set_balanced(balanced);
+            builder.start(mesh.triangles.data(), n);
+            builder.finish();
+            const CompressedBvh wanted = builder.download();
+            const std::vector<hploc::ClusterNode> clusters = builder.download_clusters();
+
+            // The same builder's memory, with the leaves where they are.
+            const hploc::Climb climb = builder.prepare_climb();
+            std::fill_n(climb.ends, n, hploc::kNone);
+            std::fill(climb.tree.nodes + n, climb.tree.nodes + 2 * n, hploc::ClusterNode{});
+            CHECK(climb_on_emulated_warps(&climb, n, n) == "");
+            const std::vector<hploc::ClusterNode> by_warps = builder.download_clusters();
+            CHECK(std::memcmp(clusters.data(), by_warps.data(), n * sizeof(hploc::ClusterNode)) == 0);
+            CHECK(std::memcmp(clusters.data() + n + 1, by_warps.data() + n + 1, (n - 1) * sizeof(hploc::ClusterNode)) ==
+                  0);
+
+            const hploc::EmitWide emit = builder.prepare_emit();
+            std::memset(static_cast<void*>(emit.nodes), 0xcc, wanted.nodes.size() * sizeof(CompressedBvhNode));
+            std::memset(static_cast<void*>(emit.placed), 0xcc, n * sizeof(BvhTriangle));
+            CHECK(emit_on_emulated_warps(&emit, 3, n) == "");
+            builder.finish();
+            CHECK(are_same(builder.download(), wanted));
+        }
+    }
+}
+
+namespace {
+
+/// A mesh that has bent.
+std::vector<BvhTriangle> bent(std::vector<BvhTriangle> triangles) {
+    for (BvhTriangle& t : triangles) {
+        for (Vec3* p : {&t.a, &t.b, &t.c}) *p = {p->y - 3.0f, 0.5f * p->x + 0.25f * p->z, 2.0f * p->z + p->x};
+    }
+    return triangles;
+}
+
+/// The tree over `triangles`, fitted to `moved`.
+CompressedBvh refit(Queue& queue, const std::vector<BvhTriangle>& triangles, const std::vector<BvhTriangle>& moved) {
+    const auto count = static_cast<uint32_t>(triangles.size());
+    const Buffer<BvhTriangle> there(queue, std::span(triangles), "triangles");
+    const Buffer<BvhTriangle> moved_there(queue, std::span(moved), "moved triangles");
+    DeviceBuilder builder(queue, count);
+    builder.start(there.data(), count);
+    builder.finish();
+    for (int i = 0; i < 2; ++i) builder.start_refit(moved_there.data()); // the second finds what the first left
+    builder.finish();
+    return builder.download();
+}
+
+} // namespace
+
+TEST_CASE("a tree that is fitted to where its triangles are has the bytes of the build") {
+    Queue queue = Queue::make_cpu();
+    for (const NastyMesh& mesh : meshes()) {
+        CAPTURE(mesh.name);
+        CHECK(are_same(refit(queue, mesh.triangles, mesh.triangles), build(queue, mesh.triangles)));
+    }
+}
+
+TEST_CASE("a tree that is fitted to triangles that moved is sound, its boxes tight and its leaves the same") {
+    Queue queue = Queue::make_cpu();
+    for (const NastyMesh& mesh : meshes()) {
+        CAPTURE(mesh.name);
+        const std::vector<BvhTriangle> moved = bent(mesh.triangles);
+        const CompressedBvh bvh = refit(queue, mesh.triangles, moved), built = build(queue, mesh.triangles);
+        const auto fault = find_fault(bvh);
+        CHECK_MESSAGE(!fault, fault.value_or(""));
+        Bounds3 bounds;
+        for (const BvhTriangle& t : moved) {
+            for (const Vec3 p : {t.a, t.b, t.c}) bounds.extend(p);
+        }
+        CHECK(bvh.bounds == bounds);
+        REQUIRE(bvh.triangles.size() == built.triangles.size());
+        for (std::size_t i = 0; i < bvh.triangles.size(); ++i) {
+            CHECK(bvh.triangles[i].primitive == built.triangles[i].primitive);
+            CHECK(bvh.triangles[i].flags == built.triangles[i].flags);
+        }
+    }
+}
+
+TEST_CASE("a GPU makes the bytes that the CPU makes") {
+    if (!cuda_requested()) return;
+    Queue cpu = Queue::make_cpu(), gpu = Queue::make_cuda(0);
+    std::vector<NastyMesh> all = meshes();
+    all.push_back({"a large soup", make_soup(100001, 0), {}});
+    for (const NastyMesh& mesh : all) {
+        CAPTURE(mesh.name);
+        CAPTURE(mesh.triangles.size());
+        for (const bool balanced : {false, true}) {
+            const CompressedBvh wanted = build(cpu, mesh.triangles, balanced);
+            CHECK(are_same(build(gpu, mesh.triangles, balanced), wanted));
+            CHECK(are_same(build(gpu, mesh.triangles, balanced), wanted)); // other warps come first
+        }
+        const std::vector<BvhTriangle> moved = bent(mesh.triangles);
+        CHECK(are_same(refit(gpu, mesh.triangles, moved), refit(cpu, mesh.triangles, moved)));
+    }
+}
