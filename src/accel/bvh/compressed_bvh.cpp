@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -26,29 +27,51 @@ Difference difference(float a, float b) {
     return {value, (x - (value - back)) - (y + back)};
 }
 
-/// Largest whole number of quanta from `origin` that does not pass x; x >= origin.
-int quanta_below(float x, float origin, double quantum) {
+constexpr double kCorner = 0x1p15; // quanta from a grid's origin to where its bytes count from
+
+/// How many quanta x lies above the corner of a grid, without error where that is in [-2^14, 2^14].
+Difference quanta_from_corner(float x, float origin, double quantum) {
     const Difference d = difference(x, origin);
-    const double quotient = d.value / quantum; // a power of two: exact
-    const int q = static_cast<int>(quotient);
-    return static_cast<double>(q) == quotient && d.rest < 0 ? q - 1 : q;
+    return {d.value / quantum - kCorner, d.rest}; // a quotient by a power of two, and a difference of neighbours
+}
+
+/// Largest whole number of quanta from the corner that does not pass x, which lies above it.
+int quanta_below(float x, float origin, double quantum) {
+    const Difference d = quanta_from_corner(x, origin, quantum);
+    const int q = static_cast<int>(d.value);
+    return static_cast<double>(q) == d.value && d.rest < 0 ? q - 1 : q;
 }
 
 /// Least whole number that is not short of it.
 int quanta_above(float x, float origin, double quantum) {
-    const Difference d = difference(x, origin);
-    const double quotient = d.value / quantum;
-    const int q = static_cast<int>(quotient);
-    return static_cast<double>(q) < quotient || (static_cast<double>(q) == quotient && d.rest > 0) ? q + 1 : q;
+    const Difference d = quanta_from_corner(x, origin, quantum);
+    const int q = static_cast<int>(d.value);
+    return static_cast<double>(q) < d.value || (static_cast<double>(q) == d.value && d.rest > 0) ? q + 1 : q;
 }
 
 double quantum_of(uint32_t exponent) { return static_cast<double>(float_of(exponent << 23)); }
 
-/// The least exponent whose grid of 255 quanta reaches from lo to hi.
+/// The greatest float that puts the grid's corner at lo or below.
+float origin_below(float lo, double quantum) {
+    const Difference d = difference(lo, static_cast<float>(kCorner * quantum)); // the product is a power of two
+    const float origin = static_cast<float>(d.value);
+    const double rounded = static_cast<double>(origin);
+    return rounded > d.value || (rounded == d.value && d.rest < 0) ? std::nextafter(origin, -kInfinity) : origin;
+}
+
+/// The least exponent whose grid of 255 quanta, laid from lo, reaches to hi.
 uint32_t choose_exponent(float lo, float hi) {
     const uint32_t of_extent = bits_of(hi - lo) >> 23; // 255 quanta of 2^-8 of this reach, or those of twice that do
     uint32_t exponent = max(of_extent, kMinQuantumExponent + 9) - 9;
-    while (quanta_above(hi, lo, quantum_of(exponent)) > 255) ++exponent;
+    // lo is far from 0 where 2^15 quanta are less than half its last place: then the corner is a whole such place
+    // below.
+    exponent = max(exponent, max(bits_of(abs(lo)) >> 23, 40u) - 40u);
+    const auto reaches = [&] {
+        const double step = quantum_of(exponent);
+        const Difference d = quanta_from_corner(hi, origin_below(lo, step), step);
+        return d.value < 255 || (d.value == 255 && d.rest <= 0);
+    };
+    while (!reaches()) ++exponent;
     return exponent;
 }
 
@@ -67,9 +90,9 @@ void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]) {
     PERTEV_CHECK(!all.is_empty());
     node.exponents_and_inner &= 0xff000000u;
     for (int axis = 0; axis < 3; ++axis) {
-        const float origin = component(all.lo, axis);
-        const uint32_t exponent = choose_exponent(origin, component(all.hi, axis));
+        const uint32_t exponent = choose_exponent(component(all.lo, axis), component(all.hi, axis));
         PERTEV_CHECK(exponent <= kMaxQuantumExponent);
+        const float origin = origin_below(component(all.lo, axis), quantum_of(exponent));
         node.origin[axis] = origin;
         node.exponents_and_inner |= exponent << (8 * axis);
         for (int s = 0; s < 8; ++s) {
@@ -85,10 +108,9 @@ void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]) {
 bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box) {
     for (int axis = 0; axis < 3; ++axis) {
         const double step = static_cast<double>(quantum(node, axis));
-        const double lower = byte_of(node.planes[2 * axis], slot) * step;
-        const double upper = byte_of(node.planes[2 * axis + 1], slot) * step;
-        const Difference lo = difference(component(box.lo, axis), node.origin[axis]);
-        const Difference hi = difference(component(box.hi, axis), node.origin[axis]);
+        const double lower = byte_of(node.planes[2 * axis], slot), upper = byte_of(node.planes[2 * axis + 1], slot);
+        const Difference lo = quanta_from_corner(component(box.lo, axis), node.origin[axis], step);
+        const Difference hi = quanta_from_corner(component(box.hi, axis), node.origin[axis], step);
         if (lower > lo.value || (lower == lo.value && lo.rest < 0)) return false;
         if (upper < hi.value || (upper == hi.value && hi.rest > 0)) return false;
     }
@@ -272,8 +294,8 @@ private:
     /// In double, which is enough to tell a box that lies elsewhere.
     static bool may_meet(const CompressedBvhNode& node, int slot, const Bounds3& box) {
         for (int axis = 0; axis < 3; ++axis) {
-            const double origin = static_cast<double>(node.origin[axis]),
-                         step = static_cast<double>(quantum(node, axis));
+            const double step = static_cast<double>(quantum(node, axis));
+            const double origin = static_cast<double>(node.origin[axis]) + kCorner * step;
             if (origin + byte_of(node.planes[2 * axis], slot) * step > static_cast<double>(component(box.hi, axis)) ||
                 origin + byte_of(node.planes[2 * axis + 1], slot) * step < static_cast<double>(component(box.lo, axis)))
                 return false;
