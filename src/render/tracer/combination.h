@@ -32,6 +32,7 @@ enum class WalkKind {
     IfIf,
     WhileWhile,
     Speculative,
+    Octants,
     BruteForce,
     RestartTrail,
     ShortStack,

@@ -23,7 +23,7 @@ TracerChoice same_for_all(const Combination& combination) { return {combination,
 
 TracerChoice default_tracers(bool on_cuda) {
     if (on_cuda) { // rays from the camera go together, by binary nodes; scattered ones go alone, by compressed ones
-        const Combination together = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
+        const Combination together = {.structure = StructureKind::Binned, .walk = WalkKind::Octants};
         const Combination alone = {.structure = StructureKind::Binned,
                                    .walk = WalkKind::Compressed,
                                    .options = {.rta_at_pops = false},

@@ -1,12 +1,7 @@
 #pragma once
 
 // The eight box tests of a compressed node: conservative, as ray_boxes.h is, with the decoding's own error included.
-//
-// The ray is a segment from its origin to parameter `end`, beyond which nothing is of interest, and 0 to 1 runs along
-// it. So the multiply-add that finds where the ray crosses a plane clamps for nothing (it saturates to [0, 1]): what
-// lies behind the origin comes to 0 on both sides and what lies beyond the end to 1, and a box is entered if and only
-// if it is left later than entered. t_min is not looked at: a box before it is entered in vain. A hit shortens the
-// segment.
+// The ray is a segment (ray_segment.h).
 //
 // A plane of the node is o' + (2^15 + q) s: o' the node's origin, q a byte, s its quantum, a power of two. The byte is
 // laid into a float's mantissa, 0x4700qq00, which is exactly 2^15 + q, so that no conversion is needed (one byte
@@ -15,17 +10,11 @@
 // which moves the plane out by e and by 2^-7 of a quantum, towards less where the ray enters and towards more where it
 // leaves, whichever way it goes.
 //
-// Why that never misses (written as a shift of the plane; u = 2^-24; S = |origin|max + |bounds|max; e = 16 u S as in
-// ray_boxes.h). a is exact: s is within [2^-80, 2^34] and 1/d within [2^-42, 2^100], and their product below 2^75.
-// Roundings, at most: of d one u S, of its reciprocal two (the device's is approximate), of the last fma one; of o' - o
-// and of the inner fma u (S + 2^15 s) each; together 6 u S and a little, and 2^-8 s. m is right to 2^-21 of itself,
-// even where it is denormal. The triangle test's own error is at most 6 u S. 16 u S + 2^-7 s hold them all, and 3 u S
-// remain. So a hit, at 1 or before, is strictly later than the entry and earlier than the exit, before both are clamped
-// and after, since the ray moves by at most S and a little: 3 u S of its way are more than 2 u of 1.
-// The guard: |d_i| < 2^-60 S (and 2^-100 m) counts as that much, so that everything is finite. Along such an axis the
-// ray moves, all the way to its end, by less than 2^-60 S, far less than e, or by less than 2^-100, far less than
-// 2^-7 s. Shortening multiplies 1/d by the ratio of the ends: four roundings more, at most 4 u S, by which e grows each
-// time.
+// Why that never misses (written as a shift of the plane; u, S, e and the guard of d: ray_segment.h). a is exact: s is
+// within [2^-80, 2^34] and 1/d within [2^-42, 2^124], and their product below 2^75. Roundings, at most: of 1/d three
+// u S, of the last fma one; of o' - o and of the inner fma u (S + 2^15 s) each; together 6 u S and a little, and 2^-8
+// s. m is right to 2^-21 of itself, even where it is denormal. The triangle test's own error is at most 6 u S. 16 u S +
+// 2^-7 s hold them all, and 3 u S remain for what a segment asks.
 //
 // Least and greatest of three are taken of the bits as integers (ray_boxes.h), which is right for what is not negative.
 // The node: accel/bvh/compressed_bvh.h. The arithmetic was worked out for this file.
@@ -36,21 +25,9 @@
 #include "accel/bvh/compressed_bvh.h"
 #include "base/host_device.h"
 #include "trace/intersect/ray_boxes.h"
-#include "trace/intersect/ray_tests.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray_segment.h"
 
 namespace pertev {
-
-/// fma(a, b, c), clamped to [0, 1]; one instruction on the device.
-HD inline float fma_saturated(float a, float b, float c) {
-#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
-    float r;
-    asm("fma.rn.sat.f32 %0, %1, %2, %3;" : "=f"(r) : "f"(a), "f"(b), "f"(c));
-    return r;
-#else
-    return clamp(fma(a, b, c), 0.0f, 1.0f);
-#endif
-}
 
 /// 2^15 + byte k of the word; `base` is kByteBase.
 HD inline float float_of_byte(uint32_t word, int k, uint32_t base) {
@@ -59,43 +36,6 @@ HD inline float float_of_byte(uint32_t word, int k, uint32_t base) {
 #else
     return float_of(base | (word >> (8 * k) & 0xffu) << 8);
 #endif
-}
-
-/// What the tests of compressed boxes need of a ray besides its origin; less than RayBoxes, which would cost registers.
-struct RayCompressedBoxes {
-    Vec3 inv;   // 1 / (direction * end), guarded
-    float grow; // by which planes move out, metres
-    float end;  // the ray's parameter where the segment ends
-
-    /// Nothing beyond parameter t is of interest any more; t >= 0.
-    HD void shorten(float t) {
-        const float now = max(t, max(0x1p-60f * end, 0x1p-100f));
-        if (!(now < end)) return;
-        const float ratio = end * fast_reciprocal(now), most = fast_reciprocal(least_move());
-        const auto lengthen = [&](float x) { return box_max(box_min(x * ratio, most), -most); };
-        inv = {lengthen(inv.x), lengthen(inv.y), lengthen(inv.z)};
-        grow *= 1.25f;
-        end = now;
-    }
-    /// 2^-60 S, metres: less than that along an axis counts as that much. (Of tests that leak, 2^-80 S.)
-    HD float least_move() const { return max(0x1p-40f * grow, 0x1p-100f); }
-};
-
-/// Of the ray up to `limit`, as far as it can be in bounds that reach to bounds_max_abs from the origin of coordinates.
-template <class Tests>
-HD inline RayCompressedBoxes make_ray_compressed_boxes(const Ray& ray, float bounds_max_abs, float limit) {
-    RayCompressedBoxes r;
-    r.grow = Tests::box_growth(ray, bounds_max_abs);
-    const float reach = max_component(abs(ray.origin)) + bounds_max_abs;
-    const float last = reach * fast_reciprocal(max_component(abs(ray.direction))) * (1 + 0x1p-10f);
-    r.end = max(min(limit, last), 0x1p-60f);
-    const float least = r.least_move();
-    const auto invert = [&](float d) {
-        const float move = d * r.end;
-        return fast_reciprocal(abs(move) < least ? copysign(least, move) : move);
-    };
-    r.inv = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
-    return r;
 }
 
 /// One axis of a node, seen from a ray: what takes a byte to where the ray crosses its plane.
@@ -122,8 +62,7 @@ HD inline CompressedAxis make_compressed_axis(const CompressedBvhNode& node, int
 
 /// Bit s: the box of slot s may hold a hit with 0 < t <= r.end, and is entered at entries[s] * r.end or later. Bits and
 /// entries of empty slots mean nothing.
-HD inline uint32_t enters_slots(Vec3 origin, const RayCompressedBoxes& r, const CompressedBvhNode& node,
-                                float (&entries)[8]) {
+HD inline uint32_t enters_slots(Vec3 origin, const RaySegment& r, const CompressedBvhNode& node, float (&entries)[8]) {
     const CompressedAxis x = make_compressed_axis(node, 0, origin.x, r.inv.x, r.grow);
     const CompressedAxis y = make_compressed_axis(node, 1, origin.y, r.inv.y, r.grow);
     const CompressedAxis z = make_compressed_axis(node, 2, origin.z, r.inv.z, r.grow);
