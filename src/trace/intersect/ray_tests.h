@@ -52,9 +52,9 @@ struct FastTests {
         r.hi = r.lo;
         return r;
     }
-    /// Of boxes that are tested against a segment (ray_segment.h), which must have some thickness.
+    /// Of boxes that are tested against a segment (ray_segment.h): without it, flat ones would be missed.
     HD static float box_growth(const Ray& ray, float bounds_max_abs) {
-        return 0.25f * pertev::box_growth(ray.origin, bounds_max_abs);
+        return pertev::box_growth(ray.origin, bounds_max_abs);
     }
     HD static Triangles make_triangles(const Ray&) { return {}; }
     HD static bool intersect(const Ray& ray, Triangles, Vec3 a, Vec3 b, Vec3 c, TriangleHit& hit) {
