@@ -23,6 +23,7 @@ Family family_of(WalkKind walk) {
     case WalkKind::IfIf:
     case WalkKind::WhileWhile:
     case WalkKind::Speculative:
+    case WalkKind::Octants:
         return Family::BinaryStack;
     case WalkKind::RestartTrail:
     case WalkKind::ShortStack:

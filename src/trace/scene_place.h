@@ -25,8 +25,8 @@ struct ScenePlace<Walk, SingleTree<typename Walk::Tree>> {
 
     HD bool is_done() const { return place.is_done(); }
     template <class Visitor>
-    HD void start(const Scene& scene, const Ray& ray) {
-        Walk::template start<Visitor>(scene.baked, ray, place);
+    HD void start(const Scene& scene, const Ray& ray, const Visitor& visitor) {
+        Walk::start(scene.baked, ray, visitor, place);
     }
     /// All of `lanes` come here together; to those that are done it does nothing.
     template <class Visitor, class Counter>
@@ -50,12 +50,12 @@ struct ScenePlace<Walk, SceneTrees<typename Walk::Tree>> {
 
     HD bool is_done() const { return place.is_done() && top.link == kNoLink; }
     template <class Visitor>
-    HD void start(const Scene& scene, const Ray& ray) {
+    HD void start(const Scene& scene, const Ray& ray, const Visitor& visitor) {
         tree = scene.baked;
         local = ray;
         instance = kNoHit;
         top = {scene.top_root};
-        Walk::template start<Visitor>(tree, local, place);
+        Walk::start(tree, local, visitor, place);
     }
     /// As above.
     template <class Visitor, class Counter>
@@ -83,7 +83,7 @@ private:
         instance = record.instance;
         tree = scene.meshes[record.mesh_bvh];
         local = transform_ray(record.local_from_world, ray);
-        Walk::template start<Visitor>(tree, local, place);
+        Walk::start(tree, local, visitor, place);
     }
 };
 

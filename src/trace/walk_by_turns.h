@@ -16,7 +16,7 @@ HD inline bool walk_by_turns(const typename Walk::Tree& tree, const Ray& ray, ui
                              const Counter& counter) {
     typename Walk::Place::Slot slots[Walk::Place::kSlots];
     typename Walk::Place place(slots);
-    Walk::template start<Visitor>(tree, ray, place);
+    Walk::start(tree, ray, visitor, place);
     while (!place.is_done()) {
         const LaneMask lanes = lanes_here();
         if (Walk::turn(tree, ray, instance, place, visitor, counter, lanes, count_lanes(lanes))) return true;

@@ -18,6 +18,7 @@
 #include "tests/support/options.h"
 #include "tests/support/split_bvh.h"
 #include "trace/binary/if_if_walk.h"
+#include "trace/binary/octant_walk.h"
 #include "trace/binary/packet_walk.h"
 #include "trace/binary/parent_links_walk.h"
 #include "trace/binary/short_stack_walk.h"
@@ -65,6 +66,7 @@ void check_binary_walks(const SceneBvhView& scene, const std::vector<Ray>& rays,
     check_options<WhileWhileWalk>("while-while", scene, rays, expected, accept);
     check_options<IfIfWalk>("if-if", scene, rays, expected, accept);
     check_options<SpeculativeWalk>("speculative", scene, rays, expected, accept);
+    check_options<OctantWalk>("octants", scene, rays, expected, accept);
     check_options<RestartTrailWalk>("restart trail", scene, rays, expected, accept);
     check_options<ShortStackWalk>("short stack", scene, rays, expected, accept);
     check_options<ParentLinksWalk>("parent links", scene, rays, expected, accept);
@@ -210,6 +212,7 @@ TEST_CASE("a box entered just where the nearest hit lies is still entered: of co
     check.template operator()<WhileWhileWalk<kFast>>("while-while", view_of(bvh));
     check.template operator()<IfIfWalk<kFast>>("if-if", view_of(bvh));
     check.template operator()<SpeculativeWalk<kFast>>("speculative", view_of(bvh));
+    check.template operator()<OctantWalk<kFast>>("octants", view_of(bvh));
     check.template operator()<RestartTrailWalk<kFast>>("restart trail", view_of(bvh));
     check.template operator()<ShortStackWalk<kFast>>("short stack", view_of(bvh));
     check.template operator()<ParentLinksWalk<kFast>>("parent links", view_of(bvh));
@@ -229,6 +232,7 @@ TEST_CASE("redundant traversal avoidance never visits more, and saves") {
     check_rta_saves<WhileWhileWalk>("while-while", view_of(bvh), rays);
     check_rta_saves<IfIfWalk>("if-if", view_of(bvh), rays);
     check_rta_saves<SpeculativeWalk>("speculative", view_of(bvh), rays);
+    check_rta_saves<OctantWalk>("octants", view_of(bvh), rays);
     check_rta_saves<RestartTrailWalk>("restart trail", view_of(bvh), rays);
     check_rta_saves<ShortStackWalk>("short stack", view_of(bvh), rays);
     check_rta_saves<ParentLinksWalk>("parent links", view_of(bvh), rays);
@@ -287,6 +291,7 @@ TEST_CASE("with the laboratory's fast tests every walk finds the same surfaces, 
     check.template operator()<WhileWhileWalk<kFast>>("while-while", view_of(bvh));
     check.template operator()<IfIfWalk<kFast>>("if-if", view_of(bvh));
     check.template operator()<SpeculativeWalk<kFast>>("speculative", view_of(bvh));
+    check.template operator()<OctantWalk<kFast>>("octants", view_of(bvh));
     check.template operator()<RestartTrailWalk<kFast>>("restart trail", view_of(bvh));
     check.template operator()<ShortStackWalk<kFast>>("short stack", view_of(bvh));
     check.template operator()<ParentLinksWalk<kFast>>("parent links", view_of(bvh));

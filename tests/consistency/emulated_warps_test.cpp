@@ -201,7 +201,7 @@ TEST_CASE("so they do over instances, where rays of a warp come to different mes
             return walk.run_scene({&binary_scene, &compressed_scene}, batch);
         });
     }
-    CHECK(runs == 22); // four walks, two ways, and three by dynamic fetch too; closest and any
+    CHECK(runs == 26); // four walks, two ways, and three by dynamic fetch too; closest and any
 }
 
 TEST_CASE("on warps, live lanes add up to the visits of the rays") {
@@ -241,5 +241,5 @@ TEST_CASE("on warps, live lanes add up to the visits of the rays") {
         CHECK(sums.triangle_sectors >= sums.triangle_requests);
         CHECK(sums.triangle_sectors <= 3 * sums.triangle_lanes);
     }
-    CHECK(runs == 11);
+    CHECK(runs == 13);
 }

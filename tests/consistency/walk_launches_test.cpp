@@ -160,7 +160,7 @@ TEST_CASE("so they do over instances, those that can, and packets whose rays par
         CHECK(count_wrong(batch.hits.download(), expected, s.rays, launch.any) == 0);
         ++launches;
     }
-    CHECK(launches == 38); // eight walks, two ways, and three by dynamic fetch too; closest and any
+    CHECK(launches == 42); // nine walks, two ways, and three by dynamic fetch too; closest and any
 }
 
 TEST_CASE("live lanes add up to the visits of the rays") {

@@ -94,7 +94,7 @@ struct PostponingWalk {
         constexpr LaneMask kAlone = 1;
         typename Walk::Place::Slot slots[Walk::Place::kSlots];
         typename Walk::Place place(slots);
-        Walk::template start<Visitor>(bvh, ray, place);
+        Walk::start(bvh, ray, visitor, place);
         for (uint32_t turns = 0; !place.is_done(); ++turns) {
             const bool waits = place.nodes.is_empty();
             const bool alone = waits || (!kAlways && hash_word(bits_of(ray.direction.x) + turns) % 4 == 0);

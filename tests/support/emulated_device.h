@@ -77,6 +77,9 @@ inline uint32_t __byte_perm(uint32_t x, uint32_t y, uint32_t selector) {
     return result;
 }
 
+struct alignas(8) [[gnu::may_alias]] uint2 {
+    uint32_t x, y;
+};
 struct alignas(16) [[gnu::may_alias]] uint4 {
     uint32_t x, y, z, w;
 };

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "device/launch_body.h"
+#include "trace/binary/octant_walk.h"
 #include "trace/binary/speculative_walk.h"
 #include "trace/binary/warp_packet_walk.h"
 #include "trace/binary/while_while_walk.h"
@@ -226,6 +227,10 @@ std::vector<EmulatedWalk> emulated_walks() {
     add_woop<device::SpeculativeWalk>("speculative", rows);
     add_all<device::CompressedWalk, true>("compressed", rows);
     add_ways<device::CompressedWalk, WalkOptions{.rta_at_pops = false}, false, true>("compressed", rows);
+    // With exact tests alone: it tests triangles before t_min, where the fast ones may hit just behind it.
+    add_ways<device::OctantWalk, WalkOptions{}, false, false>("octants", rows);
+    add_ways<device::OctantWalk, WalkOptions{}, true, false>("octants", rows);
+    add_ways<device::OctantWalk, WalkOptions{false, false}, false, false>("octants", rows);
     add_all<device::WarpPacketWalk, false>("warp packet", rows);
     return rows;
 }

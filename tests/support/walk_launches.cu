@@ -4,6 +4,7 @@
 
 #include "device/launch_body.h"
 #include "trace/binary/if_if_walk.h"
+#include "trace/binary/octant_walk.h"
 #include "trace/binary/parent_links_walk.h"
 #include "trace/binary/short_stack_walk.h"
 #include "trace/binary/speculative_walk.h"
@@ -121,6 +122,7 @@ std::vector<WalkLaunch> walk_launches() {
     std::vector<WalkLaunch> launches;
     add_all<WhileWhileWalk, true>("while-while", launches);
     add_all<SpeculativeWalk, true>("speculative", launches);
+    add_all<OctantWalk, false>("octants", launches);
     add_all<IfIfWalk, false>("if-if", launches);
     add_all<RestartTrailWalk, false>("restart trail", launches);
     add_all<ShortStackWalk, false>("short stack", launches);

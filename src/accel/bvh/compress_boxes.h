@@ -22,40 +22,67 @@ HD inline Difference difference(float a, float b) {
     return {value, (x - (value - back)) - (y + back)};
 }
 
+inline constexpr double kCorner = 0x1p15; // quanta from a grid's origin to where its bytes count from
+
 // Of the quantum's inverse, which is exact: quanta are powers of two.
 
-/// Largest whole number of quanta from `origin` that does not pass x; x >= origin.
-HD inline int quanta_below(float x, float origin, double quanta_a_metre) {
+/// How many quanta x lies above the corner of a grid, without error where that is in [-2^14, 2^14].
+HD inline Difference quanta_from_corner(float x, float origin, double quanta_a_metre) {
     const Difference d = difference(x, origin);
-    const double quotient = d.value * quanta_a_metre;
-    const int q = static_cast<int>(quotient);
-    return static_cast<double>(q) == quotient && d.rest < 0 ? q - 1 : q;
+    return {d.value * quanta_a_metre - kCorner, d.rest}; // a product by a power of two, a difference of neighbours
+}
+
+/// Largest whole number of quanta from the corner that does not pass x, which lies above it.
+HD inline int quanta_below(float x, float origin, double quanta_a_metre) {
+    const Difference d = quanta_from_corner(x, origin, quanta_a_metre);
+    const int q = static_cast<int>(d.value);
+    return static_cast<double>(q) == d.value && d.rest < 0 ? q - 1 : q;
 }
 
 /// Least whole number that is not short of it.
 HD inline int quanta_above(float x, float origin, double quanta_a_metre) {
-    const Difference d = difference(x, origin);
-    const double quotient = d.value * quanta_a_metre;
-    const int q = static_cast<int>(quotient);
-    return static_cast<double>(q) < quotient || (static_cast<double>(q) == quotient && d.rest > 0) ? q + 1 : q;
+    const Difference d = quanta_from_corner(x, origin, quanta_a_metre);
+    const int q = static_cast<int>(d.value);
+    return static_cast<double>(q) < d.value || (static_cast<double>(q) == d.value && d.rest > 0) ? q + 1 : q;
 }
 
 HD inline double quanta_a_metre(uint32_t exponent) { return static_cast<double>(float_of((254 - exponent) << 23)); }
 
-/// The least exponent whose grid of 255 quanta reaches from lo to hi.
+/// The float before x, which is finite.
+HD inline float float_before(float x) {
+    if (x == 0) return float_of(0x80000001u);
+    return float_of(x > 0 ? bits_of(x) - 1 : bits_of(x) + 1);
+}
+
+/// The greatest float that puts the corner of a grid of this quantum at lo or below.
+HD inline float origin_below(float lo, uint32_t exponent) {
+    const Difference d = difference(lo, 32768.0f * float_of(exponent << 23)); // the product is a power of two
+    const float origin = static_cast<float>(d.value);
+    const double rounded = static_cast<double>(origin);
+    return rounded > d.value || (rounded == d.value && d.rest < 0) ? float_before(origin) : origin;
+}
+
+/// The least exponent whose grid of 255 quanta, laid from lo, reaches to hi.
 HD inline uint32_t choose_exponent(float lo, float hi) {
     const uint32_t of_extent = bits_of(hi - lo) >> 23; // 255 quanta of 2^-8 of this reach, or those of twice that do
     uint32_t exponent = max(of_extent, kMinQuantumExponent + 9) - 9;
-    while (quanta_above(hi, lo, quanta_a_metre(exponent)) > 255) ++exponent;
-    return exponent;
+    // lo is far from 0 where 2^15 quanta are less than half its last place: then the corner is a whole such place
+    // below.
+    exponent = max(exponent, max(bits_of(abs(lo)) >> 23, 40u) - 40u);
+    while (true) {
+        const Difference d = quanta_from_corner(hi, origin_below(lo, exponent), quanta_a_metre(exponent));
+        if (d.value < 255 || (d.value == 255 && d.rest <= 0)) return exponent;
+        ++exponent;
+    }
 }
 
 /// Lays a node's grid over the box of all its children. Coordinates are at most kMaxCoordinate.
 HD inline void lay_grid(CompressedBvhNode& node, const Bounds3& all) {
     node.exponents_and_inner &= 0xff000000u;
     for (int axis = 0; axis < 3; ++axis) {
-        node.origin[axis] = component(all.lo, axis) + 0.0f; // -0 is 0, whichever a minimum found
-        node.exponents_and_inner |= choose_exponent(component(all.lo, axis), component(all.hi, axis)) << (8 * axis);
+        const uint32_t exponent = choose_exponent(component(all.lo, axis), component(all.hi, axis));
+        node.origin[axis] = origin_below(component(all.lo, axis), exponent);
+        node.exponents_and_inner |= exponent << (8 * axis);
     }
 }
 

@@ -31,11 +31,10 @@ void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]) {
 
 bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box) {
     for (int axis = 0; axis < 3; ++axis) {
-        const double step = static_cast<double>(quantum(node, axis));
-        const double lower = byte_of(node.planes[2 * axis], slot) * step;
-        const double upper = byte_of(node.planes[2 * axis + 1], slot) * step;
-        const Difference lo = difference(component(box.lo, axis), node.origin[axis]);
-        const Difference hi = difference(component(box.hi, axis), node.origin[axis]);
+        const double scale = 1 / static_cast<double>(quantum(node, axis));
+        const double lower = byte_of(node.planes[2 * axis], slot), upper = byte_of(node.planes[2 * axis + 1], slot);
+        const Difference lo = quanta_from_corner(component(box.lo, axis), node.origin[axis], scale);
+        const Difference hi = quanta_from_corner(component(box.hi, axis), node.origin[axis], scale);
         if (lower > lo.value || (lower == lo.value && lo.rest < 0)) return false;
         if (upper < hi.value || (upper == hi.value && hi.rest > 0)) return false;
     }
@@ -219,8 +218,8 @@ private:
     /// In double, which is enough to tell a box that lies elsewhere.
     static bool may_meet(const CompressedBvhNode& node, int slot, const Bounds3& box) {
         for (int axis = 0; axis < 3; ++axis) {
-            const double origin = static_cast<double>(node.origin[axis]),
-                         step = static_cast<double>(quantum(node, axis));
+            const double step = static_cast<double>(quantum(node, axis));
+            const double origin = static_cast<double>(node.origin[axis]) + kCorner * step;
             if (origin + byte_of(node.planes[2 * axis], slot) * step > static_cast<double>(component(box.hi, axis)) ||
                 origin + byte_of(node.planes[2 * axis + 1], slot) * step < static_cast<double>(component(box.lo, axis)))
                 return false;

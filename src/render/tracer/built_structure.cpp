@@ -48,6 +48,7 @@ TreeLayout layout_of(const Combination& combination) {
         return TreeLayout::Triangles;
     case WalkKind::WhileWhile:
     case WalkKind::Speculative:
+    case WalkKind::Octants:
         return combination.options.tests == TestKind::Woop ? TreeLayout::Woop : TreeLayout::Binary;
     case WalkKind::IfIf:
     case WalkKind::RestartTrail:

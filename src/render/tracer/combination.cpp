@@ -16,9 +16,10 @@ constexpr std::array kStructures = {StructureKind::Binned,        StructureKind:
                                     StructureKind::KdMedian,      StructureKind::KdSah,
                                     StructureKind::Octree};
 constexpr std::array kWalks = {
-    WalkKind::IfIf,       WalkKind::WhileWhile,  WalkKind::Speculative, WalkKind::BruteForce, WalkKind::RestartTrail,
-    WalkKind::ShortStack, WalkKind::ParentLinks, WalkKind::SkipLinks,   WalkKind::Packet,     WalkKind::Wide4,
-    WalkKind::Wide8,      WalkKind::Wide8Simd,   WalkKind::Compressed,  WalkKind::Kd,         WalkKind::Octree};
+    WalkKind::IfIf,       WalkKind::WhileWhile,   WalkKind::Speculative, WalkKind::Octants,
+    WalkKind::BruteForce, WalkKind::RestartTrail, WalkKind::ShortStack,  WalkKind::ParentLinks,
+    WalkKind::SkipLinks,  WalkKind::Packet,       WalkKind::Wide4,       WalkKind::Wide8,
+    WalkKind::Wide8Simd,  WalkKind::Compressed,   WalkKind::Kd,          WalkKind::Octree};
 
 constexpr std::array kTests = {TestKind::Exact, TestKind::Fast, TestKind::Woop};
 
@@ -83,6 +84,8 @@ const char* name_of(WalkKind kind) {
         return "while-while";
     case WalkKind::Speculative:
         return "speculative";
+    case WalkKind::Octants:
+        return "octants";
     case WalkKind::BruteForce:
         return "brute-force";
     case WalkKind::RestartTrail:

@@ -34,6 +34,7 @@ enum class WalkKind {
     IfIf,
     WhileWhile,
     Speculative,
+    Octants,
     BruteForce,
     RestartTrail,
     ShortStack,

@@ -55,7 +55,7 @@ StructureKind structure_of(TreeBuild build) {
 TracerChoice default_tracers(bool on_cuda, TreeBuild build) {
     const StructureKind structure = structure_of(build);
     if (on_cuda) { // rays from the camera go together, by binary nodes; scattered ones go alone, by compressed ones
-        const Combination together = {.structure = structure, .walk = WalkKind::WhileWhile};
+        const Combination together = {.structure = structure, .walk = WalkKind::Octants};
         const Combination alone = {.structure = structure,
                                    .walk = WalkKind::Compressed,
                                    .options = {.rta_at_pops = false},

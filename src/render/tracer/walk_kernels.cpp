@@ -8,6 +8,7 @@ namespace pertev {
 void add_if_if_kernels(std::vector<WalkKernel>& rows);
 void add_while_while_kernels(std::vector<WalkKernel>& rows);
 void add_speculative_kernels(std::vector<WalkKernel>& rows);
+void add_octant_kernels(std::vector<WalkKernel>& rows);
 void add_restart_trail_kernels(std::vector<WalkKernel>& rows);
 void add_short_stack_kernels(std::vector<WalkKernel>& rows);
 void add_parent_links_kernels(std::vector<WalkKernel>& rows);
@@ -27,6 +28,7 @@ std::vector<WalkKernel> all_kernels() {
     add_if_if_kernels(rows);
     add_while_while_kernels(rows);
     add_speculative_kernels(rows);
+    add_octant_kernels(rows);
     add_restart_trail_kernels(rows);
     add_short_stack_kernels(rows);
     add_parent_links_kernels(rows);

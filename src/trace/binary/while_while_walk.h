@@ -46,7 +46,7 @@ struct WhileWhileWalk {
     using Place = WalkPlace<kOptions>;
 
     template <class Visitor>
-    HD static void start(const Tree& bvh, const Ray& ray, Place& place) {
+    HD static void start(const Tree& bvh, const Ray& ray, const Visitor&, Place& place) {
         place.start(bvh, ray);
     }
 

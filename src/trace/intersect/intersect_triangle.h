@@ -43,6 +43,15 @@ HD inline Vec3 shear(Vec3 p, const RayShear& ray) {
     return {fma(-ray.sx, z, x), fma(-ray.sy, z, y), z};
 }
 
+/// The least |x| of three. Where one is NaN the triangle is not hit, whatever comes out.
+HD inline float least_size(float a, float b, float c) {
+#if PERTEV_ON_DEVICE
+    return ::fminf(::fabsf(a), ::fminf(::fabsf(b), ::fabsf(c))); // two instructions, where abs() and min() take seven
+#else
+    return min(abs(a), min(abs(b), abs(c)));
+#endif
+}
+
 /// Hit on the front or back face with t_min < t < t_max; false when there is none. `hit` is written on true only. A
 /// triangle without area, or with a vertex that is not finite, is never hit.
 HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min, float t_max, Vec3 a, Vec3 b, Vec3 c,
@@ -52,7 +61,7 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
     float ea = difference_of_products(pc.x, pb.y, pc.y, pb.x);
     float eb = difference_of_products(pa.x, pc.y, pa.y, pc.x);
     float ec = difference_of_products(pb.x, pa.y, pb.y, pa.x);
-    if (min(abs(ea), min(abs(eb), abs(ec))) < 0x1p-100f) {
+    if (least_size(ea, eb, ec) < 0x1p-100f) {
         // Zero, or products may have underflown: exact in double. Only their ratios matter below, so they are brought
         // up to where floats hold them; one that is still lost beside the others counts as zero, which is inside.
         const double da = difference_of_products_in_double(pc.x, pb.y, pc.y, pb.x);

@@ -52,7 +52,10 @@ struct FastTests {
         r.hi = r.lo;
         return r;
     }
-    HD static float box_growth(const Ray&, float) { return 0; }
+    /// Of boxes that are tested against a segment (ray_segment.h): without it, flat ones would be missed.
+    HD static float box_growth(const Ray& ray, float bounds_max_abs) {
+        return pertev::box_growth(ray.origin, bounds_max_abs);
+    }
     HD static Triangles make_triangles(const Ray&) { return {}; }
     HD static bool intersect(const Ray& ray, Triangles, Vec3 a, Vec3 b, Vec3 c, TriangleHit& hit) {
         const auto dot_fma = [](Vec3 p, Vec3 q) { return fma(p.x, q.x, fma(p.y, q.y, p.z * q.z)); };

@@ -8,7 +8,7 @@
 //
 // Such a walk has, besides what all have (trace/walk_scene.h),
 //   Place(Place::Slot[Place::kSlots])                  where a ray stands, done at first; is_done(), stop()
-//   start<Visitor>(tree, ray, place)                   puts the ray at the root
+//   start(tree, ray, visitor, place)                   puts the ray at the root
 //   turn(tree, ray, instance, place, visitor, counter, lanes, working)    takes it further; true when the visitor
 //                                                      ended the walk. `lanes` come to this turn together, `working`
 //                                                      of them with a ray on its way; to the others it does nothing
@@ -84,7 +84,7 @@ __global__ void __launch_bounds__(kWalkThreads)
                 ray = rays.load(index);
                 accept.i = index;
                 search.restart(ray.t_max);
-                place.template start<decltype(Search::visitor)>(scene, ray);
+                place.start(scene, ray, search.visitor);
             }
         }
         if (ballot(kWarp, index != kNoRay) == 0) return; // then the pool is empty too

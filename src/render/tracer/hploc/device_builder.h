@@ -20,7 +20,7 @@ class DeviceBuilder {
 public:
     /// Memory for trees of up to `most` triangles: about 280 bytes for each while it builds, and what it makes. Costs:
     /// max_leaf is at most kCompressedLeaf, one triangle at a time. Throws Error(OutOfMemory), Error(OverLimit).
-    DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings& costs = {.max_leaf = kCompressedLeaf});
+    DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings& costs = kCompressedCollapse);
 
     /// Gives the build to the queue and returns. `triangles` are on the device, finite, |coordinate| at most
     /// kMaxCoordinate; count <= most.

@@ -1,0 +1,8 @@
+#include "render/tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/octant_walk.h"
+
+namespace pertev {
+
+void add_octant_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<OctantWalk>(WalkKind::Octants, rows); }
+
+} // namespace pertev

@@ -1,0 +1,78 @@
+#pragma once
+
+// A ray as a segment that boxes are tested against: from its origin to parameter `end`, beyond which nothing is of
+// interest, with 0 to 1 along it. So the multiply-add that finds where the ray crosses a plane clamps for nothing (it
+// saturates to [0, 1]): what lies behind the origin comes to 0 on both sides, what lies beyond the end to 1, and a box
+// is entered if and only if it is left later than entered. t_min is not looked at: a box before it is entered in vain.
+// A hit shortens the segment.
+//
+// The tests of boxes move planes out by e = 16 u S, u = 2^-24, S = |origin|max + |bounds|max, as ray_boxes.h does, and
+// count roundings as shifts of a plane. Of 1/d, d = direction * end, they are three u S at most: one of d, two of its
+// reciprocal (the device's is approximate).
+// Why strictly later is enough: to the end the ray moves by at most S and a little, so u S of its way is about u of 1.
+// Where a test's own roundings and the triangle test's (6 u S) leave 3 of the 16, a hit, at 1 or before, is later than
+// the entry and earlier than the exit by more than 2 u, before both are clamped and so after.
+// The guard: |d_i| < 2^-40 S (and 2^-100 m) counts as that much, so that everything is finite. Along such an axis the
+// ray moves, all the way to its end, by less than 2^-40 S, far less than e. (The 2^-100 m are, for S from 2^-76 m on.)
+// Shortening multiplies 1/d by the ratio of the ends: four roundings more, at most 4 u S, by which e grows each time.
+//
+// The arithmetic was worked out for this file.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/scalar.h"
+#include "math/vec3.h"
+#include "trace/intersect/ray_boxes.h"
+#include "trace/intersect/ray_tests.h"
+#include "trace/ray.h"
+
+namespace pertev {
+
+/// fma(a, b, c), clamped to [0, 1]; one instruction on the device.
+HD inline float fma_saturated(float a, float b, float c) {
+#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
+    float r;
+    asm("fma.rn.sat.f32 %0, %1, %2, %3;" : "=f"(r) : "f"(a), "f"(b), "f"(c));
+    return r;
+#else
+    return clamp(fma(a, b, c), 0.0f, 1.0f);
+#endif
+}
+
+/// What box tests need of a ray besides its origin.
+struct RaySegment {
+    Vec3 inv;   // 1 / (direction * end), guarded
+    float grow; // by which planes move out, metres
+    float end;  // the ray's parameter where the segment ends
+
+    /// Nothing beyond parameter t is of interest any more; t >= 0. The segment stays as long as 2^-24 S, so that 1/d
+    /// stays finite. (In the few instructions that it is: lanes that hit something do this alone.)
+    HD void shorten(float t) {
+        const float slowest = ::fminf(::fminf(::fabsf(inv.x), ::fabsf(inv.y)), ::fabsf(inv.z));
+        const float now = box_max(t, 0x1p-4f * grow * slowest * end); // 1 / (slowest * end) is |direction|max
+        if (!(now < end)) return;
+        inv = inv * (end * fast_reciprocal(now));
+        grow *= 1.25f;
+        end = now;
+    }
+};
+
+/// Of the ray up to `limit`, as far as it can be in bounds that reach to bounds_max_abs from the origin of coordinates.
+template <class Tests>
+HD inline RaySegment make_ray_segment(const Ray& ray, float bounds_max_abs, float limit) {
+    RaySegment r;
+    r.grow = Tests::box_growth(ray, bounds_max_abs);
+    const float reach = max_component(abs(ray.origin)) + bounds_max_abs;
+    const float last = reach * fast_reciprocal(max_component(abs(ray.direction))) * (1 + 0x1p-10f);
+    r.end = max(min(limit, last), 0x1p-100f);
+    const float least = max(0x1p-20f * r.grow, 0x1p-100f);
+    const auto invert = [&](float d) {
+        const float move = d * r.end;
+        return fast_reciprocal(abs(move) < least ? copysign(least, move) : move);
+    };
+    r.inv = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
+    return r;
+}
+
+} // namespace pertev
