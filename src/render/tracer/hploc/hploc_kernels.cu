@@ -10,13 +10,13 @@
 
 namespace pertev {
 
-template void launch(Queue&, const char*, uint32_t, const hploc::FindBounds&);
-template void launch(Queue&, const char*, uint32_t, const hploc::MakeCodes&);
-template void launch(Queue&, const char*, uint32_t, const hploc::PlaceLeaves&);
-template void launch(Queue&, const char*, uint32_t, const hploc::EmitLevel&);
-template void launch(Queue&, const char*, uint32_t, const hploc::LinkParents&);
-template void launch(Queue&, const char*, uint32_t, const hploc::MoveTriangles&);
-template void launch(Queue&, const char*, uint32_t, const hploc::RefitNodes&);
+template void launch(Queue&, const char*, WorkCount, const hploc::FindBounds&);
+template void launch(Queue&, const char*, WorkCount, const hploc::MakeCodes&);
+template void launch(Queue&, const char*, WorkCount, const hploc::PlaceLeaves&);
+template void launch(Queue&, const char*, WorkCount, const hploc::EmitLevel&);
+template void launch(Queue&, const char*, WorkCount, const hploc::LinkParents&);
+template void launch(Queue&, const char*, WorkCount, const hploc::MoveTriangles&);
+template void launch(Queue&, const char*, WorkCount, const hploc::RefitNodes&);
 
 void launch_climb(Queue& queue, const hploc::Climb& climb) {
 #if defined(__CUDACC__)
