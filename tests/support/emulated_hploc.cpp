@@ -35,9 +35,6 @@ inline bool __any_sync(uint32_t mask, bool mine, Place at = Place::current()) {
 inline void __threadfence() { lane::step(); }
 inline void __nanosleep(uint32_t) { lane::step(); }
 
-struct uint2 {
-    uint32_t x, y;
-};
 inline uint2 make_uint2(uint32_t x, uint32_t y) { return {x, y}; }
 struct float4 {
     float x, y, z, w;
