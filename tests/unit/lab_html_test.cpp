@@ -109,7 +109,7 @@ TEST_CASE("bars are the thirty fastest, coloured by family, fast tests hollow") 
         }
     }
     const std::string html = html_bars(report);
-    CHECK(has(html, "The 30 fastest of 48;"));
+    CHECK(has(html, "The 30 fastest of 52;"));
     CHECK(has(html, "binary, stackless"));
     CHECK(!has(html, "kd-tree and octree"));
     CHECK(!has(html, "hollow"));
