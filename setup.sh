@@ -167,8 +167,8 @@ find_nvcc() {
     for candidate in "${candidates[@]}" "${others[@]}" /opt/cuda/bin/nvcc "$PWD/$build/cuda/bin/nvcc"; do
         [[ -x $candidate ]] || continue
         release=$("$candidate" --version 2>/dev/null | sed -n 's/.*release \([0-9.]*\).*/\1/p')
-        if ! at_least "${release:-0}" 12.0; then
-            cuda_note="$candidate is release ${release:-unknown}, 12.0 is needed for C++20"
+        if ! at_least "${release:-0}" 12.3; then
+            cuda_note="$candidate is release ${release:-unknown}, 12.3 is needed for C++20 and words of 128 bits"
         elif driver_runs "$release"; then
             nvcc=$candidate nvcc_release=$release
             return

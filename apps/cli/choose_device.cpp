@@ -54,7 +54,13 @@ ComingMachine::ComingMachine(const MachineFlags& flags, Messages& messages) : me
     std::promise<std::string> why_no_gpu;
     why_no_gpu_ = why_no_gpu.get_future();
     coming_ = std::async(std::launch::async, [why_no_gpu = std::move(why_no_gpu)]() mutable {
-        const std::string reason = why_no_cuda(0);
+        std::string reason;
+        try {
+            reason = why_no_cuda(0);
+        } catch (...) {
+            why_no_gpu.set_exception(std::current_exception());
+            throw;
+        }
         why_no_gpu.set_value(reason);
         return std::make_unique<Queue>(reason.empty() ? Queue::make_cuda(0) : Queue::make_cpu());
     });

@@ -34,7 +34,8 @@ public:
     void fork_streams(int count) { backend_->fork_streams(count); }
     /// From now on stream 0 goes on alone, after all that the others have been given.
     void join_streams(int count) { backend_->join_streams(count); }
-    /// While it lives, work goes to another stream than 0: launches, copies, fills, and waits for them.
+    /// While it lives, launches, fills, and waits are those of stream `index`. Of copies a Readback alone: uploads and
+    /// downloads belong before the fork or after the join.
     class OnStream {
     public:
         OnStream(Queue& queue, int index) : queue_(queue) { queue.use_stream(index); }
@@ -47,7 +48,8 @@ public:
     };
     std::string device_name() const { return backend_->name(); }
 
-    /// Waits for all work given. Throws Error(DeviceFault) that names the last stage launched when one failed.
+    /// Waits for all work given to the stream. Throws Error(DeviceFault) that names the last stage launched when one
+    /// failed.
     void wait() { backend_->wait(stage_); }
     void check_launch() { backend_->check_launch(stage_); }
     const void* wait(HostCopy& copy) { return copy.wait(stage_); }

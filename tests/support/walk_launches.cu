@@ -17,6 +17,8 @@
 namespace pertev::test {
 namespace {
 
+constexpr const char* kOneAThread = "one a thread";
+
 template <class Walk, bool kAny, class Scene, class Counter = NoWalkCounter>
 struct TraceBatch {
     Scene scene;
@@ -48,14 +50,13 @@ struct BatchRays {
     HD void store(uint32_t i, const Hit& hit) const { batch.hits[i] = hit; }
 };
 
-template <class Walk, bool kAny, bool kPersistent, class Scene>
-void run_stage_of(Queue& queue, const Scene& scene, const WalkBatch& batch) {
-    const TraceBatch<Walk, kAny, Scene> stage = {scene, batch, {}};
-    if constexpr (kPersistent) {
-        launch_persistent(queue, "trace persistent", batch.count, stage, batch.pool);
-    } else {
-        launch(queue, "trace", batch.count, stage);
-    }
+/// From a pool on a GPU, or one ray a thread.
+template <bool kPersistent, class Stage>
+void run_stage_of(Queue& queue, const Stage& stage, const WalkBatch& batch) {
+#if defined(__CUDACC__)
+    if constexpr (kPersistent) return launch_persistent(queue, "trace persistent", batch.count, stage, batch.pool);
+#endif
+    if constexpr (!kPersistent) launch(queue, "trace", batch.count, stage);
 }
 
 /// The one of WalkTrees or WalkScenes that the walk is for.
@@ -70,13 +71,17 @@ const auto& pick(const auto& trees) {
 
 template <class Walk, bool kAny, bool kPersistent>
 void run_tree(Queue& queue, const WalkTrees& trees, const WalkBatch& batch) {
-    run_stage_of<Walk, kAny, kPersistent>(queue, SingleTree<typename Walk::Tree>{pick<Walk>(trees)}, batch);
+    const SingleTree<typename Walk::Tree> tree{pick<Walk>(trees)};
+    run_stage_of<kPersistent>(queue, TraceBatch<Walk, kAny, SingleTree<typename Walk::Tree>>{tree, batch, {}}, batch);
 }
 
 template <class Walk, bool kAny, bool kPersistent>
 void run_scene(Queue& queue, const WalkScenes& scenes, const WalkBatch& batch) {
-    run_stage_of<Walk, kAny, kPersistent>(queue, pick<Walk>(scenes), batch);
+    using Scene = SceneTrees<typename Walk::Tree>;
+    run_stage_of<kPersistent>(queue, TraceBatch<Walk, kAny, Scene>{pick<Walk>(scenes), batch, {}}, batch);
 }
+
+#if defined(__CUDACC__)
 
 template <class Walk, bool kAny>
 void run_dynamic(Queue& queue, const WalkTrees& trees, const WalkBatch& batch) {
@@ -90,12 +95,15 @@ void run_dynamic_scene(Queue& queue, const WalkScenes& scenes, const WalkBatch& 
                                      batch.pool);
 }
 
+#endif
+
 template <template <WalkOptions> class Walk, WalkOptions kOptions, bool kAny, bool kDynamic>
 void add(const char* name, std::vector<WalkLaunch>& launches) {
     using W = Walk<kOptions>;
-    WalkLaunch row = {name, "one a thread", kOptions.rta, kOptions.near_first, kAny, run_tree<W, kAny, false>, nullptr};
+    WalkLaunch row = {name, kOneAThread, kOptions.rta, kOptions.near_first, kAny, run_tree<W, kAny, false>, nullptr};
     if constexpr (kOptions.rta) row.run_scene = run_scene<W, kAny, false>;
     launches.push_back(row);
+#if defined(__CUDACC__)
     row.distribution = "persistent";
     row.run = run_tree<W, kAny, true>;
     if constexpr (kOptions.rta) row.run_scene = run_scene<W, kAny, true>;
@@ -106,6 +114,7 @@ void add(const char* name, std::vector<WalkLaunch>& launches) {
         row.run_scene = kOptions.rta ? run_dynamic_scene<W, kAny> : nullptr;
         launches.push_back(row);
     }
+#endif
 }
 
 template <template <WalkOptions> class Walk, bool kDynamic>
@@ -118,7 +127,7 @@ void add_all(const char* name, std::vector<WalkLaunch>& launches) {
 
 } // namespace
 
-std::vector<WalkLaunch> walk_launches() {
+std::vector<WalkLaunch> walk_launches(bool on_cuda) {
     std::vector<WalkLaunch> launches;
     add_all<WhileWhileWalk, true>("while-while", launches);
     add_all<SpeculativeWalk, true>("speculative", launches);
@@ -129,18 +138,29 @@ std::vector<WalkLaunch> walk_launches() {
     add_all<ParentLinksWalk, false>("parent links", launches);
     add_all<WarpPacketWalk, false>("warp packet", launches);
     add_all<CompressedWalk, true>("compressed", launches);
+    if (!on_cuda) std::erase_if(launches, [](const WalkLaunch& row) { return row.distribution != kOneAThread; });
     return launches;
 }
 
-void count_lanes_persistent(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
+std::vector<LaneLaunch> lane_launches(bool on_cuda) {
     using Walk = WhileWhileWalk<WalkOptions{}>;
-    const TraceBatch<Walk, false, SingleTree<BvhView>, LaneCounter> stage = {{bvh}, batch, {counts}};
-    launch_persistent(queue, "count lanes", batch.count, stage, batch.pool);
-}
-
-void count_lanes_dynamic(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
-    launch_dynamic_fetch<WhileWhileWalk<WalkOptions{}>, false>(
-        queue, "count lanes", SingleTree<BvhView>{bvh}, BatchRays{batch}, batch.count, batch.pool, LaneCounter{counts});
+    using Stage = TraceBatch<Walk, false, SingleTree<BvhView>, LaneCounter>;
+    std::vector<LaneLaunch> launches;
+    launches.push_back([](Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
+        run_stage_of<false>(queue, Stage{{bvh}, batch, {counts}}, batch);
+    });
+#if defined(__CUDACC__)
+    if (!on_cuda) return launches;
+    launches.push_back([](Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
+        run_stage_of<true>(queue, Stage{{bvh}, batch, {counts}}, batch);
+    });
+    launches.push_back([](Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts) {
+        launch_dynamic_fetch<Walk, false>(queue, "count lanes", SingleTree<BvhView>{bvh}, BatchRays{batch}, batch.count,
+                                          batch.pool, LaneCounter{counts});
+    });
+#endif
+    static_cast<void>(on_cuda);
+    return launches;
 }
 
 } // namespace pertev::test

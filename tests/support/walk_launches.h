@@ -39,10 +39,11 @@ struct WalkLaunch {
     void (*run)(Queue&, const WalkTrees&, const WalkBatch&);        // one tree
     void (*run_scene)(Queue&, const WalkScenes&, const WalkBatch&); // null: not for scenes
 };
-std::vector<WalkLaunch> walk_launches();
+/// On a CPU one ray a thread alone.
+std::vector<WalkLaunch> walk_launches(bool on_cuda);
 
-/// Closest hits by while-while with all switches on, counted.
-void count_lanes_persistent(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts);
-void count_lanes_dynamic(Queue& queue, const BvhView& bvh, const WalkBatch& batch, LaneCounts* counts);
+/// Closest hits by while-while with all switches on, counted; each way of handing out rays that the device has.
+using LaneLaunch = void (*)(Queue&, const BvhView&, const WalkBatch&, LaneCounts*);
+std::vector<LaneLaunch> lane_launches(bool on_cuda);
 
 } // namespace pertev::test

@@ -1,5 +1,5 @@
 // The builder that runs on the device: sound trees of every mesh, as good as those of its kind should be, and the same
-// bytes by any number of threads and by warps.
+// bytes by any number of threads. That warps make these bytes too: emulated_warps_hploc_test.cpp.
 
 #include "render/tracer/hploc/device_builder.h"
 
@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "accel/bvh/builders.h"
-#include "tests/support/emulated_hploc.h"
+#include "tests/support/built_trees.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 
@@ -28,31 +28,11 @@ CompressedBvh build(Queue& queue, const std::vector<BvhTriangle>& triangles, boo
     return builder.download();
 }
 
-/// All bytes, empty arrays too.
-template <class T>
-bool are_same(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-bool are_same(const CompressedBvh& a, const CompressedBvh& b) {
-    return are_same(a.nodes, b.nodes) && are_same(a.triangles, b.triangles) && a.depth == b.depth &&
-           a.sah_cost == b.sah_cost && a.bounds == b.bounds;
-}
-
-/// Those that break builders, and sizes around those at which warps and groups end.
-std::vector<NastyMesh> meshes() {
-    std::vector<NastyMesh> all = nasty_meshes(700);
-    for (const uint32_t count : {2u, 3u, 4u, 15u, 16u, 17u, 31u, 32u, 33u, 34u, 63u, 65u, 129u, 300u}) {
-        all.push_back({"a small soup", make_soup(count, 0), {}});
-    }
-    return all;
-}
-
 } // namespace
 
 TEST_CASE("trees that are built on the device are sound, and hold each triangle once") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : meshes()) {
+    for (const NastyMesh& mesh : builder_meshes()) {
         for (const bool balanced : {false, true}) {
             CAPTURE(mesh.name);
             CAPTURE(mesh.triangles.size());
@@ -98,42 +78,6 @@ TEST_CASE("a builder is used again for meshes of other sizes") {
     }
 }
 
-TEST_CASE("warps make the bytes that single threads make") {
-    Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : meshes()) {
-        const auto n = static_cast<uint32_t>(mesh.triangles.size());
-        if (n == 0 || n > 1000) continue;
-        CAPTURE(mesh.name);
-        CAPTURE(n);
-        for (const bool balanced : {false, true}) {
-            CAPTURE(balanced);
-            DeviceBuilder builder(queue, n);
-            builder.set_balanced(balanced);
-            builder.start(mesh.triangles.data(), n);
-            builder.finish();
-            const CompressedBvh wanted = builder.download();
-            const std::vector<hploc::ClusterNode> clusters = builder.download_clusters();
-
-            // The same builder's memory, with the leaves where they are.
-            const hploc::Climb climb = builder.prepare_climb();
-            std::fill_n(climb.ends, n, hploc::kNone);
-            std::fill(climb.tree.nodes + n, climb.tree.nodes + 2 * n, hploc::ClusterNode{});
-            CHECK(climb_on_emulated_warps(&climb, n, n) == "");
-            const std::vector<hploc::ClusterNode> by_warps = builder.download_clusters();
-            CHECK(std::memcmp(clusters.data(), by_warps.data(), n * sizeof(hploc::ClusterNode)) == 0);
-            CHECK(std::memcmp(clusters.data() + n + 1, by_warps.data() + n + 1, (n - 1) * sizeof(hploc::ClusterNode)) ==
-                  0);
-
-            const hploc::EmitWide emit = builder.prepare_emit();
-            std::memset(static_cast<void*>(emit.nodes), 0xcc, wanted.nodes.size() * sizeof(CompressedBvhNode));
-            std::memset(static_cast<void*>(emit.placed), 0xcc, n * sizeof(BvhTriangle));
-            CHECK(emit_on_emulated_warps(&emit, 3, n) == "");
-            builder.finish();
-            CHECK(are_same(builder.download(), wanted));
-        }
-    }
-}
-
 namespace {
 
 /// A mesh that has bent.
@@ -161,7 +105,7 @@ CompressedBvh refit(Queue& queue, const std::vector<BvhTriangle>& triangles, con
 
 TEST_CASE("a tree that is fitted to where its triangles are has the bytes of the build") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : meshes()) {
+    for (const NastyMesh& mesh : builder_meshes()) {
         CAPTURE(mesh.name);
         CHECK(are_same(refit(queue, mesh.triangles, mesh.triangles), build(queue, mesh.triangles)));
     }
@@ -169,7 +113,7 @@ TEST_CASE("a tree that is fitted to where its triangles are has the bytes of the
 
 TEST_CASE("a tree that is fitted to triangles that moved is sound, its boxes tight and its leaves the same") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : meshes()) {
+    for (const NastyMesh& mesh : builder_meshes()) {
         CAPTURE(mesh.name);
         const std::vector<BvhTriangle> moved = bent(mesh.triangles);
         const CompressedBvh bvh = refit(queue, mesh.triangles, moved), built = build(queue, mesh.triangles);
@@ -191,7 +135,7 @@ TEST_CASE("a tree that is fitted to triangles that moved is sound, its boxes tig
 TEST_CASE("a GPU makes the bytes that the CPU makes") {
     if (!cuda_requested()) return;
     Queue cpu = Queue::make_cpu(), gpu = Queue::make_cuda(0);
-    std::vector<NastyMesh> all = meshes();
+    std::vector<NastyMesh> all = builder_meshes();
     all.push_back({"a large soup", make_soup(100001, 0), {}});
     for (const NastyMesh& mesh : all) {
         CAPTURE(mesh.name);

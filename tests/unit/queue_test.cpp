@@ -21,8 +21,8 @@ TEST_CASE("streams go on after what was given before the fork, and work behind t
     Queue queue = test::queue_asked_for();
     constexpr int kStreams = Queue::kMaxStreams;
     constexpr std::size_t kMany = 1 << 22; // a fill that takes longer than it takes to give the next
-    Buffer<unsigned char> bytes(queue, kMany, "bytes"), sum(queue, kMany * kStreams, "bytes");
-    bytes.fill(7);
+    Buffer<unsigned char> sum(queue, kMany * kStreams, "bytes");
+    sum.fill(7); // what a stream writes is there in the end, so it came later
     queue.fork_streams(kStreams);
     for (int i = 0; i < kStreams; ++i) {
         const Queue::OnStream on(queue, i);
@@ -36,7 +36,6 @@ TEST_CASE("streams go on after what was given before the fork, and work behind t
         CHECK(there[static_cast<std::size_t>(i) * kMany] == i + 1);
         CHECK(there[static_cast<std::size_t>(i + 1) * kMany - 1] == i + 1);
     }
-    CHECK(bytes.download().back() == 7);
 }
 
 TEST_CASE("a number is read back as it was when that was asked for, whatever comes later") {

@@ -33,6 +33,18 @@ struct BinaryTree {
 /// Levels of inner nodes that equal cuts take to bring n references down to single ones.
 inline int levels_needed(uint64_t n) { return n < 2 ? 0 : std::bit_width(n - 1); }
 
+/// Puts `child` where `old_child` is; above it is `parent`, or nothing (kNoLink). `parents`: [node] the node above.
+inline void replace_child(BinaryTree& tree, std::vector<uint32_t>& parents, uint32_t parent, uint32_t old_child,
+                          uint32_t child) {
+    parents[child] = parent;
+    if (parent == kNoLink) {
+        tree.root = child;
+    } else {
+        BinaryNode& node = tree.nodes[parent];
+        node.child[node.child[0] == old_child ? 0 : 1] = child;
+    }
+}
+
 inline BinaryNode make_leaf(const Bounds3& box, uint32_t first, uint32_t count = 1) {
     return {box, {first, kLeafBit | count}};
 }

@@ -32,9 +32,7 @@ struct Curve {
         run(threads, hploc::FindBounds{triangles.data(), count, threads, &centres});
         std::vector<uint64_t> of_triangles(count);
         run(count, hploc::MakeCodes{triangles.data(), &centres, of_triangles.data(), order.data()});
-        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-            return of_triangles[a] != of_triangles[b] ? of_triangles[a] < of_triangles[b] : a < b;
-        });
+        hploc::sort_along_curve(of_triangles.data(), order.data(), count);
         for (uint32_t i = 0; i < count; ++i) codes[i] = of_triangles[order[i]];
     }
 };

@@ -352,9 +352,9 @@ BinaryTree build_spatial_split_tree(const std::vector<BvhTriangle>& triangles, c
                                     const SpatialSplitSettings& splits) {
     PERTEV_CHECK(splits.min_overlap >= 0 && splits.max_growth >= 0 && splits.max_growth <= 1000);
     const References all = references_of(triangles);
-    const auto allowance =
-        static_cast<uint64_t>(static_cast<double>(splits.max_growth) * static_cast<double>(all.size()));
-    check_reference_count(all.size() + allowance);
+    check_reference_count(all.size());
+    const auto wanted = static_cast<uint64_t>(static_cast<double>(splits.max_growth) * static_cast<double>(all.size()));
+    const uint64_t allowance = std::min(wanted, kMaxBvhTriangles - all.size());
     Bounds3 box;
     for (const BuildReference& r : all) box.extend(box_of(r));
     const Cutter cutter(triangles, static_cast<uint32_t>(settings.max_leaf), splits.min_overlap * box.half_area(),

@@ -1,9 +1,10 @@
 #pragma once
 
-// Every builder of the binary hierarchy, by name: what `pertev lab` chooses from. Pictures are made with Binned.
-// All give trees that are functions of the triangles alone, whatever the number of threads, at most kMaxBvhDepth deep.
-// Vertices are finite, |coordinate| <= kMaxCoordinate. Of the settings, max_leaf and the two costs count for all;
-// `bins` and max_depth for Binned alone. Throw Error(OverLimit) for too many triangles.
+// Every builder of the binary hierarchy, by name: what `pertev lab` chooses from. render/tracer/tracer_choice.h says
+// which pictures are made with. All give trees that are functions of the triangles alone, whatever the number of
+// threads, at most kMaxBvhDepth deep. Vertices are finite, |coordinate| <= kMaxCoordinate. Of the settings, max_leaf
+// and the two costs count for all; `bins` and max_depth for Binned alone. Throw Error(OverLimit) for too many
+// triangles.
 
 #include <vector>
 

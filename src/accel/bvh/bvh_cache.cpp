@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kMagic[8] = {'P', 'e', 'r', 't', 'e', 'v', 'B', '2'};
-constexpr uint32_t kVersion = 2; // of the file's layout and of the builders: raised when one changes
+constexpr uint32_t kVersion = 3; // of the file's layout and of the builders: raised when one changes
 constexpr uint32_t kByteOrder = 0x01020304;
 constexpr uint64_t kMaxCopies = 8;           // of a triangle that is cut, on average
 constexpr uint32_t kEndOfLeaf = 0x80000000u; // in the order's words

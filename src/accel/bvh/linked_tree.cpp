@@ -19,19 +19,9 @@ LinkedTree::LinkedTree(BinaryTree tree) : tree_(std::move(tree)), parent_(tree_.
 void LinkedTree::insert(uint32_t index, uint32_t target, uint32_t parent) {
     const uint32_t above = parent_[target];
     tree_.nodes[parent] = make_inner(tree_, target, index);
-    replace_child(above, target, parent);
+    replace_child(tree_, parent_, above, target, parent);
     parent_[target] = parent_[index] = parent;
     refit_upwards(above);
-}
-
-void LinkedTree::replace_child(uint32_t parent, uint32_t old_child, uint32_t child) {
-    parent_[child] = parent;
-    if (parent == kNoLink) {
-        tree_.root = child;
-    } else {
-        BinaryNode& node = tree_.nodes[parent];
-        node.child[node.child[0] == old_child ? 0 : 1] = child;
-    }
 }
 
 void LinkedTree::refit_upwards(uint32_t index) {

@@ -23,7 +23,6 @@ public:
     void insert(uint32_t index, uint32_t target, uint32_t parent);
 
 private:
-    void replace_child(uint32_t parent, uint32_t old_child, uint32_t child);
     void refit_upwards(uint32_t index);
 
     BinaryTree tree_;

@@ -98,16 +98,17 @@ private:
                 nodes.push_back(moves[i].node);
             } else {
                 const uint32_t joint = parent_[moves[i].node];
-                changed.insert(changed.end(), {parent_[joint], joint});
+                changed.insert(changed.end(), {parent_[joint], joint, parent_[moves[i].target]});
                 make(moves[i]);
             }
         }
         refit(changed);
-        return changed.size() / 2;
+        return changed.size() / 3;
     }
 
     void refit_node(uint32_t at) { nodes_[at] = make_inner(tree_, nodes_[at].child[0], nodes_[at].child[1]); }
 
+    /// `changed`: all nodes with other children, and kNoLink.
     void refit(const std::vector<uint32_t>& changed) {
         if (changed.size() > nodes_.size() / kFewChanges) {
             return visit_upwards(tree_, [&](uint32_t at) {
@@ -222,20 +223,10 @@ private:
         return is_first;
     }
 
-    void replace_child(uint32_t parent, uint32_t old_child, uint32_t child) {
-        parent_[child] = parent;
-        if (parent == kNoLink) {
-            tree_.root = child;
-        } else {
-            BinaryNode& node = nodes_[parent];
-            node.child[node.child[0] == old_child ? 0 : 1] = child;
-        }
-    }
-
     void make(const Move& move) {
         const uint32_t joint = parent_[move.node];
-        replace_child(parent_[joint], joint, sibling(move.node));
-        replace_child(parent_[move.target], move.target, joint);
+        replace_child(tree_, parent_, parent_[joint], joint, sibling(move.node));
+        replace_child(tree_, parent_, parent_[move.target], move.target, joint);
         nodes_[joint].child[0] = move.target, nodes_[joint].child[1] = move.node;
         parent_[move.target] = joint;
     }

@@ -3,6 +3,7 @@
 // From triangles to leaves along a Morton curve: bounds of all centres, a code for each, and, after the sort, a box for
 // each. The curve's cells are cubes: boxes of neighbours are then as thick as they are long.
 
+#include <algorithm>
 #include <cstdint>
 
 #include "accel/bvh/bvh.h"
@@ -13,6 +14,12 @@
 #include "math/scalar.h"
 
 namespace pertev::hploc {
+
+/// Sorts leaves by their codes, those of equal codes by their numbers, which `order` has first. On the host.
+inline void sort_along_curve(const uint64_t* codes, uint32_t* order, uint32_t count) {
+    std::sort(order, order + count,
+              [&](uint32_t a, uint32_t b) { return codes[a] != codes[b] ? codes[a] < codes[b] : a < b; });
+}
 
 /// Floats as integers of the same order, so that bounds are found by atomic minima: -0 lies before 0.
 HD inline int32_t ordered(float x) {

@@ -71,7 +71,8 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     if (trees_of_loop() != nullptr) return;
     const uint64_t all = uint64_t(picture.camera.width) * picture.camera.height * samples;
     const Size size = size_for(all, batch_, queue_.is_cuda());
-    if (!wavefronts_.empty() && wavefronts_.front().capacity >= size.capacity) return;
+    const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts);
+    if (are_enough && wavefronts_.front().capacity >= size.capacity) return;
     wavefronts_.clear(); // before there is more
     if (render_counts_.size() == 0) render_counts_ = {queue_, 1, "path counts"};
     for (int i = 0; i < size.wavefronts; ++i) wavefronts_.emplace_back(queue_, size.capacity);

@@ -26,7 +26,8 @@ enum class PathBody : uint8_t { Loop, Wavefront };
 
 class PathIntegrator final : public Integrator {
 public:
-    /// `queue` outlives the integrator. `batch`: most paths in flight of the wavefront.
+    /// `queue` outlives the integrator. `batch`: most paths in flight of the wavefronts together,
+    /// rounded up to 32 each.
     PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch);
 
     /// Bytes that begin() takes for so many samples of all pixels together, by the wavefront.

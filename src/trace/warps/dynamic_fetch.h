@@ -21,7 +21,6 @@
 
 #include "base/error.h"
 #include "base/host_device.h"
-#include "base/parallel_for.h"
 #include "device/queue.h"
 #include "device/work_count.h"
 #include "trace/scene_place.h"
@@ -104,37 +103,26 @@ __global__ void __launch_bounds__(kWalkThreads)
 
 #endif
 
+#if defined(__CUDACC__)
+
 /// Walks a scene (SceneTrees or SingleTree) for rays [0, count), count <= kMaxPoolCount. `rays` has `Ray load(uint32_t
 /// i) const`, `accept(uint32_t i) const`, an Accept (trace/trace_closest.h) with a member `i` that names its ray, and
 /// `void store(uint32_t i, const Hit&) const`, all host-device; of an any-hit search the hit's instance alone counts:
-/// kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. On the CPU this is one ray after
-/// the other.
+/// kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. The queue is of a GPU.
 template <class Walk, bool kAny, class Scene, class Rays, class Counter = NoWalkCounter>
 void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, const Rays& rays, WorkCount count,
                           uint32_t* pool, const Counter& counter = {}) {
-    PERTEV_CHECK(count.most <= kMaxPoolCount);
+    PERTEV_CHECK(queue.is_cuda() && count.most <= kMaxPoolCount);
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
-#if defined(__CUDACC__)
-    if (queue.is_cuda()) {
-        static LimitsByDevice limits;
-        const uint32_t blocks =
-            blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count.most);
-        queue.zero(pool, sizeof *pool);
-        run_dynamic_fetch<Walk, kAny>
-            <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);
-        return queue.check_launch();
-    }
-#endif
-    static_cast<void>(pool);
-    parallel_for(count.value(), 256, [&](uint64_t k) {
-        const uint32_t i = static_cast<uint32_t>(k);
-        const auto accept = rays.accept(i);
-        const Ray ray = rays.load(i);
-        RaySearch<kAny, std::remove_const_t<decltype(accept)>> search(accept, ray.t_max);
-        walk_scene<Walk>(scene, ray, search.visitor, counter);
-        rays.store(i, search.hit());
-    });
+    static LimitsByDevice limits;
+    const uint32_t blocks = blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count.most);
+    queue.zero(pool, sizeof *pool);
+    run_dynamic_fetch<Walk, kAny>
+        <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);
+    queue.check_launch();
 }
+
+#endif
 
 } // namespace pertev

@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "base/host_device.h"
-#include "base/parallel_for.h"
 #include "device/queue.h"
 #include "device/work_count.h"
 #include "trace/warps/kernel_limits.h"
@@ -41,25 +40,22 @@ __global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage
 
 #endif
 
+#if defined(__CUDACC__)
+
 /// Runs stage(i) for each i in [0, count), count <= kMaxPoolCount. `pool` is one number in the queue's memory; it is
-/// set to 0 first. On the CPU, where threads are few, this is launch().
+/// set to 0 first. The queue is of a GPU.
 template <class Stage>
 void launch_persistent(Queue& queue, const char* name, WorkCount count, const Stage& stage, uint32_t* pool) {
-    PERTEV_CHECK(count.most <= kMaxPoolCount);
+    PERTEV_CHECK(queue.is_cuda() && count.most <= kMaxPoolCount);
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
-#if defined(__CUDACC__)
-    if (queue.is_cuda()) {
-        static LimitsByDevice limits;
-        const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count.most);
-        queue.zero(pool, sizeof *pool);
-        run_stage_persistent<<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count,
-                                                                                                     pool);
-        return queue.check_launch();
-    }
-#endif
-    static_cast<void>(pool);
-    parallel_for(count.value(), 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    static LimitsByDevice limits;
+    const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count.most);
+    queue.zero(pool, sizeof *pool);
+    run_stage_persistent<<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count, pool);
+    queue.check_launch();
 }
+
+#endif
 
 } // namespace pertev

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "accel/bvh/binary_tree.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "device/launch.h"
@@ -31,7 +32,7 @@ DeviceBuilder::DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings
       counts_(queue, 1, "counts of wide nodes"), wide_(queue, most_nodes(most), "nodes of the built tree"),
       placed_(queue, most, "triangles of the built tree"), sources_(queue, most, "sources of triangles") {
     PERTEV_CHECK(costs.max_leaf >= 1 && costs.max_leaf <= kCompressedLeaf && costs.triangles_at_once == 1);
-    PERTEV_CHECK(most <= kMaxBvhTriangles / 2); // nodes of clusters are twice as many
+    check_reference_count(uint64_t(most) * 2); // nodes of clusters
     if (queue.is_cuda()) return;
     level_ = Buffer<uint32_t>(queue, most_nodes(most), "a level of wide nodes");
     next_ = Buffer<uint32_t>(queue, most_nodes(most), "the next level of wide nodes");
@@ -105,19 +106,20 @@ void DeviceBuilder::start_refit(const BvhTriangle* moved) {
     const uint32_t nodes = figures_.nodes;
     if (boxes_.size() < nodes) {
         parents_ = Buffer<uint32_t>(queue_, wide_.size(), "parents of wide nodes");
+        children_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of wide nodes' children");
         arrived_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of children that are refitted");
         boxes_ = Buffer<hploc::NodeBox>(queue_, wide_.size(), "boxes of wide nodes");
     }
     if (!are_linked_) {
         queue_.fill(parents_.data(), 0xff, sizeof(uint32_t)); // the root has none
-        launch(queue_, "link parents", nodes, hploc::LinkParents{wide_.data(), parents_.data()});
+        launch(queue_, "link parents", nodes, hploc::LinkParents{wide_.data(), parents_.data(), children_.data()});
         are_linked_ = true;
     }
     arrived_.zero();
     launch(queue_, "move triangles", count_, hploc::MoveTriangles{moved, sources_.data(), placed_.data()});
     launch(queue_, "refit nodes", nodes,
-           hploc::RefitNodes{wide_.data(), placed_.data(), parents_.data(), arrived_.data(), boxes_.data(),
-                             &counts_.data()->bounds});
+           hploc::RefitNodes{wide_.data(), placed_.data(), parents_.data(), children_.data(), arrived_.data(),
+                             boxes_.data(), &counts_.data()->bounds});
 }
 
 DeviceBuilder::Figures DeviceBuilder::finish() {

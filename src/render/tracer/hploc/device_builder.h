@@ -78,7 +78,7 @@ private:
     Buffer<BvhTriangle> placed_;
     Buffer<uint32_t> sources_;
     // For refits, made by the first: which node is above each, how many beneath it are done, and boxes.
-    Buffer<uint32_t> parents_, arrived_;
+    Buffer<uint32_t> parents_, children_, arrived_;
     Buffer<hploc::NodeBox> boxes_;
     bool are_linked_ = false;
 };

@@ -10,7 +10,6 @@
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/hploc/cluster_tree.h"
 #include "accel/hploc/leaves.h"
-#include "device/atomic_add.h"
 
 namespace pertev::hploc {
 
@@ -22,13 +21,14 @@ struct alignas(32) NodeBox {
     uint32_t unused1;
 };
 
-/// One node each: tells its inner children where it is. The root's own entry is the caller's.
+/// One node each: counts its inner children and tells them where it is. The root's own entry is the caller's.
 struct LinkParents {
     const CompressedBvhNode* nodes;
-    uint32_t* parents;
+    uint32_t *parents, *children;
 
     HD void operator()(uint32_t i) const {
         const uint32_t count = count_ones(inner_slots(nodes[i]));
+        children[i] = count;
         for (uint32_t k = 0; k < count; ++k) parents[nodes[i].child_base + k] = i;
     }
 };
@@ -50,30 +50,33 @@ struct MoveTriangles {
 struct RefitNodes {
     CompressedBvhNode* nodes;
     const BvhTriangle* triangles;
-    const uint32_t* parents; // [0] kNone
-    uint32_t* arrived;       // [node] children that are done; 0 at first
+    const uint32_t* parents;  // [0] kNone
+    const uint32_t* children; // [node] how many inner ones; nodes change meanwhile
+    uint32_t* arrived;        // [node] children that are done; 0 at first
     NodeBox* boxes;
     Bounds3* bounds; // of all
 
     HD void operator()(uint32_t i) const {
-        if (inner_slots(nodes[i]) != 0) return;
+        if (children[i] != 0) return;
         while (true) {
             fit(i);
             const uint32_t parent = parents[i];
             if (parent == kNone) return;
-            make_visible();
-            if (atomic_add(arrived + parent, 1u) + 1 != count_ones(inner_slots(nodes[parent]))) return;
-            make_visible();
+            if (arrive(arrived + parent) != children[parent]) return;
             i = parent;
         }
     }
 
 private:
-    HD static void make_visible() {
+    /// How many have arrived, this one among them; it sees what those before wrote.
+    HD static uint32_t arrive(uint32_t* count) {
 #if defined(__CUDA_ARCH__)
         __threadfence();
+        const uint32_t before = atomicAdd(count, 1u);
+        __threadfence();
+        return before + 1;
 #else
-        __atomic_thread_fence(__ATOMIC_ACQ_REL);
+        return __atomic_fetch_add(count, 1u, __ATOMIC_ACQ_REL) + 1;
 #endif
     }
 

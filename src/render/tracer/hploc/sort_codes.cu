@@ -1,7 +1,8 @@
 #include "render/tracer/hploc/sort_codes.h"
 
-#include <algorithm>
 #include <numeric>
+
+#include "accel/hploc/leaves.h"
 
 #if defined(__CUDACC__)
 #include <cub/device/device_radix_sort.cuh>
@@ -40,8 +41,7 @@ void sort_codes(Queue& queue, Buffer<std::byte>& scratch, const uint64_t* codes,
 #endif
     static_cast<void>(scratch), static_cast<void>(order);
     std::iota(sorted_order, sorted_order + count, 0u);
-    std::sort(sorted_order, sorted_order + count,
-              [&](uint32_t a, uint32_t b) { return codes[a] != codes[b] ? codes[a] < codes[b] : a < b; });
+    hploc::sort_along_curve(codes, sorted_order, count);
     for (uint32_t i = 0; i < count; ++i) sorted_codes[i] = codes[sorted_order[i]];
 }
 

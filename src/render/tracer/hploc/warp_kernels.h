@@ -116,6 +116,7 @@ __device__ inline void climb_together(const Climb& climb, WarpClusters& all) {
                 if (joins) __threadfence();
             }
         }
+        __syncwarp(); // all lanes read what a lane has been told of
         for (uint32_t left = __ballot_sync(kAllLanes, joins); left != 0; left &= left - 1) {
             const int source = __ffs(static_cast<int>(left)) - 1;
             const LeafRange of_lane = {__shfl_sync(kAllLanes, range.first, source),

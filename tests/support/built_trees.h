@@ -1,0 +1,33 @@
+#pragma once
+
+// Meshes for tests of builders on a device, and trees held against each other.
+
+#include <cstring>
+#include <vector>
+
+#include "accel/bvh/compressed_bvh.h"
+#include "tests/support/nasty_meshes.h"
+
+namespace pertev::test {
+
+/// All bytes, empty arrays too.
+template <class T>
+bool are_same(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+inline bool are_same(const CompressedBvh& a, const CompressedBvh& b) {
+    return are_same(a.nodes, b.nodes) && are_same(a.triangles, b.triangles) && a.depth == b.depth &&
+           a.sah_cost == b.sah_cost && a.bounds == b.bounds;
+}
+
+/// Those that break builders, and sizes around those at which warps and groups end.
+inline std::vector<NastyMesh> builder_meshes() {
+    std::vector<NastyMesh> all = nasty_meshes(700);
+    for (const uint32_t count : {2u, 3u, 4u, 15u, 16u, 17u, 31u, 32u, 33u, 34u, 63u, 65u, 129u, 300u}) {
+        all.push_back({"a small soup", make_soup(count, 0), {}});
+    }
+    return all;
+}
+
+} // namespace pertev::test

@@ -1,0 +1,49 @@
+// Warps make of triangles the tree that single threads make: the kernels of render/tracer/hploc on emulated warps.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "render/tracer/hploc/device_builder.h"
+#include "tests/support/built_trees.h"
+#include "tests/support/emulated_hploc.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+TEST_CASE("warps make the bytes that single threads make") {
+    Queue queue = Queue::make_cpu();
+    for (const NastyMesh& mesh : builder_meshes()) {
+        const auto n = static_cast<uint32_t>(mesh.triangles.size());
+        if (n == 0 || n > 1000) continue;
+        CAPTURE(mesh.name);
+        CAPTURE(n);
+        for (const bool balanced : {false, true}) {
+            CAPTURE(balanced);
+            DeviceBuilder builder(queue, n);
+            builder.set_balanced(balanced);
+            builder.start(mesh.triangles.data(), n);
+            builder.finish();
+            const CompressedBvh wanted = builder.download();
+            const std::vector<hploc::ClusterNode> clusters = builder.download_clusters();
+
+            // The same builder's memory, with the leaves where they are.
+            const hploc::Climb climb = builder.prepare_climb();
+            std::fill_n(climb.ends, n, hploc::kNone);
+            std::fill(climb.tree.nodes + n, climb.tree.nodes + 2 * n, hploc::ClusterNode{});
+            CHECK(climb_on_emulated_warps(&climb, n, n) == "");
+            const std::vector<hploc::ClusterNode> by_warps = builder.download_clusters();
+            CHECK(std::memcmp(clusters.data(), by_warps.data(), n * sizeof(hploc::ClusterNode)) == 0);
+            CHECK(std::memcmp(clusters.data() + n + 1, by_warps.data() + n + 1, (n - 1) * sizeof(hploc::ClusterNode)) ==
+                  0);
+
+            const hploc::EmitWide emit = builder.prepare_emit();
+            std::memset(static_cast<void*>(emit.nodes), 0xcc, wanted.nodes.size() * sizeof(CompressedBvhNode));
+            std::memset(static_cast<void*>(emit.placed), 0xcc, n * sizeof(BvhTriangle));
+            CHECK(emit_on_emulated_warps(&emit, 3, n) == "");
+            builder.finish();
+            CHECK(are_same(builder.download(), wanted));
+        }
+    }
+}
