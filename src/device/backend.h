@@ -44,10 +44,8 @@ public:
     virtual void* stream() const = 0; // the current one, a cudaStream_t; null on the CPU
     /// Later work goes to stream `index`. On the CPU there is but one.
     virtual void use_stream(int index) = 0;
-    /// Streams [1, count) go on after what stream 0 has been given so far.
-    virtual void fork_streams(int count) = 0;
-    /// Stream 0 goes on after what streams [1, count) have been given so far.
-    virtual void join_streams(int count) = 0;
+    /// Stream `waiting` goes on after what stream `other` has been given so far.
+    virtual void let_wait(int waiting, int other) = 0;
     virtual std::size_t free_bytes() const = 0;
 
     /// Null when there is not enough memory; throws Error(DeviceFault) for anything else.

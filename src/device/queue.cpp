@@ -45,8 +45,7 @@ public:
     bool is_cuda() const override { return false; }
     void* stream() const override { return nullptr; }
     void use_stream(int) override {}
-    void fork_streams(int) override {}
-    void join_streams(int) override {}
+    void let_wait(int, int) override {}
     std::size_t free_bytes() const override {
         return static_cast<std::size_t>(::sysconf(_SC_AVPHYS_PAGES)) *
                static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));

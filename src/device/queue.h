@@ -31,9 +31,19 @@ public:
     static constexpr int kMaxStreams = 4;
     int stream_index() const { return stream_index_; }
     /// From now on streams [0, count), count <= kMaxStreams, go on side by side after all work given so far.
-    void fork_streams(int count) { backend_->fork_streams(count); }
+    void fork_streams(int count) {
+        for (int i = 1; i < count; ++i) backend_->let_wait(i, 0);
+        streams_ = count;
+    }
+    /// Stream `waiting` goes on after what stream `other` has been given so far.
+    void let_wait(int waiting, int other) { backend_->let_wait(waiting, other); }
     /// From now on stream 0 goes on alone, after all that the others have been given.
-    void join_streams(int count) { backend_->join_streams(count); }
+    void join_streams() {
+        for (int i = 1; i < streams_; ++i) backend_->let_wait(0, i);
+        streams_ = 1;
+    }
+    /// How many go side by side.
+    int streams() const { return streams_; }
     /// While it lives, launches, fills, and waits are those of stream `index`. Of copies a Readback alone: uploads and
     /// downloads belong before the fork or after the join.
     class OnStream {
@@ -103,7 +113,7 @@ private:
 
     std::unique_ptr<DeviceBackend> backend_;
     const char* stage_ = "start";
-    int stream_index_ = 0;
+    int stream_index_ = 0, streams_ = 1;
     std::vector<Allocation> allocations_;
     std::size_t allocated_ = 0, peak_ = 0;
     uint64_t allocation_count_ = 0, uploaded_ = 0;

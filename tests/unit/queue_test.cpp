@@ -30,7 +30,7 @@ TEST_CASE("streams go on after what was given before the fork, and work behind t
         queue.fill(sum.data() + static_cast<std::size_t>(i) * kMany, static_cast<unsigned char>(i + 1), kMany);
     }
     CHECK(queue.stream_index() == 0);
-    queue.join_streams(kStreams);
+    queue.join_streams();
     const std::vector<unsigned char> there = sum.download();
     for (int i = 0; i < kStreams; ++i) {
         CHECK(there[static_cast<std::size_t>(i) * kMany] == i + 1);

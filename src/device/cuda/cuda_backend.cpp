@@ -2,6 +2,7 @@
 
 #include <cuda_runtime.h>
 
+#include <algorithm>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -104,19 +105,15 @@ public:
     bool is_cuda() const override { return true; }
     void* stream() const override { return current(); }
     void use_stream(int index) override { current_ = static_cast<std::size_t>(index); }
-    void fork_streams(int count) override {
+    void let_wait(int waiting, int other) override {
+        if (waiting == other) return;
         make_current();
-        while (streams_.size() < static_cast<std::size_t>(count)) streams_.push_back(make_stream());
-        check_cuda(cudaEventRecord(streams_[0].reached, streams_[0].stream), "cudaEventRecord");
-        for (int i = 1; i < count; ++i) wait_for(streams_[static_cast<std::size_t>(i)], streams_[0]);
-    }
-    void join_streams(int count) override {
-        make_current();
-        for (int i = 1; i < count; ++i) {
-            const Stream& other = streams_[static_cast<std::size_t>(i)];
-            check_cuda(cudaEventRecord(other.reached, other.stream), "cudaEventRecord");
-            wait_for(streams_[0], other);
-        }
+        const auto both = static_cast<std::size_t>(std::max(waiting, other));
+        while (streams_.size() <= both) streams_.push_back(make_stream());
+        const Stream& first = streams_[static_cast<std::size_t>(other)];
+        check_cuda(cudaEventRecord(first.reached, first.stream), "cudaEventRecord");
+        check_cuda(cudaStreamWaitEvent(streams_[static_cast<std::size_t>(waiting)].stream, first.reached, 0),
+                   "cudaStreamWaitEvent");
     }
     std::size_t free_bytes() const override {
         make_current();
@@ -181,9 +178,6 @@ private:
         check_cuda(cudaStreamCreateWithFlags(&made.stream, cudaStreamNonBlocking), "cudaStreamCreate");
         check_cuda(cudaEventCreateWithFlags(&made.reached, cudaEventDisableTiming), "cudaEventCreate");
         return made;
-    }
-    static void wait_for(const Stream& waiting, const Stream& other) {
-        check_cuda(cudaStreamWaitEvent(waiting.stream, other.reached, 0), "cudaStreamWaitEvent");
     }
     cudaStream_t current() const { return streams_[current_].stream; }
     PinnedStaging& staging() { // of stream 0, as all large copies are

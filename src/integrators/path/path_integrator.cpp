@@ -35,7 +35,7 @@ PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
       path_starts(queue, paths, "path rays"), shadow_starts(queue, paths, "shadow rays"),
       shadow_targets(queue, paths, "shadow rays"), path_keys(queue, paths, "path rays"),
       shadow_keys(queue, paths, "shadow rays"), contribution(queue, paths, "shadow rays"),
-      hit_places(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 1, "path counts"),
+      hit_places(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 2, "path counts"),
       seen(queue) {}
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
@@ -51,7 +51,7 @@ std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bo
     constexpr std::size_t of_path = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
                                     sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
     const Size size = size_for(samples, batch, on_cuda);
-    return static_cast<std::size_t>(size.wavefronts) * (of_path * size.capacity + sizeof(RoundCounts)) +
+    return static_cast<std::size_t>(size.wavefronts) * (of_path * size.capacity + 2 * sizeof(RoundCounts)) +
            sizeof(RenderCounts);
 }
 
@@ -136,21 +136,23 @@ void PathIntegrator::trace_path(PathState path, const FilmView& film, const Host
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
     const Work work = {first, uint64_t(picture_.camera.width) * picture_.camera.height * count, film};
     // Kinds of rays can be timed only one after the other.
-    const int streams = tracer_->times_kinds() ? 1 : static_cast<int>(wavefronts_.size());
+    const bool in_turns = tracer_->times_kinds();
+    const int going = in_turns ? 1 : static_cast<int>(wavefronts_.size());
     render_counts_.zero();
-    for (int i = 0; i < streams; ++i) {
+    for (int i = 0; i < going; ++i) {
         Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
         w.round = 0;
         w.known = {};
         w.is_done = false;
         w.counts.zero();
+        w.path_stream = i;
+        w.light_stream = in_turns ? i : going + i;
     }
-    queue_.fork_streams(streams);
-    for (int done = 0; done < streams;) {
-        for (int i = 0; i < streams; ++i) {
+    queue_.fork_streams(in_turns ? 1 : 2 * going);
+    for (int done = 0; done < going;) {
+        for (int i = 0; i < going; ++i) {
             Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
             if (w.is_done) continue;
-            const Queue::OnStream on(queue_, i);
             if (w.round > 0) w.known = w.seen.wait();
             w.is_done = w.round > 0 && w.known.active == 0;
             if (w.is_done) {
@@ -160,7 +162,7 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
             }
         }
     }
-    queue_.join_streams(streams);
+    queue_.join_streams();
     const RenderCounts counts = render_counts_.download().front();
     rays_.camera += work.samples;
     rays_.bounce += counts.bounces;
@@ -173,29 +175,34 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
     const ShadowQueueView shadows = w.shadows();
     const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
-    RoundCounts* const counts = w.counts.data();
+    RoundCounts* const counts = w.counts.data() + w.round % 2;
     // Once all paths have begun, a round has no more of them than the one before.
     const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.capacity;
-
-    launch(queue_, "plan_round", 1,
-           PlanRound{counts, render_counts_.data(), w.capacity, pixels, work.first_sample, work.samples});
-    w.seen.take(counts);
-    if (w.known.all_begun == 0) {
-        const WorkCount fresh = {most, &counts->fresh};
-        launch(queue_, "generate_paths", fresh,
-               GeneratePaths{picture_.camera, settings_, counts, pixels, last, any_alpha, paths});
-        tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh,
-                           {hits.places + last, hits.instances + last, -1});
+    {
+        const Queue::OnStream on(queue_, w.path_stream);
+        launch(queue_, "plan_round", 1,
+               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, render_counts_.data(), w.capacity, pixels,
+                         work.first_sample, work.samples});
+        w.seen.take(counts);
+        if (w.round > 0) {
+            tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits);
+            queue_.let_wait(w.path_stream, w.light_stream); // for places of paths that have ended
+        }
+        if (w.known.all_begun == 0) {
+            const WorkCount fresh = {most, &counts->fresh};
+            launch(queue_, "generate_paths", fresh,
+                   GeneratePaths{picture_.camera, settings_, counts, pixels, last, any_alpha, paths});
+            tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh,
+                               {hits.places + last, hits.instances + last, -1});
+        }
+        launch(queue_, "shade_hits", {most, &counts->active},
+               ShadeHits{picture_, settings_, work.film, paths, next, hits, shadows, counts, last});
     }
-    if (w.round > 0) {
-        tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits);
-    }
-    launch(queue_, "shade_hits", {most, &counts->active},
-           ShadeHits{picture_, settings_, work.film, paths, next, hits, shadows, counts, last});
+    queue_.let_wait(w.light_stream, w.path_stream);
+    const Queue::OnStream on(queue_, w.light_stream);
     const WorkCount asked = {most, &counts->shadows};
-    const HitQueueView occlusions = {nullptr, w.hit_instances.data()}; // the hits have been used
-    tracer_->find_occlusions(shadows.query(), asked, occlusions);
-    launch(queue_, "add_light", asked, AddLight{shadows, occlusions.instances, next});
+    tracer_->find_occlusions(shadows.query(), asked, {nullptr, shadows.keys}); // a ray's key has been used by then
+    launch(queue_, "add_light", asked, AddLight{shadows, next});
     launch(queue_, "add_to_film", {most, &counts->ended}, AddToFilm{work.film, next, last});
     ++w.round;
 }

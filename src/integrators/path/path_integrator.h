@@ -5,7 +5,8 @@
 //
 // The wavefront goes round by round (integrators/path/path_queues.h). The host gives rounds to the device without
 // waiting for one: how many paths a round has stays there, and the host reads one round late whether any were left. Two
-// wavefronts go side by side on a GPU, so that one fills what the last rays of the other's launch leave idle.
+// wavefronts go side by side on a GPU, each with its shadow rays beside its next bounce: rays of one kind fill what the
+// last rays of another's launch leave idle.
 //
 // Source: Laine, Karras, Aila, "Megakernels Considered Harmful: Wavefront Path Tracing on GPUs", HPG 2013, whose pool
 // of paths is refilled as they end.
@@ -82,12 +83,14 @@ private:
         Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
         Buffer<uint32_t> path_keys, shadow_keys;
         Buffer<Float4> contribution, hit_places;
-        Buffer<uint32_t> hit_instances; // of path rays, then of shadow rays
-        Buffer<RoundCounts> counts;
+        Buffer<uint32_t> hit_instances;
+        Buffer<RoundCounts> counts; // of two rounds in turns
         Readback<RoundCounts> seen; // of the round given last, at its start
         uint32_t round = 0;
         RoundCounts known = {}; // of the round before the last one given
         bool is_done = false;
+        // Shadow rays of a round and the rays of the next go side by side.
+        int path_stream = 0, light_stream = 0;
     };
     std::vector<Wavefront> wavefronts_;
     Buffer<RenderCounts> render_counts_;

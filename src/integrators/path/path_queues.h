@@ -71,7 +71,7 @@ struct PathQueueView {
 struct ShadowQueueView {
     Ray* rays;
     Uint2 *starts, *targets;
-    uint32_t* keys;
+    uint32_t* keys;       // then what the ray met
     Float4* contribution; // rgb, bits of the path's place in the next round's arrays
 
     RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets, .keys = keys}; }

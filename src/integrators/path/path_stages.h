@@ -12,19 +12,20 @@ namespace pertev {
 
 /// One thread decides what a round does: as many new paths as there is room for, until `samples` have begun.
 struct PlanRound {
-    RoundCounts* round;   // the one before, then the new one
+    const RoundCounts* before;
+    RoundCounts* round;
     RenderCounts* render; // shared by several that go round at once
     uint32_t capacity, pixels, first_sample;
     uint64_t samples;
 
     HD void operator()(uint32_t) const {
-        const uint32_t going_on = round->next;
+        const uint32_t going_on = before->next;
         const uint32_t room = (capacity - going_on) / 32 * 32; // whole warps: their camera rays stay together
         const uint64_t first = atomic_add(&render->begun, uint64_t(room));
         const uint64_t left = first < samples ? samples - first : 0;
         const uint32_t fresh = left < room ? static_cast<uint32_t>(left) : room;
         atomic_add(&render->bounces, uint64_t(going_on));
-        atomic_add(&render->shadows, uint64_t(round->shadows));
+        atomic_add(&render->shadows, uint64_t(before->shadows));
         *round = {};
         round->going_on = going_on;
         round->fresh = fresh;
@@ -82,12 +83,11 @@ struct ShadeHits {
 
 /// Light whose shadow ray met nothing.
 struct AddLight {
-    ShadowQueueView shadows;
-    const uint32_t* occluded; // of a tracer: kNoHit where the ray met nothing
+    ShadowQueueView shadows; // keys: what a tracer found, kNoHit where the ray met nothing
     PathQueueView next;
 
     HD void operator()(uint32_t i) const {
-        if (occluded[i] != kNoHit) return;
+        if (shadows.keys[i] != kNoHit) return;
         const Float4 c = shadows.contribution[i];
         next.add_radiance(bits_of(c.w), {c.x, c.y, c.z});
     }

@@ -116,7 +116,8 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, co
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
     static LimitsByDevice limits;
-    const uint32_t blocks = blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count.most);
+    const uint32_t blocks =
+        blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count.most, queue.streams());
     queue.zero(pool, sizeof *pool);
     run_dynamic_fetch<Walk, kAny>
         <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);

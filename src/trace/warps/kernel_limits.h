@@ -59,9 +59,11 @@ private:
     KernelLimits limits_[kDevices];
 };
 
-/// Blocks that fill the GPU, or fewer where `count` threads do with them; at least 1.
-inline uint32_t blocks_that_fit(const KernelLimits& limits, uint32_t count) {
-    const uint32_t fit = static_cast<uint32_t>(limits.blocks * limits.multiprocessors);
+/// Blocks that fill the GPU, or fewer where `count` threads do with them; at least 1. Where several streams go side by
+/// side they fill half of it: kernels of two kinds wait for different things, and do more together than in turns.
+inline uint32_t blocks_that_fit(const KernelLimits& limits, uint32_t count, int streams) {
+    const int blocks = streams > 1 ? (limits.blocks + 1) / 2 : limits.blocks;
+    const uint32_t fit = static_cast<uint32_t>(blocks * limits.multiprocessors);
     const uint32_t needed = (count - 1) / kWalkThreads + 1;
     return fit == 0 ? 1 : (fit < needed ? fit : needed);
 }

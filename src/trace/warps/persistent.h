@@ -50,7 +50,7 @@ void launch_persistent(Queue& queue, const char* name, WorkCount count, const St
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
     static LimitsByDevice limits;
-    const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count.most);
+    const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count.most, queue.streams());
     queue.zero(pool, sizeof *pool);
     run_stage_persistent<<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count, pool);
     queue.check_launch();
