@@ -15,13 +15,14 @@ struct TraceQuery {
     RayQueueView rays;
     // In the device's memory; null where every surface is opaque, and shown from both sides to these rays.
     const SceneView* scene = nullptr;
-    const InstanceView* instances = nullptr; // the scene's
-    bool hides_backs = false;                // rays of the camera, which pass backs that are hidden
+    const uint32_t* passing = nullptr; // the scene's
+    bool hides_backs = false;          // rays of the camera, which pass backs that are hidden
 
     bool is_opaque() const { return scene == nullptr; }
 };
 
-/// Of an instance that lets something pass. Out of line: what it does with textures must not cost the walk registers.
+/// Of an instance that may let something pass. Out of line: what it does with textures must not cost the walk
+/// registers.
 HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
                                    uint32_t instance, uint32_t primitive, float u, float v) {
     const AcceptHit accept{*scene, {}, {}, key};
@@ -54,8 +55,8 @@ struct AcceptQueued {
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
         if (!AcceptOpaque{query, i}(instance, primitive, u, v)) return false;
         if (query.scene == nullptr) return true;
-        const InstanceView& placed = query.instances[instance];
-        if (placed.has_alpha == 0 && !(query.hides_backs && placed.hides_back != 0)) return true;
+        // A word of 32 instances is in the cache where their views are not.
+        if ((query.passing[instance / 32] >> instance % 32 & 1u) == 0) return true;
         const int64_t place = query.rays.place(i);
         const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[place] : 0;
         return !passes_surface(query.scene, query.rays.rays + place, key, query.hides_backs, instance, primitive, u, v);

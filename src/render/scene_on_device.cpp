@@ -25,12 +25,18 @@ PartArrays list_geometry(const Scene& scene, std::vector<MeshView>& meshes, Scen
     return arrays;
 }
 
-PartArrays list_instances(const PreparedScene& prepared, std::vector<InstanceView>& instances, SceneView& view) {
+struct Instances {
+    std::vector<InstanceView> views;
+    std::vector<uint32_t> passing; // SceneView's
+};
+
+PartArrays list_instances(const PreparedScene& prepared, Instances& instances, SceneView& view) {
     const Scene& scene = *prepared.scene;
     view.any_alpha = 0;
     view.any_hidden_back = 0;
     view.centre = prepared.centre;
-    instances.reserve(scene.instances.size());
+    instances.views.reserve(scene.instances.size());
+    instances.passing.resize((scene.instances.size() + 31) / 32);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Transform world_from_local = moved_to(instance.world_from_local, prepared.centre);
@@ -39,11 +45,14 @@ PartArrays list_instances(const PreparedScene& prepared, std::vector<InstanceVie
         const uint16_t hides_back = material.double_sided ? 0 : 1;
         view.any_alpha |= has_alpha;
         view.any_hidden_back |= hides_back;
-        instances.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material, has_alpha,
-                             hides_back, is_mirroring(world_from_local) ? 1u : 0u, prepared.is_baked[i] ? 1u : 0u});
+        instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;
+        instances.views.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material,
+                                   has_alpha, hides_back, is_mirroring(world_from_local) ? 1u : 0u,
+                                   prepared.is_baked[i] ? 1u : 0u});
     }
     PartArrays arrays;
-    arrays.add(instances, view.instances);
+    arrays.add(instances.views, view.instances);
+    arrays.add(instances.passing, view.passing);
     return arrays;
 }
 
@@ -107,7 +116,7 @@ void SceneOnDevice::update_geometry(Queue& queue, const Scene& scene) {
 }
 
 void SceneOnDevice::update_instances(Queue& queue, const PreparedScene& prepared) {
-    std::vector<InstanceView> instances;
+    Instances instances;
     list_instances(prepared, instances, view_).upload(queue, instances_, "instances");
 }
 
@@ -132,7 +141,7 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
     const Scene& scene = *prepared.scene;
     SceneView view{};
     std::vector<MeshView> meshes;
-    std::vector<InstanceView> instances;
+    Instances instances;
     std::vector<MaterialView> materials;
     std::vector<TextureImageView> images;
     return list_geometry(scene, meshes, view).bytes() + list_instances(prepared, instances, view).bytes() +

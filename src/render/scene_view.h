@@ -38,6 +38,7 @@ struct InstanceView {
 
 struct SceneView {
     const InstanceView* instances;
+    const uint32_t* passing; // a bit each, 32 a word: 1 where a ray may pass a surface of the instance
     const MeshView* meshes;
     const MaterialView* materials;
     const TextureImageView* images;

@@ -47,7 +47,7 @@ TraceQuery SceneTracer::query_of(RayKind kind, const RayQueueView& rays) const {
     query.hides_backs = kind == RayKind::Camera && scene_.any_hidden_back != 0;
     if (scene_.any_alpha != 0 || query.hides_backs) {
         query.scene = scene_on_device_.data();
-        query.instances = scene_.instances;
+        query.passing = scene_.passing;
     }
     return query;
 }

@@ -57,8 +57,14 @@ struct RaySearch<true, Accept> {
 
 #if PERTEV_HAS_KERNELS
 
+/// Blocks that a multiprocessor is to hold: over one tree as many as fit 64 registers a thread, though some spill.
+template <class Scene>
+inline constexpr int kBlocksWanted = 1;
+template <class Tree>
+inline constexpr int kBlocksWanted<SingleTree<Tree>> = 8;
+
 template <class Walk, bool kAny, class Scene, class Rays, class Counter>
-__global__ void __launch_bounds__(kWalkThreads)
+__global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
     run_dynamic_fetch(Scene scene, Rays rays, WorkCount work, uint32_t* pool, Counter counter) {
     constexpr LaneMask kWarp = 0xffffffffu;
     constexpr uint32_t kNoRay = 0xffffffffu;

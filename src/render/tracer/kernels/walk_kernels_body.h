@@ -119,12 +119,16 @@ KernelLimits limits(bool has_instances) {
 
 #endif
 
+/// Whether a walk is made to be fast where rays come one a thread, and so compiled for one tree of any surfaces.
+template <class Walk>
+inline constexpr bool kFastAlone = false;
+
 /// Closest or any hit of one set of switches: one ray a thread, and in CUDA from a pool too. `kFast`: by dynamic fetch
 /// as well, and compiled for one tree of any surfaces. `kLanes`: lanes are counted.
 template <class Walk, bool kAny, bool kFast, bool kLanes>
 void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>& rows) {
     WalkKernel row = {kind, options, Distribution::OneAThread, kAny, true, kind != WalkKind::Packet};
-    row.trace = trace_one_a_thread<Walk, kAny, kFast>;
+    row.trace = trace_one_a_thread < Walk, kAny, kFast || kFastAlone < Walk >> ;
     row.count = count_work<Walk, kAny>;
 #if defined(__CUDACC__)
     if constexpr (kLanes) row.count_lanes = count_lanes<Walk, kAny, Distribution::OneAThread>;
