@@ -8,10 +8,11 @@
 namespace pertev {
 
 /// The material's base colour there, [0, 1] per channel.
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh,
                             TriangleIndices i, float u, float v) {
     Rgb color = material.base_color;
-    if (const TextureRef& ref = material.base_color_texture; ref.has_image()) {
+    if (const TextureRef& ref = material.base_color_texture; has_texture<kKnown>(ref)) {
         const Vec4 texel =
             lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
         color = color * Rgb{texel.x, texel.y, texel.z};
@@ -23,9 +24,11 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material
     return {clamp(color.r, 0.0f, 1.0f), clamp(color.g, 0.0f, 1.0f), clamp(color.b, 0.0f, 1.0f)};
 }
 
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialView& material, const MeshView& mesh, TriangleIndices i,
                          float u, float v, Rgb base_color) {
-    if (material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::Unlit) {
+    if (kKnown != MaterialsKnown::Nothing || material.kind == MaterialKind::Diffuse ||
+        material.kind == MaterialKind::Unlit) {
         return make_diffuse(base_color);
     }
     const float roughness =

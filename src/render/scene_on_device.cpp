@@ -58,6 +58,7 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
 
 PartArrays list_materials(const Scene& scene, std::vector<MaterialView>& materials, SceneView& view) {
     for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
+    view.known = known_of(materials);
     PartArrays arrays;
     arrays.add(materials, view.materials);
     return arrays;

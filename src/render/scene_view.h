@@ -41,6 +41,7 @@ struct SceneView {
     const uint32_t* passing; // a bit each, 32 a word: 1 where a ray may pass a surface of the instance
     const MeshView* meshes;
     const MaterialView* materials;
+    MaterialsKnown known; // of all of them
     const TextureImageView* images;
     const float* linear_from_srgb; // [256]
     LightSetView lights;

@@ -155,11 +155,12 @@ HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec
 
 /// The shading frame at the hit, seen from `wo` (unit). Writes `tilt` of the interpolated normal, before the normal
 /// map: a map's bumps have no neighbours whose horizon they would have to clear.
+template <MaterialsKnown kKnown>
 HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
                               const MaterialView& material, const PlacedTriangle& triangle, const Hit& hit,
                               Vec3 geometric_normal, Vec3 wo, float& tilt) {
     tilt = 0;
-    if (mesh.normals == nullptr && !material.normal_texture.has_image()) return make_frame(geometric_normal);
+    if (mesh.normals == nullptr && !has_texture<kKnown>(material.normal_texture)) return make_frame(geometric_normal);
     const Vec3 local = mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
     Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
     if (mesh.normals != nullptr) {
@@ -169,7 +170,7 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
         tilt = terminator_tilt(sine_between(normal, geometric_normal),
                                dot(Vec3{1.0f - hit.u - hit.v, hit.u, hit.v}, corners));
     }
-    if (material.normal_texture.has_image()) {
+    if (has_texture<kKnown>(material.normal_texture)) {
         const TextureRef& ref = material.normal_texture;
         const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, geometric_normal, ref.uv_set);
         const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
@@ -182,6 +183,7 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
 }
 
 /// The surface at `hit` of a ray that arrives along `direction` (unit).
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& mesh = scene.meshes[instance.mesh];
@@ -194,19 +196,19 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     surface.geometric_normal = front_normal(instance, mesh, triangle);
     surface.triangle = {hit.instance, hit.primitive};
     surface.material = instance.material;
-    surface.frame = shading_frame(scene, instance, mesh, material, triangle, hit, surface.geometric_normal, -direction,
-                                  surface.tilt);
-    surface.albedo = base_color_at(scene, material, mesh, triangle.i, hit.u, hit.v);
+    surface.frame = shading_frame<kKnown>(scene, instance, mesh, material, triangle, hit, surface.geometric_normal,
+                                          -direction, surface.tilt);
+    surface.albedo = base_color_at<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v);
     surface.is_unlit = material.kind == MaterialKind::Unlit;
     if (surface.is_unlit) {
         surface.emission = surface.albedo;
     } else if ((material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) &&
                (material.two_sided_emission || dot(triangle.normal, direction) < 0)) {
-        surface.emission =
-            surface_emission(scene.lights, instance.material,
-                             texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
+        surface.emission = surface_emission<has_textures(kKnown)>(
+            scene.lights, instance.material,
+            texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
     }
-    surface.bsdf = make_bsdf(scene, material, mesh, triangle.i, hit.u, hit.v, surface.albedo);
+    surface.bsdf = make_bsdf<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v, surface.albedo);
     return surface;
 }
 

@@ -113,9 +113,11 @@ HD inline uint32_t light_of(const LightSetView& view, uint32_t instance, uint32_
 }
 
 /// Radiance that material `material` emits at `uv` (of the set that its emission texture reads).
+/// Without kTextures no material that emits has any.
+template <bool kTextures = true>
 HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2 uv) {
     const SurfaceEmission& surface = view.emissions[material];
-    if (surface.texture.image == kNoImage) return surface.emission;
+    if (!kTextures || surface.texture.image == kNoImage) return surface.emission;
     const Vec4 texel = lookup_texture(view.images, surface.texture, uv, view.linear_from_srgb);
     return surface.emission * Rgb{texel.x, texel.y, texel.z};
 }
@@ -138,6 +140,7 @@ HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float dist
     return falloff;
 }
 
+template <bool kTextures>
 HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, Vec3 from_point, Vec2 u,
                                      LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
@@ -151,7 +154,7 @@ HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, V
     const float pdf = triangle.pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
-    const Rgb radiance = surface_emission(view, triangle.material, uv);
+    const Rgb radiance = surface_emission<kTextures>(view, triangle.material, uv);
     if (is_black(radiance)) return false;
     sample = {wi,  distance, point, normalize(normal), radiance, pdf, false, triangle.instance, triangle.primitive,
               b.x, b.y};
@@ -182,6 +185,7 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
 /// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of
 /// a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the
 /// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
+template <bool kTextures = true>
 HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBits u, LightSample& sample) {
     if (view.choice.starts == nullptr) return false;
     const uint32_t more = bits_behind(u);
@@ -189,8 +193,8 @@ HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBit
     if (source.index < view.emitter_count) {
         const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
         const uint32_t first = view.emitters[source.index].first_triangle;
-        return sample_triangle_light(view, first + view.triangle_order[first + triangle.index], from_point,
-                                     {rest_of(source), rest_of(triangle)}, sample);
+        return sample_triangle_light<kTextures>(view, first + view.triangle_order[first + triangle.index], from_point,
+                                                {rest_of(source), rest_of(triangle)}, sample);
     }
     const float pmf = ordered_pmf(source.owned);
     if (source.index != view.environment_source) {

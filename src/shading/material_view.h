@@ -2,6 +2,10 @@
 
 // A material as device code sees it: scene/material.h without its name.
 
+#include <cstdint>
+#include <span>
+
+#include "base/host_device.h"
 #include "scene/material.h"
 
 namespace pertev {
@@ -15,6 +19,30 @@ struct MaterialView {
     float metallic, roughness, ior, normal_scale;
     TextureRef base_color_texture, alpha_texture, metallic_texture, roughness_texture, emission_texture, normal_texture;
 };
+
+/// What all materials of a scene have in common: code that knows it needs fewer registers.
+enum class MaterialsKnown : uint8_t {
+    Nothing,
+    Diffuse,      // of that kind
+    PlainDiffuse, // and opaque, without textures
+};
+
+inline MaterialsKnown known_of(std::span<const MaterialView> materials) {
+    bool are_plain = true;
+    for (const MaterialView& m : materials) {
+        if (m.kind != MaterialKind::Diffuse) return MaterialsKnown::Nothing;
+        are_plain = are_plain && m.alpha_mode == AlphaMode::Opaque && !m.base_color_texture.has_image() &&
+                    !m.normal_texture.has_image() && !m.emission_texture.has_image();
+    }
+    return are_plain ? MaterialsKnown::PlainDiffuse : MaterialsKnown::Diffuse;
+}
+
+HD constexpr bool has_textures(MaterialsKnown known) { return known != MaterialsKnown::PlainDiffuse; }
+/// Whether a slot of a material has a texture, where the compiler may know that none has.
+template <MaterialsKnown kKnown>
+HD inline bool has_texture(const TextureRef& slot) {
+    return has_textures(kKnown) && slot.has_image();
+}
 
 inline MaterialView make_material_view(const Material& m) {
     return {.kind = m.kind,

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "base/parallel_for.h"
+#include "shading/material_view.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -82,6 +83,56 @@ TEST_CASE("the wavefront gives the bytes of the loop, however lights are found")
         settings.body = PathBody::Wavefront;
         CHECK(cpu_hash(settings) == loop);
     }
+}
+
+namespace {
+
+/// The mixed scene in materials of which something is known.
+Scene scene_of(MaterialsKnown known) {
+    Scene scene = test::make_mixed_scene();
+    for (Material& material : scene.materials) {
+        if (known != MaterialsKnown::Nothing) material.kind = MaterialKind::Diffuse;
+        if (known != MaterialsKnown::PlainDiffuse) continue;
+        material.alpha_mode = AlphaMode::Opaque;
+        material.base_color_texture = material.normal_texture = material.emission_texture = {};
+    }
+    return scene;
+}
+
+MaterialsKnown known_of(const Scene& scene) {
+    std::vector<MaterialView> views;
+    for (const Material& material : scene.materials) views.push_back(make_material_view(material));
+    return pertev::known_of(views);
+}
+
+} // namespace
+
+TEST_CASE("the wavefront, which knows something of materials, gives the bytes of the loop, which does not") {
+    Hash128 before = {};
+    for (const MaterialsKnown known :
+         {MaterialsKnown::Nothing, MaterialsKnown::Diffuse, MaterialsKnown::PlainDiffuse}) {
+        CAPTURE(static_cast<int>(known));
+        const Scene scene = scene_of(known);
+        CHECK(known_of(scene) == known);
+        RenderSettings settings = small_settings();
+        settings.samples = 2;
+        std::vector<Queue> queues;
+        queues.push_back(Queue::make_cpu());
+        if (test::cuda_requested()) queues.push_back(test::make_cuda_queue());
+        const Hash128 loop = hash_of(test::render(queues[0], scene, test::mixed_scene_camera(), settings));
+        CHECK(loop != before);
+        before = loop;
+        settings.body = PathBody::Wavefront;
+        for (Queue& queue : queues) {
+            CHECK(hash_of(test::render(queue, scene, test::mixed_scene_camera(), settings)) == loop);
+        }
+    }
+    Scene unlit = scene_of(MaterialsKnown::PlainDiffuse);
+    unlit.materials.back().kind = MaterialKind::Unlit;
+    CHECK(known_of(unlit) == MaterialsKnown::Nothing);
+    Scene blended = scene_of(MaterialsKnown::PlainDiffuse);
+    blended.materials.back().alpha_mode = AlphaMode::Blend;
+    CHECK(known_of(blended) == MaterialsKnown::Diffuse);
 }
 
 TEST_CASE("the picture does not depend on how the trees were built") {

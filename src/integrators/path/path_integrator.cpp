@@ -195,8 +195,22 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
             tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh,
                                {hits.places + last, hits.instances + last, -1});
         }
-        launch(queue_, "shade_hits", {most, &counts->active},
-               ShadeHits{picture_, settings_, work.film, paths, next, hits, shadows, counts, last});
+        const WorkCount active = {most, &counts->active};
+        const auto shade = [&]<MaterialsKnown kKnown>() {
+            launch(queue_, "shade_hits", active,
+                   ShadeHits<kKnown>{picture_, settings_, work.film, paths, next, hits, shadows, counts, last});
+        };
+        switch (picture_.scene.known) {
+        case MaterialsKnown::Nothing:
+            shade.operator()<MaterialsKnown::Nothing>();
+            break;
+        case MaterialsKnown::Diffuse:
+            shade.operator()<MaterialsKnown::Diffuse>();
+            break;
+        case MaterialsKnown::PlainDiffuse:
+            shade.operator()<MaterialsKnown::PlainDiffuse>();
+            break;
+        }
     }
     queue_.let_wait(w.light_stream, w.path_stream);
     const Queue::OnStream on(queue_, w.light_stream);

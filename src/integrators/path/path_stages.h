@@ -51,6 +51,7 @@ struct GeneratePaths {
     }
 };
 
+template <MaterialsKnown kKnown>
 struct ShadeHits {
     PictureView picture;
     PathSettings settings;
@@ -70,7 +71,7 @@ struct ShadeHits {
         ShadowRay shadow;
         bool wants_shadow = false;
         uint32_t to = 0;
-        if (shade_hit(picture, settings, film, path, hit, shadow, wants_shadow)) {
+        if (shade_hit<kKnown>(picture, settings, film, path, hit, shadow, wants_shadow)) {
             to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
         } else {

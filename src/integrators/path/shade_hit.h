@@ -54,19 +54,20 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
 }
 
 /// Draws one point of one light. True when `shadow` is to be traced.
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
                              const Surface& surface, Vec3 wo, ShadowRay& shadow) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = {path.pixel, path.sample, settings.seed};
     LightSample light;
-    if (!sample_light(scene.lights, surface.position, sample_bits(settings.sampler, key, light_group(path), Pair::Last),
-                      light)) {
+    if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position,
+                                            sample_bits(settings.sampler, key, light_group(path), Pair::Last), light)) {
         return false;
     }
     const BsdfValue scattered = surface.evaluate(wo, light.wi);
     if (is_black(scattered.f)) return false;
-    if (light.instance != kNoLight && scene.any_alpha != 0 &&
+    if (kKnown != MaterialsKnown::PlainDiffuse && light.instance != kNoLight && scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
                                                                                     light.b1, light.b2)) {
         return false; // a hole in the light
@@ -164,6 +165,7 @@ HD inline void add_first_hit(const FilmView& film, const PathState& path, const 
 
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
                          PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow) {
     const SceneView& scene = picture.scene;
@@ -179,7 +181,7 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
         }
         return false;
     }
-    const Surface surface = make_surface(scene, hit, path.direction);
+    const Surface surface = make_surface<kKnown>(scene, hit, path.direction);
     if (path.depth == 0) add_first_hit(film, path, hit, surface, picture.camera.axis, scene.centre);
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
@@ -188,7 +190,7 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     }
     if (surface.is_unlit || path.depth >= settings.max_depth) return false;
     const Vec3 wo = -path.direction;
-    wants_shadow = ask_for_light(scene, settings, path, surface, wo, shadow);
+    wants_shadow = ask_for_light<kKnown>(scene, settings, path, surface, wo, shadow);
     return scatter(settings, path, surface, wo);
 }
 

@@ -2,5 +2,7 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeHits&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse>&);
 } // namespace pertev
