@@ -263,6 +263,11 @@ MUTATIONS = [
     Mutation("the wavefront draws other numbers", [edit("src/integrators/path/path_stages.h",
                                                         "round->first_sample + (", "1 + round->first_sample + (")],
              ["consistency/one_picture"]),
+    Mutation("materials are taken for plain that let rays pass", [
+        edit("src/shading/material_view.h", "m.alpha_mode == AlphaMode::Opaque && ", "")], ["consistency/one_picture"]),
+    Mutation("boxes above where a subtree was put stay as they were", [
+        edit("src/accel/bvh/reinsert_subtrees.cpp", "{parent_[joint], joint, parent_[moves[i].target]}",
+             "{parent_[joint], joint, joint}")], ["unit/reinsert_subtrees"]),
     Mutation("the film adds floats", [edit("src/render/film_view.h", "atomic_add(&sums[0], to_fixed(radiance.r));",
                                            "sums[0] = to_fixed(mean_of(sums[0], 1) + radiance.r);")],
              ["unit/film"]),
