@@ -272,9 +272,7 @@ HD inline float alpha_from_roughness(float roughness) { return square(clamp(roug
 
 HD inline Bsdf make_absorber() { return {}; }
 /// `albedo` in [0, 1].
-HD inline Bsdf make_diffuse(Rgb albedo) {
-    return Bsdf(DiffuseLobe{albedo, 1});
-}
+HD inline Bsdf make_diffuse(Rgb albedo) { return Bsdf(DiffuseLobe{albedo, 1}); }
 /// Complex index eta + i k, both >= 0; roughness in [0, 1].
 HD inline Bsdf make_conductor(Rgb eta, Rgb k, float roughness) {
     Bsdf bsdf;
