@@ -190,26 +190,33 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     const MaterialView& material = scene.materials[instance.material];
     const PlacedTriangle triangle = place_triangle(instance, mesh, hit);
 
-    Surface surface;
-    surface.position = triangle.position;
-    surface.error = triangle.error;
-    surface.geometric_normal = front_normal(instance, mesh, triangle);
-    surface.triangle = {hit.instance, hit.primitive};
-    surface.material = instance.material;
-    surface.frame = shading_frame<kKnown>(scene, instance, mesh, material, triangle, hit, surface.geometric_normal,
-                                          -direction, surface.tilt);
-    surface.albedo = base_color_at<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v);
-    surface.is_unlit = material.kind == MaterialKind::Unlit;
-    if (surface.is_unlit) {
-        surface.emission = surface.albedo;
+    const Vec3 geometric_normal = front_normal(instance, mesh, triangle);
+    float tilt = 0;
+    const Frame frame =
+        shading_frame<kKnown>(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, tilt);
+    const Rgb albedo = base_color_at<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v);
+    const bool is_unlit = material.kind == MaterialKind::Unlit;
+    Rgb emission = {};
+    if (is_unlit) {
+        emission = albedo;
     } else if ((material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) &&
                (material.two_sided_emission || dot(triangle.normal, direction) < 0)) {
-        surface.emission = surface_emission<has_textures(kKnown)>(
+        emission = surface_emission<has_textures(kKnown)>(
             scene.lights, instance.material,
             texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
     }
-    surface.bsdf = make_bsdf<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v, surface.albedo);
-    return surface;
+    // In one expression, so that the BSDF is made where it stays.
+    return {.position = triangle.position,
+            .error = triangle.error,
+            .geometric_normal = geometric_normal,
+            .frame = frame,
+            .bsdf = make_bsdf<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo),
+            .emission = emission,
+            .albedo = albedo,
+            .triangle = {hit.instance, hit.primitive},
+            .material = instance.material,
+            .is_unlit = is_unlit,
+            .tilt = tilt};
 }
 
 } // namespace pertev

@@ -137,6 +137,10 @@ struct Bsdf {
     // them does not pay, neither time nor registers.
     bool is_stacked = false;
 
+    Bsdf() = default;
+    /// The lobe is made in place: a copy would wait for its own stores.
+    HD explicit Bsdf(const DiffuseLobe& lobe) : base(lobe) {}
+
     /// Puts the reflection on the base: the innermost layer.
     HD void add(const SchlickLobe& lobe) {
         layers[0] = lobe;
@@ -268,11 +272,7 @@ HD inline float alpha_from_roughness(float roughness) { return square(clamp(roug
 
 HD inline Bsdf make_absorber() { return {}; }
 /// `albedo` in [0, 1].
-HD inline Bsdf make_diffuse(Rgb albedo) {
-    Bsdf bsdf;
-    bsdf.base = DiffuseLobe{albedo, 1};
-    return bsdf;
-}
+HD inline Bsdf make_diffuse(Rgb albedo) { return Bsdf(DiffuseLobe{albedo, 1}); }
 /// Complex index eta + i k, both >= 0; roughness in [0, 1].
 HD inline Bsdf make_conductor(Rgb eta, Rgb k, float roughness) {
     Bsdf bsdf;

@@ -16,6 +16,7 @@ struct AnyVisitor {
     bool found = false;
 
     HD float limit() const { return t_max; }
+    HD bool is_done() const { return found; }
     HD bool visit(uint32_t instance, uint32_t primitive, const TriangleHit& hit) {
         found = accept(instance, primitive, hit.u, hit.v);
         return found;

@@ -30,16 +30,18 @@ TEST_CASE("a box whose entry equals the limit is entered, one ulp less and it is
             wrong += !enters_child(boxes, node, i % 2, 0, entry, again) || again != entry ? 1 : 0;
             wrong += enters_child(boxes, node, i % 2, 0, std::nextafterf(entry, 0), again) ? 1 : 0;
         }
-        const WideRay wide_ray = make_wide_ray(boxes);
+        const WideRay wide_ray = make_wide_ray<WalkOptions{}>({origin, 0, direction}, bvh.bounds.max_abs());
         const WideBvhNode<8>& wide_node = wide[random.below(static_cast<uint32_t>(wide.size()))];
-        alignas(32) float entries[kWideChildren], unused[kWideChildren];
+        alignas(32) float entries[kWideChildren];
         const __m256 zero = _mm256_setzero_ps();
-        const unsigned entered = enters_children(wide_ray, wide_node, zero, _mm256_set1_ps(kInfinity), entries);
+        const EnteredChildren children = enters_children(wide_ray, wide_node, zero, _mm256_set1_ps(kInfinity));
+        const unsigned entered = children.mask();
+        _mm256_store_ps(entries, children.entries);
         for (unsigned k = 0; k < kWideChildren; ++k) {
             if (!(entered >> k & 1) || !(entries[k] > 0)) continue;
             ++wide_tried;
             const auto enters = [&](float limit) {
-                return (enters_children(wide_ray, wide_node, zero, _mm256_set1_ps(limit), unused) >> k & 1) != 0;
+                return (enters_children(wide_ray, wide_node, zero, _mm256_set1_ps(limit)).mask() >> k & 1) != 0;
             };
             wrong += !enters(entries[k]) || enters(std::nextafterf(entries[k], 0)) ? 1 : 0;
         }

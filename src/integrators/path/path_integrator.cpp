@@ -5,11 +5,13 @@
 
 #include "base/parallel_for.h"
 #include "device/launch.h"
+#include "integrators/path/path_loop.h"
 #include "integrators/path/path_stages.h"
-#include "render/find_hit.h"
 
 namespace pertev {
 namespace {
+
+constexpr uint64_t kLoopPixels = 256; // at least, that a thread of the loop takes at once
 
 /// Wavefronts that go side by side, and the paths that each has in flight.
 struct Size {
@@ -92,45 +94,17 @@ void PathIntegrator::render(uint32_t first, uint32_t count, Film& film) {
 }
 
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
-    const uint32_t width = picture_.camera.width, height = picture_.camera.height;
+    const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
     std::atomic<uint64_t> bounces{0}, shadows{0};
-    parallel_for_ranges(uint64_t(width) * height, 64, [&](uint64_t begin, uint64_t end) {
+    parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
         RayCounts counts;
-        for (uint64_t i = begin; i < end; ++i) {
-            const uint32_t pixel = tiled_pixel(static_cast<uint32_t>(i), width, height);
-            for (uint32_t sample = first; sample < first + count; ++sample) {
-                trace_path(generate_path(picture_.camera, settings_, pixel, sample), film, trees, counts);
-            }
-        }
+        render_pixels(picture_, settings_, trees, film, {begin, end, first, count}, counts);
         bounces += counts.bounce;
         shadows += counts.shadow;
     });
-    rays_.camera += uint64_t(width) * height * count;
+    rays_.camera += pixels * count;
     rays_.bounce += bounces;
     rays_.shadow += shadows;
-}
-
-void PathIntegrator::trace_path(PathState path, const FilmView& film, const HostTrees& trees, RayCounts& counts) const {
-    const SceneView& scene = picture_.scene;
-    for (bool goes_on = true; goes_on;) {
-        const Ray ray = {path.origin, 0.0f, path.direction, kInfinity};
-        const AcceptHit accept{scene, path.start, {}, path_key(path, settings_.seed, false)};
-        const bool looks = path.depth == 0 && scene.any_hidden_back != 0;
-        const Hit hit =
-            looks ? find_hit(trees, ray, AcceptCameraHit{accept, ray.direction}) : find_hit(trees, ray, accept);
-        const uint32_t key = path_key(path, settings_.seed, true);
-        ShadowRay shadow;
-        bool wants_shadow = false;
-        goes_on = shade_hit(picture_, settings_, film, path, hit, shadow, wants_shadow);
-        counts.bounce += goes_on ? 1 : 0;
-        if (!wants_shadow) continue;
-        ++counts.shadow;
-        if (!is_occluded(trees, {shadow.origin, 0.0f, shadow.direction, shadow.t_max},
-                         AcceptHit{scene, {hit.instance, hit.primitive}, shadow.target, key})) {
-            path.radiance += shadow.contribution;
-        }
-    }
-    add_radiance(film, path.pixel, path.radiance);
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {

@@ -45,7 +45,6 @@ public:
 private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
-    void trace_path(PathState path, const FilmView& film, const HostTrees& trees, RayCounts& counts) const;
     const HostTrees* trees_of_loop() const; // null where the body is the wavefront
 
     /// Samples that render() makes.

@@ -8,6 +8,7 @@
 #include "accel/kd_tree/build_kd_tree.h"
 #include "accel/octree/build_octree.h"
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/stopwatch.h"
 #include "render/tracer/hploc/device_builder.h"
 
@@ -195,7 +196,12 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
         convert([](const Bvh& bvh) { return make_wide_bvh<8>(bvh); });
         break;
     case TreeLayout::Wide8Simd:
-        convert([](const Bvh& bvh) { return make_wide_bvh<kWideChildren>(bvh, kSimdCollapse); });
+        convert([](const Bvh& bvh) {
+            WideBvh<kWideChildren> wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse);
+            use_huge_pages(std::as_bytes(std::span(wide.nodes)));
+            use_huge_pages(std::as_bytes(std::span(wide.triangles)));
+            return wide;
+        });
         break;
     case TreeLayout::Compressed:
         if (kind == StructureKind::Hploc) { // by the builder itself, as on a GPU, and not of its binary tree

@@ -30,7 +30,7 @@ public:
     /// Whether shadow rays meet anything.
     void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
 
-    /// What a loop over rays on the host may walk by itself, by render/find_hit.h. Null unless rays of all kinds are
+    /// What a loop over rays on the host may walk by itself, by render/find_hits.h. Null unless rays of all kinds are
     /// traced so.
     const HostTrees* host_trees() const { return host_trees_; }
     const TracerChoice& choice() const { return choice_; }

@@ -42,7 +42,7 @@ TracerChoice default_tracers(bool on_cuda, TreeBuild build = kDefaultBuild);
 /// binary tree.
 BvhBuilder builder_of(const TracerChoice& choice);
 
-/// Whether a loop on the host may walk what is chosen ray by ray (render/find_hit.h): one structure, eight boxes at a
+/// Whether a loop on the host may walk what is chosen by itself (render/find_hits.h): one structure, eight boxes at a
 /// time, every switch on.
 bool can_walk_on_host(const TracerChoice& choice, bool on_cuda);
 

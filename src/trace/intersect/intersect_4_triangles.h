@@ -5,6 +5,8 @@
 
 #include <immintrin.h>
 
+#include <type_traits>
+
 #include "accel/bvh/bvh.h"
 #include "trace/intersect/intersect_triangle.h"
 #include "trace/ray.h"
@@ -17,14 +19,28 @@ struct RayShear4 {
     __m128 ox, oy, oz; // origin, in that order of axes
 };
 
-inline RayShear4 make_ray_shear_4(Vec3 origin, const RayShear& s) {
-    return {_mm_setr_epi32(s.kx, s.ky, s.kz, 3),
-            _mm_set1_ps(s.sx),
-            _mm_set1_ps(s.sy),
-            _mm_set1_ps(s.sz),
-            _mm_set1_ps(component(origin, s.kx)),
-            _mm_set1_ps(component(origin, s.ky)),
-            _mm_set1_ps(component(origin, s.kz))};
+/// make_ray_shear, as vectors too. It does not branch on the direction, whose largest component is anyone's guess: a
+/// wrong one costs as much as a quarter of a node.
+inline RayShear4 make_ray_shear_4(const Ray& ray, RayShear& shear) {
+    const Vec3 size = abs(ray.direction);
+    const int x_y = size.x >= size.y, x_z = size.x >= size.z, y_z = size.y >= size.z;
+    const int kz = 2 - 2 * (x_y & x_z) - ((x_y ^ 1) & y_z);
+    const int kx = (0b00'10'01 >> 2 * kz) & 3, ky = (0b01'00'10 >> 2 * kz) & 3; // the two that come after it, round
+    const __m128i order = _mm_setr_epi32(kx, ky, kz, 3);
+    const __m128 direction = _mm_permutevar_ps(_mm_loadu_ps(&ray.direction.x), order);
+    const __m128 dz = _mm_shuffle_ps(direction, direction, 0xaa);
+    const __m128 slopes = _mm_div_ps(_mm_blend_ps(direction, _mm_set1_ps(1.0f), 4), dz);
+    const __m128 origin = _mm_permutevar_ps(_mm_loadu_ps(&ray.origin.x), order);
+    const auto lane = [](__m128 v, auto k) { return _mm_shuffle_ps(v, v, k * 0x55); };
+    using std::integral_constant;
+    constexpr integral_constant<int, 0> k0;
+    constexpr integral_constant<int, 1> k1;
+    constexpr integral_constant<int, 2> k2;
+    const RayShear4 four = {
+        order,           lane(slopes, k0), lane(slopes, k1), lane(slopes, k2), lane(origin, k0), lane(origin, k1),
+        lane(origin, k2)};
+    shear = {kx, ky, kz, _mm_cvtss_f32(four.sx), _mm_cvtss_f32(four.sy), _mm_cvtss_f32(four.sz)};
+    return four;
 }
 
 struct TriangleHit4 {

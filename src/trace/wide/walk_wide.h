@@ -5,7 +5,9 @@
 
 #include <immintrin.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "accel/bvh/bvh.h"
 #include "accel/bvh/wide_bvh.h"
@@ -16,49 +18,76 @@
 namespace pertev {
 
 struct WideRay {
-    int near_plane[3]; // index into WideBvhNode::planes; the far one is near ^ 1
+    std::ptrdiff_t near_plane[3], far_plane[3]; // where WideBvhNode::planes has them, in floats
     __m256 inv[3];
     __m256 near[3], far[3]; // what takes a moved-out plane to its parameter; RayBoxes' lo and hi by the ray's sign
 };
 
-inline WideRay make_wide_ray(const RayBoxes& boxes) {
-    WideRay ray;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float inv = component(boxes.inv, axis), lo = component(boxes.lo, axis), hi = component(boxes.hi, axis);
-        const bool backwards = inv < 0;
-        ray.near_plane[axis] = 2 * axis + (backwards ? 1 : 0);
-        ray.inv[axis] = _mm256_set1_ps(inv);
-        ray.near[axis] = _mm256_set1_ps(backwards ? hi : lo);
-        ray.far[axis] = _mm256_set1_ps(backwards ? lo : hi);
+/// A ray's boxes, exact or not; of them the first are made in vectors, like make_ray_boxes to the bit, and without a
+/// branch on the direction's signs.
+template <WalkOptions kOptions>
+WideRay make_wide_ray(const Ray& ray, float bounds_max_abs) {
+    __m128 inv, lo, hi;
+    if constexpr (kOptions.is_exact()) {
+        const __m128 sign = _mm_set1_ps(-0.0f), tiny = _mm_set1_ps(0x1p-80f);
+        const __m128 origin = _mm_loadu_ps(&ray.origin.x), direction = _mm_loadu_ps(&ray.direction.x);
+        const __m128 is_tiny = _mm_cmplt_ps(_mm_andnot_ps(sign, direction), tiny);
+        inv = _mm_div_ps(_mm_set1_ps(1.0f),
+                         _mm_blendv_ps(direction, _mm_or_ps(tiny, _mm_and_ps(direction, sign)), is_tiny));
+        const __m128 growth = _mm_set1_ps(box_growth(ray.origin, bounds_max_abs));
+        lo = _mm_xor_ps(_mm_mul_ps(_mm_add_ps(origin, growth), inv), sign);
+        hi = _mm_xor_ps(_mm_mul_ps(_mm_sub_ps(origin, growth), inv), sign);
+    } else {
+        const auto boxes = TestsOf<kOptions>::make_boxes(ray, bounds_max_abs);
+        const auto vector = [](Vec3 v) { return _mm_setr_ps(v.x, v.y, v.z, 0); };
+        inv = vector(boxes.inv), lo = vector(boxes.lo), hi = vector(boxes.hi);
     }
-    return ray;
+    const auto backwards = static_cast<unsigned>(_mm_movemask_ps(inv));
+    const __m128 near = _mm_blendv_ps(lo, hi, inv), far = _mm_blendv_ps(hi, lo, inv);
+    WideRay wide;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto all = [axis](__m128 v) { return _mm256_broadcastss_ps(_mm_permutevar_ps(v, _mm_set1_epi32(axis))); };
+        const std::ptrdiff_t back = backwards >> axis & 1;
+        wide.near_plane[axis] = kWideChildren * (2 * axis + back);
+        wide.far_plane[axis] = kWideChildren * (2 * axis + 1 - back);
+        wide.inv[axis] = all(inv), wide.near[axis] = all(near), wide.far[axis] = all(far);
+    }
+    return wide;
 }
 
-/// Bit k: child k may hold a hit with t_min < t <= t_limit; its entry parameter goes to entries[k]. Always inlined: as
-/// a call, with its vectors through memory, it takes a tenth of a render.
-[[gnu::always_inline]] inline unsigned enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node,
-                                                       __m256 t_min, __m256 t_limit, float (&entries)[kWideChildren]) {
+/// What a ray meets of a node: lane k is child k.
+struct EnteredChildren {
+    __m256 entries; // parameters
+    __m256 is_in;   // all bits where the child may hold a hit with t_min < t <= t_limit, else none
+
+    unsigned mask() const { return static_cast<unsigned>(_mm256_movemask_ps(is_in)); }
+};
+
+/// Always inlined: as a call, with its vectors through memory, it takes a tenth of a render.
+[[gnu::always_inline]] inline EnteredChildren
+enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node, __m256 t_min, __m256 t_limit) {
     const auto near = [&](int axis) {
-        return _mm256_fmadd_ps(_mm256_load_ps(node.planes[ray.near_plane[axis]]), ray.inv[axis], ray.near[axis]);
+        return _mm256_fmadd_ps(_mm256_load_ps(&node.planes[0][0] + ray.near_plane[axis]), ray.inv[axis],
+                               ray.near[axis]);
     };
     const auto far = [&](int axis) {
-        return _mm256_fmadd_ps(_mm256_load_ps(node.planes[ray.near_plane[axis] ^ 1]), ray.inv[axis], ray.far[axis]);
+        return _mm256_fmadd_ps(_mm256_load_ps(&node.planes[0][0] + ray.far_plane[axis]), ray.inv[axis], ray.far[axis]);
     };
-    const __m256 entry = _mm256_max_ps(_mm256_max_ps(near(0), near(1)), _mm256_max_ps(near(2), t_min));
+    const __m256 entries = _mm256_max_ps(_mm256_max_ps(near(0), near(1)), _mm256_max_ps(near(2), t_min));
     const __m256 exit = _mm256_min_ps(_mm256_min_ps(far(0), far(1)), _mm256_min_ps(far(2), t_limit));
-    _mm256_store_ps(entries, entry);
-    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)));
+    return {entries, _mm256_cmp_ps(entries, exit, _CMP_LE_OQ)};
 }
 
 /// Leaves of up to four triangles at once, or one by one where hits need not be exact. True when the visitor ended it.
 template <WalkOptions kOptions>
 struct LeafOfFour {
     const Ray& ray;
-    const typename TestsOf<kOptions>::Triangles prepared;
-    const RayShear4 shear4;
+    RayShear shear;
+    RayShear4 shear4;
 
-    explicit LeafOfFour(const Ray& r)
-        : ray(r), prepared(TestsOf<kOptions>::make_triangles(r)), shear4(make_ray_shear_4(r.origin, shear_of(r))) {}
+    explicit LeafOfFour(const Ray& r) : ray(r) {
+        if constexpr (kOptions.is_exact()) shear4 = make_ray_shear_4(r, shear);
+    }
 
     template <class Visitor>
     bool test(const BvhTriangle* first, uint32_t count, uint32_t instance, Visitor& visitor) const {
@@ -67,7 +96,7 @@ struct LeafOfFour {
         };
         if constexpr (kOptions.is_exact()) {
             TriangleHit4 hits;
-            unsigned hit = intersect_4_triangles(ray.origin, prepared, shear4, ray.t_min, ray.t_max, visitor.limit(),
+            unsigned hit = intersect_4_triangles(ray.origin, shear, shear4, ray.t_min, ray.t_max, visitor.limit(),
                                                  first, count, hits);
             for (; hit != 0; hit &= hit - 1) {
                 const int k = __builtin_ctz(hit);
@@ -77,67 +106,93 @@ struct LeafOfFour {
             for (uint32_t k = 0; k < count; ++k) {
                 TriangleHit hit;
                 const BvhTriangle& t = first[k];
-                if (FastTests::intersect(ray, prepared, t.a, t.b, t.c, hit) && visit(t, hit)) return true;
+                if (FastTests::intersect(ray, {}, t.a, t.b, t.c, hit) && visit(t, hit)) return true;
             }
         }
         return false;
     }
 
-private:
-    RayShear shear_of(const Ray& r) const {
-        if constexpr (kOptions.is_exact()) {
-            return prepared;
-        } else {
-            return make_ray_shear(r.direction); // not used
+    /// Of a leaf, whatever its size.
+    template <class Visitor, class Counter>
+    bool test_all(const BvhTriangle* triangles, uint32_t count, uint32_t instance, Visitor& visitor,
+                  const Counter& counter) const {
+        for (uint32_t i = 0; i < count; i += 4) {
+            const BvhTriangle* first = triangles + i;
+            const uint32_t some = min(count - i, 4u);
+            for (uint32_t k = 0; k < some; ++k) counter.add_triangle(first + k);
+            if (test(first, some, instance, visitor)) return true;
         }
+        return false;
     }
 };
 
+/// A child that is still to be entered.
+struct WideEntry {
+    float entry;
+    uint32_t link, count; // WideBvhNode's
+};
+using WideStack = WideEntry[kWideStackSize<kWideChildren>];
+
+/// Tests a node's boxes. Where the ray enters any, the first of them goes to `at` and the others to the stack: the
+/// nearest first, or the one that the builder put first. Most nodes lead to one child or two, which take no loop.
+template <WalkOptions kOptions>
+[[gnu::always_inline]] inline bool enter_node(const WideBvhNode<kWideChildren>& node, const WideRay& wide, __m256 t_min,
+                                              __m256 t_limit, WideEntry* stack, int& size, WideEntry& at) {
+    const EnteredChildren children = enters_children(wide, node, t_min, t_limit);
+    unsigned entered = children.mask();
+    if (entered == 0) return false;
+    alignas(32) float entries[kWideChildren];
+    _mm256_store_ps(entries, children.entries);
+    const auto child = [&](int k) { return WideEntry{entries[k], node.child[k], node.count[k]}; };
+    if constexpr (!kOptions.near_first) {
+        while ((entered & (entered - 1)) != 0) {
+            const int last = 31 - __builtin_clz(entered);
+            stack[size++] = child(last);
+            entered ^= 1u << last;
+        }
+        at = child(__builtin_ctz(entered));
+        return true;
+    }
+    const int first = __builtin_ctz(entered);
+    entered &= entered - 1;
+    if (entered == 0) {
+        at = child(first);
+        return true;
+    }
+    const int second = __builtin_ctz(entered);
+    entered &= entered - 1;
+    const int nearer = entries[second] < entries[first] ? second : first, farther = first ^ second ^ nearer;
+    const int base = size;
+    stack[size++] = child(farther);
+    at = child(nearer);
+    for (; entered != 0; entered &= entered - 1) {
+        WideEntry next = child(__builtin_ctz(entered));
+        if (next.entry < at.entry) std::swap(next, at);
+        int place = size++;
+        for (; place > base && stack[place - 1].entry < next.entry; --place) stack[place] = stack[place - 1];
+        stack[place] = next;
+    }
+    return true;
+}
+
 /// True when the visitor ended it. There is a node. Always inlined: as a call it makes a render a twentieth slower.
 template <WalkOptions kOptions, class Visitor, class Counter>
-[[gnu::always_inline]] inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
-                      const Counter& counter) {
-    struct Entry {
-        float entry;
-        uint32_t link, count;
-    };
-    Entry stack[kWideStackSize<kWideChildren>];
+[[gnu::always_inline]] inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uint32_t instance,
+                                             Visitor& visitor, const Counter& counter) {
+    WideStack stack;
     int size = 0;
-    const WideRay wide = make_wide_ray(TestsOf<kOptions>::make_boxes(ray, bvh.bounds_max_abs));
+    const WideRay wide = make_wide_ray<kOptions>(ray, bvh.bounds_max_abs);
     const LeafOfFour<kOptions> leaf(ray);
     const __m256 t_min = _mm256_set1_ps(ray.t_min);
-    Entry at = {ray.t_min, 0, 0};
+    WideEntry at = {ray.t_min, 0, 0};
     for (;;) {
         if (!(at.link & kLeafBit)) {
             const WideBvhNode<kWideChildren>& node = bvh.nodes[at.link];
             counter.add_node(&node);
-            alignas(32) float entries[kWideChildren];
             const __m256 t_limit = _mm256_set1_ps(skip_beyond<kOptions>(visitor, ray));
-            unsigned entered = enters_children(wide, node, t_min, t_limit, entries);
-            if (entered != 0) {
-                const int base = size;
-                while (entered != 0) {
-                    // The last one pushed is entered first: the nearest; else the one that the builder put first.
-                    const int k = kOptions.near_first ? __builtin_ctz(entered) : 31 - __builtin_clz(entered);
-                    entered &= ~(1u << k);
-                    const Entry next = {entries[k], node.child[k], node.count[k]};
-                    int place = size++;
-                    if constexpr (kOptions.near_first) {
-                        for (; place > base && stack[place - 1].entry < next.entry; --place)
-                            stack[place] = stack[place - 1];
-                    }
-                    stack[place] = next;
-                }
-                at = stack[--size];
-                continue;
-            }
-        } else {
-            for (uint32_t i = 0; i < at.count; i += 4) {
-                const BvhTriangle* first = bvh.triangles + (at.link & ~kLeafBit) + i;
-                const uint32_t count = min(at.count - i, 4u);
-                for (uint32_t k = 0; k < count; ++k) counter.add_triangle(first + k);
-                if (leaf.test(first, count, instance, visitor)) return true;
-            }
+            if (enter_node<kOptions>(node, wide, t_min, t_limit, stack, size, at)) continue;
+        } else if (leaf.test_all(bvh.triangles + (at.link & ~kLeafBit), at.count, instance, visitor, counter)) {
+            return true;
         }
         do {
             if (size == 0) return false;
@@ -152,7 +207,8 @@ struct Wide8SimdWalk {
     using Tree = WideBvhView<kWideChildren>;
 
     template <class Visitor, class Counter>
-    [[gnu::always_inline]] static bool walk(const Tree& bvh, const Ray& ray, uint32_t instance, Visitor& visitor, const Counter& counter) {
+    [[gnu::always_inline]] static bool walk(const Tree& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
+                                            const Counter& counter) {
         return bvh.nodes != nullptr && walk_wide<kOptions>(bvh, ray, instance, visitor, counter);
     }
 };

@@ -1,0 +1,151 @@
+#include "integrators/path/path_loop.h"
+
+#include "integrators/path/generate_path.h"
+#include "integrators/path/shade_hit.h"
+#include "render/find_hits.h"
+#include "render/tiled_pixel.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kPaths = 128; // side by side: 30 KB, of a cache of 1 MB that the trees want too
+
+class PathGroup {
+public:
+    PathGroup(const PictureView& picture, const PathSettings& settings, const HostTrees& trees, const FilmView& film)
+        : picture_(picture), settings_(settings), trees_(trees), film_(film) {}
+
+    bool is_full() const { return count_ == kPaths; }
+    bool is_empty() const { return count_ == 0; }
+    void add(const PathState& path) { paths_[count_++] = path; }
+
+    /// Takes each path to its next vertex. Those that have been added since the last call start at the camera.
+    void advance(RayCounts& counts) {
+        find_hits_of(0, going_on_);
+        find_hits_of(going_on_, count_);
+        uint32_t shadows = 0;
+        for (uint32_t i = 0; i < count_; ++i) {
+            ask_for_indices(i + 16);
+            ask_for_vertices(i + 8);
+            Asked& asked = asked_[shadows];
+            const uint32_t key = key_of(paths_[i], true);
+            bool wants_shadow = false;
+            goes_on_[i] = shade_hit(picture_, settings_, film_, paths_[i], hits_[i], asked.ray, wants_shadow);
+            asked.start = {hits_[i].instance, hits_[i].primitive};
+            asked.key = key, asked.path = i;
+            shadows += wants_shadow ? 1 : 0;
+        }
+        add_light(shadows);
+        counts.shadow += shadows;
+        keep_those_that_go_on();
+        counts.bounce += going_on_;
+    }
+
+private:
+    struct Asked {
+        ShadowRay ray;
+        TriangleId start;
+        uint32_t key, path;
+    };
+
+    /// Of the path's ray at its depth, for the coins of blended surfaces; nothing else asks for it.
+    uint32_t key_of(const PathState& path, bool is_shadow) const {
+        return picture_.scene.any_alpha != 0 ? path_key(path, settings_.seed, is_shadow) : 0;
+    }
+
+    // What make_surface reads of hit i, asked for in time: its vertices are known once its indices are there.
+    const MeshView* mesh_of(uint32_t i) const {
+        if (i >= count_ || hits_[i].instance == kNoHit) return nullptr;
+        return picture_.scene.meshes + picture_.scene.instances[hits_[i].instance].mesh;
+    }
+    void ask_for_indices(uint32_t i) const {
+        if (const MeshView* mesh = mesh_of(i)) __builtin_prefetch(mesh->indices + 3 * uint64_t(hits_[i].primitive));
+    }
+    void ask_for_vertices(uint32_t i) const {
+        const MeshView* const mesh = mesh_of(i);
+        if (mesh == nullptr) return;
+        const TriangleIndices at = triangle_indices(*mesh, hits_[i].primitive);
+        for (const uint32_t vertex : {at.a, at.b, at.c}) {
+            __builtin_prefetch(mesh->positions + vertex);
+            if (mesh->normals != nullptr) __builtin_prefetch(mesh->normals + vertex);
+            if (mesh->uv[0] != nullptr) __builtin_prefetch(mesh->uv[0] + vertex);
+        }
+    }
+
+    void find_hits_of(uint32_t begin, uint32_t end) {
+        const auto ray_of = [&](uint32_t i) {
+            const PathState& path = paths_[begin + i];
+            return Ray{path.origin, 0.0f, path.direction, kInfinity};
+        };
+        const auto accept_of = [&](uint32_t i) {
+            const PathState& path = paths_[begin + i];
+            return AcceptHit{picture_.scene, path.start, {}, key_of(path, false)};
+        };
+        if (begin == end) return;
+        const bool from_camera = paths_[begin].depth == 0;
+        const RayOrder order = from_camera ? RayOrder::Together : RayOrder::Scattered;
+        if (from_camera && picture_.scene.any_hidden_back != 0) {
+            const auto accept_camera = [&](uint32_t i) {
+                return AcceptCameraHit{accept_of(i), paths_[begin + i].direction};
+            };
+            find_hits(trees_, end - begin, order, ray_of, accept_camera, hits_ + begin);
+        } else {
+            find_hits(trees_, end - begin, order, ray_of, accept_of, hits_ + begin);
+        }
+    }
+
+    void add_light(uint32_t shadows) {
+        const auto ray_of = [&](uint32_t i) {
+            const ShadowRay& ray = asked_[i].ray;
+            return Ray{ray.origin, 0.0f, ray.direction, ray.t_max};
+        };
+        const auto accept_of = [&](uint32_t i) {
+            return AcceptHit{picture_.scene, asked_[i].start, asked_[i].ray.target, asked_[i].key};
+        };
+        find_occlusions(trees_, shadows, RayOrder::Together, ray_of, accept_of, occluded_);
+        for (uint32_t i = 0; i < shadows; ++i) {
+            if (!occluded_[i]) paths_[asked_[i].path].radiance += asked_[i].ray.contribution;
+        }
+    }
+
+    void keep_those_that_go_on() {
+        going_on_ = 0;
+        for (uint32_t i = 0; i < count_; ++i) {
+            if (!goes_on_[i]) {
+                add_radiance(film_, paths_[i].pixel, paths_[i].radiance);
+            } else if (going_on_++ != i) {
+                paths_[going_on_ - 1] = paths_[i];
+            }
+        }
+        count_ = going_on_;
+    }
+
+    const PictureView& picture_;
+    const PathSettings& settings_;
+    const HostTrees& trees_;
+    const FilmView& film_;
+    uint32_t count_ = 0, going_on_ = 0; // paths; of which those that are not new
+    PathState paths_[kPaths];
+    Hit hits_[kPaths];
+    bool goes_on_[kPaths];
+    Asked asked_[kPaths + 1]; // one more: written before it is known whether it is wanted
+    bool occluded_[kPaths];
+};
+
+} // namespace
+
+void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+                   const FilmView& film, const PixelSamples& work, RayCounts& counts) {
+    PathGroup group(picture, settings, trees, film);
+    const uint32_t width = picture.camera.width, height = picture.camera.height;
+    for (uint64_t i = work.begin; i < work.end; ++i) {
+        const uint32_t pixel = tiled_pixel(static_cast<uint32_t>(i), width, height);
+        for (uint32_t k = 0; k < work.samples; ++k) {
+            group.add(generate_path(picture.camera, settings, pixel, work.first_sample + k));
+            while (group.is_full()) group.advance(counts);
+        }
+    }
+    while (!group.is_empty()) group.advance(counts);
+}
+
+} // namespace pertev

@@ -1,0 +1,24 @@
+#pragma once
+
+// The CPU's body of the path integrator: one thread takes paths of some pixels from the camera to their end, many of
+// them side by side, so that rays of one kind are traced together. Its functions are those of the wavefront's stages.
+
+#include "integrators/integrator.h"
+#include "integrators/path/path_settings.h"
+#include "render/film_view.h"
+#include "render/picture_view.h"
+#include "trace/scene_trees.h"
+
+namespace pertev {
+
+/// Pixels [begin, end) in the order of tiles (render/tiled_pixel.h); of each the samples [first_sample, + samples).
+struct PixelSamples {
+    uint64_t begin, end;
+    uint32_t first_sample, samples;
+};
+
+/// Adds the samples to the film. What was traced beside camera rays is added to `counts`.
+void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+                   const FilmView& film, const PixelSamples& work, RayCounts& counts);
+
+} // namespace pertev

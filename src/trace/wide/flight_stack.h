@@ -1,0 +1,106 @@
+#pragma once
+
+// What a ray of walk_in_flight.h has still to enter. Nothing here branches on what was met: a branch that is guessed
+// wrong costs as much as a quarter of a node. Entered children are put on the stack by one permutation of vectors, the
+// nearest of them is found by a minimum over lanes, and a hit drops at once what lies beyond it, so that a pop need
+// not look.
+
+#include <immintrin.h>
+
+#include <array>
+#include <cstdint>
+
+#include "math/scalar.h"
+#include "trace/wide/walk_wide.h"
+
+namespace pertev {
+
+/// Which lanes a mask names, first to last or last to first, as bytes; the rest is 0.
+struct LanesOfMask {
+    std::array<uint64_t, 256> up, down;
+};
+inline constexpr LanesOfMask kLanesOfMask = [] {
+    LanesOfMask lanes{};
+    for (unsigned mask = 0; mask < 256; ++mask) {
+        int n = 0, count = __builtin_popcount(mask);
+        for (uint64_t k = 0; k < 8; ++k) {
+            if (!(mask >> k & 1)) continue;
+            lanes.up[mask] |= k << 8 * n;
+            lanes.down[mask] |= k << 8 * (count - 1 - n);
+            ++n;
+        }
+    }
+    return lanes;
+}();
+
+/// What one ray has still to enter: arrays, so that vectors are put on it. [0] ends the walk.
+class FlightStack {
+public:
+    FlightStack() : size_(1) { entry_[0] = -kInfinity, link_[0] = kNoLink, count_[0] = 0; }
+
+    /// The children that are entered; the nearest last, or the one that the builder put first.
+    template <WalkOptions kOptions>
+    [[gnu::always_inline]] void push(const WideBvhNode<kWideChildren>& node, const EnteredChildren& children) {
+        const unsigned entered = children.mask();
+        uint64_t lanes;
+        if constexpr (kOptions.near_first) {
+            const unsigned nearest = nearest_of(children);
+            const unsigned others = entered & ~(1u << nearest);
+            lanes = kLanesOfMask.up[others] | uint64_t(nearest) << 8 * __builtin_popcount(others);
+        } else {
+            lanes = kLanesOfMask.down[entered];
+        }
+        const int size = size_;
+        put(size, lanes, children.entries, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)),
+            _mm256_load_si256(reinterpret_cast<const __m256i*>(node.count)));
+        size_ = size + __builtin_popcount(entered);
+    }
+    [[gnu::always_inline]] WideEntry pop() {
+        const int size = size_ - 1;
+        size_ = size;
+        return {entry_[size], link_[size], count_[size]};
+    }
+    /// Drops what is entered beyond `limit`.
+    void shorten(float limit) {
+        int kept = 0;
+        const __m256 limits = _mm256_set1_ps(limit);
+        for (int i = 0; i < size_; i += 8) {
+            const __m256 entries = _mm256_loadu_ps(entry_ + i);
+            const unsigned rest = size_ - i >= 8 ? 0xffu : (1u << (size_ - i)) - 1;
+            const unsigned keep =
+                rest & static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(entries, limits, _CMP_LE_OQ)));
+            const __m256i links = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(link_ + i));
+            const __m256i counts = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(count_ + i));
+            put(kept, kLanesOfMask.up[keep], entries, links, counts);
+            kept += __builtin_popcount(keep);
+        }
+        size_ = kept;
+    }
+
+private:
+    static constexpr int kSize = kWideStackSize<kWideChildren> + 9; // [0], and the unused lanes of what is put last
+
+    /// The lane of the least entry, by its upper 16 bits; none is negative. Where none is entered, any.
+    [[gnu::always_inline]] static unsigned nearest_of(const EnteredChildren& children) {
+        const __m256i entries = _mm256_srli_epi32(_mm256_castps_si256(children.entries), 16);
+        const __m256i is_in = _mm256_castps_si256(children.is_in);
+        const __m128i keys = _mm_packus_epi32(_mm256_castsi256_si128(entries), _mm256_extracti128_si256(entries, 1));
+        const __m128i in = _mm_packs_epi32(_mm256_castsi256_si128(is_in), _mm256_extracti128_si256(is_in, 1));
+        const __m128i out = _mm_xor_si128(in, _mm_set1_epi32(-1));
+        return static_cast<unsigned>(_mm_cvtsi128_si32(_mm_minpos_epu16(_mm_or_si128(keys, out)))) >> 16;
+    }
+
+    /// From place `at` on, the lanes that are named; what comes after them is spoilt.
+    [[gnu::always_inline]] void put(int at, uint64_t lanes, __m256 entries, __m256i links, __m256i counts) {
+        const __m256i order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lanes)));
+        _mm256_storeu_ps(entry_ + at, _mm256_permutevar8x32_ps(entries, order));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(link_ + at), _mm256_permutevar8x32_epi32(links, order));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(count_ + at), _mm256_permutevar8x32_epi32(counts, order));
+    }
+
+    int size_;
+    float entry_[kSize];
+    uint32_t link_[kSize], count_[kSize];
+};
+
+} // namespace pertev

@@ -1,0 +1,103 @@
+#pragma once
+
+// What many rays meet, on the host: rays that are asked for in a row and go nearly the same way go in packets, the
+// others in flight, and each gets the hit that it would get by itself. For rays from a camera, or towards one lamp, it
+// pays to look for those that go together; scattered ones seldom do.
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "trace/trace_any.h"
+#include "trace/trace_closest.h"
+#include "trace/wide/walk_in_flight.h"
+#include "trace/wide/wide_packet.h"
+
+namespace pertev {
+
+enum class RayOrder {
+    Scattered, // all of them in flight
+    Together,  // each eight in a row are looked at: do they go together?
+};
+
+/// Walks the scene with many rays: see walk_scene_in_flight.
+template <WalkOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
+void walk_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
+                         const MakeVisitor& make_visitor, const End& end_of) {
+    using Accept = decltype(accept_of(0));
+    using Visitor = decltype(make_visitor(std::declval<const Accept&>(), std::declval<const Ray&>()));
+    using Packet = WidePacket<kOptions, Visitor>;
+    constexpr uint32_t kSize = kWidePacket, kMostAlone = 256, kLooks = 3;
+    std::array<uint32_t, kMostAlone> alone;
+    uint32_t waiting = 0;
+    const auto send_alone = [&] {
+        walk_scene_in_flight<kOptions>(
+            scene, waiting, [&](uint32_t i) { return ray_of(alone[i]); },
+            [&](uint32_t i) { return accept_of(alone[i]); }, make_visitor,
+            [&](uint32_t i, const Visitor& visitor) { end_of(alone[i], visitor); });
+        waiting = 0;
+    };
+    const auto put_alone = [&](uint32_t first, uint32_t some) {
+        for (uint32_t i = 0; i < some; ++i) alone[waiting++] = first + i;
+        if (waiting + kSize > kMostAlone) send_alone();
+    };
+    HostTrees instances = scene;
+    instances.baked = {};
+    const RaysOfScene<kOptions, RayOf, AcceptOf, MakeVisitor, End> through{instances, ray_of, accept_of, make_visitor,
+                                                                           end_of};
+    uint32_t packets = 0;
+    for (uint32_t first = 0; first < count; first += kSize) {
+        const uint32_t some = min(count - first, kSize);
+        if (packets == 0 && first >= kLooks * kSize) { // the others will be no better
+            put_alone(first, some);
+            continue;
+        }
+        const auto in_packet = [&](std::size_t k) { return first + min(static_cast<uint32_t>(k), some - 1); };
+        [&]<std::size_t... k>(std::index_sequence<k...>) {
+            const std::array<Ray, kSize> rays = {ray_of(in_packet(k))...};
+            Packet packet(scene.baked, rays.data());
+            if (some < kSize / 2 || scene.baked.nodes == nullptr || !packet.is_coherent()) {
+                put_alone(first, some);
+                return;
+            }
+            const std::array<Accept, kSize> accepts = {accept_of(in_packet(k))...};
+            std::array<Visitor, kSize> visitors = {make_visitor(accepts[k], rays[k])...};
+            ++packets;
+            packet.run(visitors.data(), static_cast<int>(some));
+            for (uint32_t i = 0; i < some; ++i) through.end(first + i, rays[i], visitors[i]);
+        }(std::make_index_sequence<kSize>());
+    }
+    send_alone();
+}
+
+/// trace_closest of `count` rays: hits[i] is what ray_of(i) meets, of the candidates that accept_of(i) lets count.
+template <WalkOptions kOptions, class RayOf, class AcceptOf>
+void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
+                        const AcceptOf& accept_of, Hit* hits) {
+    const auto make_visitor = []<class Accept>(const Accept& accept, const Ray& ray) {
+        return ClosestVisitor<Accept>{accept, Hit{.t = ray.t_max}};
+    };
+    const auto end = [&](uint32_t i, const auto& visitor) { hits[i] = visitor.best; };
+    if (order == RayOrder::Together) {
+        walk_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+    } else {
+        walk_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+    }
+}
+
+/// trace_any of `count` rays: met[i].
+template <WalkOptions kOptions, class RayOf, class AcceptOf>
+void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
+                    const AcceptOf& accept_of, bool* met) {
+    const auto make_visitor = []<class Accept>(const Accept& accept, const Ray& ray) {
+        return AnyVisitor<Accept>{accept, ray.t_max};
+    };
+    const auto end = [&](uint32_t i, const auto& visitor) { met[i] = visitor.found; };
+    if (order == RayOrder::Together) {
+        walk_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+    } else {
+        walk_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+    }
+}
+
+} // namespace pertev

@@ -1,0 +1,275 @@
+#pragma once
+
+// Eight rays that go nearly the same way, through one mesh together, host only: the children of a node are tested all
+// at once for the whole packet, by intervals that hold the eight origins and directions, and those that are left one by
+// one for the eight rays. A triangle is loaded once for all. Each ray gets the hit that it would get by itself.
+//
+// Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", ACM TOG
+// 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in walk_wide.h.
+// No hit is lost to the intervals: planes are moved out for each ray (ray_boxes.h) by 16 units, of which a bound that
+// is computed as (plane - moved origin) times 1/direction loses four and the triangle's test six.
+
+#include <cstdint>
+
+#include "trace/intersect/intersect_8_rays.h"
+#include "trace/wide/walk_wide.h"
+
+namespace pertev {
+
+inline constexpr int kPacketEights = 4, kWidePacket = 8 * kPacketEights;
+
+template <WalkOptions kOptions, class Visitor>
+class WidePacket {
+    static_assert(kOptions.is_exact());
+    static constexpr float kMaxSpread = 0.25f; // of slopes: with more, rays share too few nodes
+
+public:
+    /// Of the first `count` of eight rays, at least one; the others are copies of one of them. Visitors are theirs.
+    /// `rays` and, for run(), `visitors` outlive it.
+    WidePacket(const WideBvhView<kWideChildren>& bvh, const Ray* rays) : bvh_(bvh), rays_(rays) {
+        const RayShear first = make_ray_shear(rays[0].direction);
+        for (int axis = 0; axis < 3; ++axis) {
+            back_[axis] = guard_direction(component(rays[0].direction, axis)) < 0;
+            extents_[axis] = {kInfinity, 0, -kInfinity, kInfinity};
+        }
+        for (int g = 0; g < kPacketEights; ++g) {
+            const Lanes lanes(rays + 8 * g);
+            __m256 growth = _mm256_max_ps(_mm256_max_ps(size_of(lanes.origin[0]), size_of(lanes.origin[1])),
+                                          size_of(lanes.origin[2]));
+            growth = _mm256_mul_ps(_mm256_set1_ps(0x1p-20f), _mm256_add_ps(growth, _mm256_set1_ps(bvh.bounds_max_abs)));
+            Eight& eight = eights_[g];
+            for (int axis = 0; axis < 3; ++axis) {
+                set_axis(eight, axis, lanes.origin[axis], lanes.direction[axis], growth);
+            }
+            set_shear(eight, lanes, first);
+            eight.t_min = lanes.t_min, eight.t_max = lanes.t_max;
+            least_t_ = min(least_t_, least_of(lanes.t_min));
+        }
+    }
+
+    /// Whether the rays go nearly the same way; those that do not must not run.
+    bool is_coherent() const { return is_coherent_; }
+
+    void run(Visitor* visitors, int count) {
+        visitors_ = visitors;
+        for (int k = 0; k < kWidePacket; ++k) {
+            eights_[k / 8].limits[k % 8] = k < count ? visitors[k].limit() : -kInfinity;
+        }
+        walk();
+    }
+
+private:
+    struct Eight {
+        __m256 inv[3], near[3], far[3], t_min, t_max;
+        RayShear8 shear;
+        alignas(32) float limits[8]; // of the visitors; -inf of rays that are done
+    };
+
+    /// What make_ray_boxes says of eight rays, and the bounds of it.
+    void set_axis(Eight& eight, int axis, __m256 origin, __m256 d, __m256 growth) {
+        const __m256 sign = _mm256_set1_ps(-0.0f), tiny = _mm256_set1_ps(0x1p-80f);
+        const __m256 guarded = _mm256_blendv_ps(d, _mm256_or_ps(tiny, _mm256_and_ps(d, sign)),
+                                                _mm256_cmp_ps(size_of(d), tiny, _CMP_LT_OQ));
+        const __m256 inv = _mm256_div_ps(_mm256_set1_ps(1.0f), guarded);
+        const bool back = back_[axis];
+        is_coherent_ = is_coherent_ && mask_of(guarded) == (back ? 0xffu : 0u);
+        const __m256 above = _mm256_add_ps(origin, growth), below = _mm256_sub_ps(origin, growth);
+        const __m256 lo = _mm256_xor_ps(_mm256_mul_ps(above, inv), sign);
+        const __m256 hi = _mm256_xor_ps(_mm256_mul_ps(below, inv), sign);
+        eight.inv[axis] = inv, eight.near[axis] = back ? hi : lo, eight.far[axis] = back ? lo : hi;
+        // Forwards a plane's parameter is (plane - q) |1/d|, backwards (-plane - (-q)) |1/d|.
+        const __m256 q_near = back ? _mm256_xor_ps(below, sign) : above;
+        const __m256 q_far = back ? _mm256_xor_ps(above, sign) : below;
+        const __m256 size = size_of(inv);
+        Extent& all = extents_[axis];
+        all = {min(all.least_inv, least_of(size)), max(all.most_inv, most_of(size)),
+               max(all.most_near, most_of(q_near)), min(all.least_far, least_of(q_far))};
+    }
+
+    void walk() {
+        struct Waiting {
+            __m256 entry[kPacketEights]; // NaN for rays that do not enter
+            uint32_t link, count;
+        };
+        Waiting stack[kWideStackSize<kWideChildren>];
+        int size = 0;
+        uint32_t link = 0, count = 0;
+        unsigned active[kPacketEights] = {};
+        for (;;) {
+            if (!(link & kLeafBit)) {
+                const WideBvhNode<kWideChildren>& node = bvh_.nodes[link];
+                int order[kWideChildren];
+                for (int n = enter_together(node, order); n-- > 0;) { // the first one comes to the top
+                    const int k = order[n];
+                    Waiting& next = stack[size];
+                    int some = 0;
+                    for (int g = 0; g < kPacketEights; ++g) some |= enter_child(eights_[g], node, k, next.entry[g]);
+                    if (some == 0) continue;
+                    next.link = node.child[k], next.count = node.count[k];
+                    ++size;
+                }
+            } else {
+                test_leaf(bvh_.triangles + (link & ~kLeafBit), count, active);
+            }
+            unsigned some = 0;
+            do {
+                if (size == 0) return;
+                const Waiting& top = stack[--size];
+                for (int g = 0; g < kPacketEights; ++g) {
+                    active[g] = mask_of(_mm256_cmp_ps(top.entry[g], _mm256_load_ps(eights_[g].limits), _CMP_LE_OQ));
+                    some |= active[g];
+                }
+                link = top.link, count = top.count;
+            } while (some == 0);
+        }
+    }
+
+    struct Lanes {
+        __m256 origin[3], t_min, direction[3], t_max;
+
+        explicit Lanes(const Ray* rays) {
+            static_assert(sizeof(Ray) == 32);
+            __m256 r[8], pairs[8], fours[8];
+            for (int k = 0; k < 8; ++k) r[k] = _mm256_loadu_ps(&rays[k].origin.x);
+            for (int k = 0; k < 8; k += 2) {
+                pairs[k] = _mm256_unpacklo_ps(r[k], r[k + 1]), pairs[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+            }
+            for (int k = 0; k < 8; k += 4) {
+                fours[k] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0x44);
+                fours[k + 1] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0xee);
+                fours[k + 2] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0x44);
+                fours[k + 3] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0xee);
+            }
+            for (int k = 0; k < 3; ++k) {
+                origin[k] = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x20);
+                direction[k] = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x31);
+            }
+            t_min = _mm256_permute2f128_ps(fours[3], fours[7], 0x20);
+            t_max = _mm256_permute2f128_ps(fours[3], fours[7], 0x31);
+        }
+    };
+
+    /// Of all rays along an axis: |1/direction|, and the origins that enters_together takes planes from.
+    struct Extent {
+        float least_inv, most_inv, most_near, least_far;
+    };
+
+    /// make_ray_shear of eight rays, where all have the first one's order of axes.
+    void set_shear(Eight& eight, const Lanes& lanes, const RayShear& first) {
+        RayShear8& shear = eight.shear;
+        shear.kx = first.kx, shear.ky = first.ky, shear.kz = first.kz;
+        const __m256 x = size_of(lanes.direction[0]), y = size_of(lanes.direction[1]), z = size_of(lanes.direction[2]);
+        const unsigned xy = mask_of(_mm256_cmp_ps(x, y, _CMP_GE_OQ)), xz = mask_of(_mm256_cmp_ps(x, z, _CMP_GE_OQ)),
+                       yz = mask_of(_mm256_cmp_ps(y, z, _CMP_GE_OQ));
+        const unsigned with_x = xy & xz, with_y = ~xy & yz & 0xffu;
+        const unsigned with = first.kz == 0 ? with_x : first.kz == 1 ? with_y : ~(with_x | with_y) & 0xffu;
+        const __m256 dz = lanes.direction[first.kz];
+        shear.sx = _mm256_div_ps(lanes.direction[first.kx], dz);
+        shear.sy = _mm256_div_ps(lanes.direction[first.ky], dz);
+        shear.sz = _mm256_div_ps(_mm256_set1_ps(1.0f), dz);
+        shear.ox = lanes.origin[first.kx], shear.oy = lanes.origin[first.ky], shear.oz = lanes.origin[first.kz];
+        const __m256 spread = _mm256_add_ps(size_of(_mm256_sub_ps(shear.sx, _mm256_set1_ps(first.sx))),
+                                            size_of(_mm256_sub_ps(shear.sy, _mm256_set1_ps(first.sy))));
+        const unsigned near_first = mask_of(_mm256_cmp_ps(spread, _mm256_set1_ps(kMaxSpread), _CMP_LT_OQ));
+        is_coherent_ = is_coherent_ && (with & near_first) == 0xff;
+    }
+
+    static __m256 size_of(__m256 x) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), x); }
+    static float least_of(__m256 all) {
+        __m128 least = _mm_min_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps(all, 1));
+        least = _mm_min_ps(least, _mm_movehl_ps(least, least));
+        return _mm_cvtss_f32(_mm_min_ss(least, _mm_shuffle_ps(least, least, 1)));
+    }
+    static float most_of(__m256 all) {
+        __m128 most = _mm_max_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps(all, 1));
+        most = _mm_max_ps(most, _mm_movehl_ps(most, most));
+        return _mm_cvtss_f32(_mm_max_ss(most, _mm_shuffle_ps(most, most, 1)));
+    }
+    static unsigned mask_of(__m256 lanes) { return static_cast<unsigned>(_mm256_movemask_ps(lanes)); }
+    const float* near_planes(const WideBvhNode<kWideChildren>& node, int axis) const {
+        return node.planes[2 * axis + (back_[axis] ? 1 : 0)];
+    }
+    const float* far_planes(const WideBvhNode<kWideChildren>& node, int axis) const {
+        return node.planes[2 * axis + (back_[axis] ? 0 : 1)];
+    }
+
+    /// Children that any ray of the packet may enter: how many, and in which order.
+    [[gnu::always_inline]] int enter_together(const WideBvhNode<kWideChildren>& node,
+                                              int (&order)[kWideChildren]) const {
+        __m256 limits = _mm256_load_ps(eights_[0].limits);
+        for (int g = 1; g < kPacketEights; ++g) limits = _mm256_max_ps(limits, _mm256_load_ps(eights_[g].limits));
+        __m256 entry = _mm256_set1_ps(least_t_), exit = _mm256_set1_ps(most_of(limits));
+        for (int axis = 0; axis < 3; ++axis) {
+            const Extent& extent = extents_[axis];
+            const __m256 sign = _mm256_set1_ps(back_[axis] ? -0.0f : 0.0f);
+            const __m256 least = _mm256_set1_ps(extent.least_inv), most = _mm256_set1_ps(extent.most_inv);
+            const __m256 a = _mm256_sub_ps(_mm256_xor_ps(_mm256_load_ps(near_planes(node, axis)), sign),
+                                           _mm256_set1_ps(extent.most_near));
+            const __m256 b = _mm256_sub_ps(_mm256_xor_ps(_mm256_load_ps(far_planes(node, axis)), sign),
+                                           _mm256_set1_ps(extent.least_far));
+            entry = _mm256_max_ps(entry, _mm256_min_ps(_mm256_mul_ps(a, least), _mm256_mul_ps(a, most)));
+            exit = _mm256_min_ps(exit, _mm256_max_ps(_mm256_mul_ps(b, least), _mm256_mul_ps(b, most)));
+        }
+        alignas(32) float entries[kWideChildren];
+        _mm256_store_ps(entries, entry);
+        int n = 0;
+        for (unsigned rest = mask_of(_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)); rest != 0; rest &= rest - 1) {
+            const int k = __builtin_ctz(rest);
+            int place = n++;
+            for (; kOptions.near_first && place > 0 && entries[order[place - 1]] > entries[k]; --place) {
+                order[place] = order[place - 1];
+            }
+            order[place] = k;
+        }
+        return n;
+    }
+
+    /// enters_children (walk_wide.h) of child k for eight rays: not 0 where any enters, and where.
+    [[gnu::always_inline]] int enter_child(const Eight& eight, const WideBvhNode<kWideChildren>& node, int k,
+                                           __m256& entry) const {
+        const auto near = [&](int axis) {
+            return _mm256_fmadd_ps(_mm256_broadcast_ss(near_planes(node, axis) + k), eight.inv[axis], eight.near[axis]);
+        };
+        const auto far = [&](int axis) {
+            return _mm256_fmadd_ps(_mm256_broadcast_ss(far_planes(node, axis) + k), eight.inv[axis], eight.far[axis]);
+        };
+        entry = _mm256_max_ps(_mm256_max_ps(near(0), near(1)), _mm256_max_ps(near(2), eight.t_min));
+        const __m256 exit =
+            _mm256_min_ps(_mm256_min_ps(far(0), far(1)), _mm256_min_ps(far(2), _mm256_load_ps(eight.limits)));
+        const __m256 is_out = _mm256_cmp_ps(entry, exit, _CMP_NLE_UQ);
+        entry = _mm256_or_ps(entry, is_out);
+        return _mm256_movemask_ps(is_out) ^ 0xff;
+    }
+
+    void test_leaf(const BvhTriangle* triangles, uint32_t count, const unsigned (&active)[kPacketEights]) {
+        for (int g = 0; g < kPacketEights; ++g) {
+            Eight& eight = eights_[g];
+            unsigned asked = active[g];
+            if (asked == 0) continue;
+            for (uint32_t i = 0; i < count; ++i) {
+                const BvhTriangle& triangle = triangles[i];
+                TriangleHit8 hits;
+                unsigned hit = intersect_8_rays(rays_ + 8 * g, eight.shear, eight.t_min, eight.t_max,
+                                                _mm256_load_ps(eight.limits), triangle, asked, hits);
+                for (; hit != 0; hit &= hit - 1) {
+                    const int k = __builtin_ctz(hit);
+                    Visitor& visitor = visitors_[8 * g + k];
+                    const bool ended =
+                        visitor.visit(triangle.instance, triangle.primitive, {hits.t[k], hits.u[k], hits.v[k]});
+                    eight.limits[k] = ended ? -kInfinity : visitor.limit();
+                    if (ended) asked &= ~(1u << k);
+                }
+            }
+        }
+    }
+
+    const WideBvhView<kWideChildren> bvh_;
+    const Ray* const rays_;
+    Visitor* visitors_ = nullptr;
+    Eight eights_[kPacketEights];
+    Extent extents_[3];
+    bool back_[3], is_coherent_ = true;
+    float least_t_ = kInfinity;
+};
+
+} // namespace pertev

@@ -1,0 +1,135 @@
+// Many rays at once on the host, in flight or in packets, meet what each meets alone, bit for bit: nasty meshes and
+// rays in any mixture, rays that go together, instances.
+
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <vector>
+
+#include "accel/bvh/build_bvh.h"
+#include "accel/bvh/builders.h"
+#include "accel/bvh/top_level_bvh.h"
+#include "math/random.h"
+#include "tests/support/check_walk.h"
+#include "tests/support/options.h"
+#include "trace/wide/trace_many.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+template <class Accept>
+void check_many(const HostTrees& scene, RayOrder order, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
+                const Accept& accept) {
+    const auto count = static_cast<uint32_t>(rays.size());
+    std::vector<Hit> hits(rays.size());
+    const auto met = std::make_unique<bool[]>(rays.size());
+    const auto ray_of = [&](uint32_t i) { return rays[i]; };
+    const auto accept_of = [&](uint32_t) { return accept; };
+    trace_closest_many<WalkOptions{}>(scene, count, order, ray_of, accept_of, hits.data());
+    trace_any_many<WalkOptions{.near_first = false}>(scene, count, order, ray_of, accept_of, met.get());
+    uint64_t wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        Hit want = expected[i];
+        if (want.instance == kNoHit) want.t = rays[i].t_max;
+        if (hits[i] == want && met[i] == (want.instance != kNoHit)) continue;
+        if (wrong++ == 0) FAIL_CHECK("ray ", i, ": ", text_of(rays[i]), " t ", hits[i].t, " want ", want.t);
+    }
+    CHECK(wrong == 0);
+}
+
+/// Groups of rays around each of `rays`, from one point or in one direction; axis-parallel ones stay so.
+std::vector<Ray> groups_around(const std::vector<Ray>& rays, uint32_t seed) {
+    Random random(seed);
+    std::vector<Ray> groups;
+    for (const Ray& first : rays) {
+        const float size = length(first.direction), apart = random.unit() < 0.5f ? 1e-4f : 0.05f;
+        const bool from_one_point = random.unit() < 0.5f;
+        for (int k = 0; k < kWidePacket; ++k) {
+            Ray ray = first;
+            if (k > 0 && from_one_point) {
+                ray.direction = ray.direction + apart * size * random.point(-1, 1);
+            } else if (k > 0) {
+                ray.origin = ray.origin + apart * random.point(-1, 1);
+            }
+            groups.push_back(ray);
+        }
+    }
+    return groups;
+}
+
+uint64_t count_coherent(const std::vector<Ray>& groups, const HostTrees& scene) {
+    uint64_t coherent = 0;
+    for (std::size_t i = 0; i < groups.size(); i += kWidePacket) {
+        coherent += WidePacket<WalkOptions{}, ClosestVisitor<AcceptAll>>(scene.baked, &groups[i]).is_coherent() ? 1 : 0;
+    }
+    return coherent;
+}
+
+} // namespace
+
+TEST_CASE("many rays at once meet what testing every triangle gives, bit for bit") {
+    for (const NastyMesh& c : nasty_meshes()) {
+        CAPTURE(c.name);
+        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(1000, 10'000)), c, 7);
+        const WideBvh<8> tree = make_wide_bvh<8>(build_bvh(c.triangles), kSimdCollapse);
+        const HostTrees scene = scene_of(view_of(tree));
+        const std::vector<Ray> groups = groups_around(
+            std::vector<Ray>(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(rays.size() / 8)), 3);
+        if (!tree.nodes.empty()) CHECK(count_coherent(groups, scene) > rays.size() / 8 / 5);
+        for (const auto* set : {&rays, &groups}) {
+            const std::vector<Hit> all = hits_by_brute_force(c.triangles, *set, AcceptAll{});
+            const std::vector<Hit> some = hits_by_brute_force(c.triangles, *set, AcceptSome{});
+            for (const RayOrder order : {RayOrder::Scattered, RayOrder::Together}) {
+                check_many(scene, order, *set, all, AcceptAll{});
+                check_many(scene, order, *set, some, AcceptSome{});
+            }
+        }
+    }
+}
+
+TEST_CASE("any number of rays can be traced at once, and leaves may be of any length") {
+    const NastyMesh mesh = nasty_meshes()[3];
+    const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = 30, .leaf_cost = 0.1f});
+    const WideBvh<8> tree = make_wide_bvh<8>(bvh, {.max_leaf = 100});
+    const HostTrees scene = scene_of(view_of(tree));
+    for (const uint32_t count : {0u, 1u, 7u, 8u, 9u, 31u, 33u, 300u}) {
+        CAPTURE(count);
+        std::vector<Ray> rays = count == 0 ? std::vector<Ray>{} : groups_around(nasty_rays(count, mesh, count), count);
+        rays.resize(count);
+        const std::vector<Hit> expected = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
+        check_many(scene, RayOrder::Scattered, rays, expected, AcceptAll{});
+        check_many(scene, RayOrder::Together, rays, expected, AcceptAll{});
+    }
+}
+
+TEST_CASE("many rays at once meet baked triangles and instances, whichever comes first") {
+    const std::vector<BvhTriangle> baked = make_soup(300, 0), mesh = triangles_of(make_torus(16, 12));
+    const WideBvh<8> baked_tree = make_wide_bvh<8>(build_bvh(baked), kSimdCollapse);
+    const WideBvh<8> mesh_tree = make_wide_bvh<8>(build_bvh(mesh), kSimdCollapse);
+    const Transform place = compose(make_translation({0.5f, 0, 0}), make_scale({0.5f, 2, 1}));
+    const std::vector<PlacedBvh> placed = {{place, mesh_tree.bounds, 0, 77}};
+    const TopLevelBvh top = build_top_level_bvh(placed);
+    const WideBvhView<8> meshes[] = {view_of(mesh_tree)};
+    const std::vector<Ray> rays = groups_around(nasty_rays(300, {"soup", baked, {}, 1}, 5), 9);
+    for (const bool has_baked : {true, false}) {
+        CAPTURE(has_baked);
+        HostTrees scene = {{}, top.nodes.data(), top.instances.data(), meshes, top.root, top.reach, top.growth};
+        if (has_baked) scene.baked = view_of(baked_tree);
+        std::vector<Hit> expected;
+        uint64_t of_instance = 0, of_baked = 0;
+        for (const Ray& ray : rays) {
+            Hit best;
+            if (has_baked) trace_by_brute_force(baked, ray, kNoHit, AcceptSome{}, best);
+            trace_by_brute_force(mesh, transform_ray(inverse(place), ray), 77, AcceptSome{}, best);
+            of_instance += best.instance == 77 ? 1 : 0;
+            of_baked += best.instance != 77 && best.instance != kNoHit ? 1 : 0;
+            expected.push_back(best);
+        }
+        CHECK(of_instance > 100);
+        CHECK((of_baked > 100) == has_baked);
+        check_many(scene, RayOrder::Scattered, rays, expected, AcceptSome{});
+        check_many(scene, RayOrder::Together, rays, expected, AcceptSome{});
+    }
+}
