@@ -127,8 +127,8 @@ MUTATIONS = [
     # Grown boxes hide it from hits: an entry is less than the t of a hit inside. The rule itself is what a test sees.
     Mutation("a node at equal t is skipped",
              [edit("src/trace/intersect/ray_boxes.h", "return entry <= exit;", "return entry < exit;"),
-              edit("src/trace/wide/walk_wide.h", "_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)",
-                   "_mm256_cmp_ps(entry, exit, _CMP_LT_OQ)")],
+              edit("src/trace/wide/walk_wide.h", "_mm256_cmp_ps(entries, exit, _CMP_LE_OQ)",
+                   "_mm256_cmp_ps(entries, exit, _CMP_LT_OQ)")],
              ["unit/walk_tree"]),
     Mutation("a closest hit lies 1e-4 too far",
              [edit("src/trace/trace_closest.h", "    hit = visitor.best;", "    hit = visitor.best;\n    hit.t *= 1.0001f;")],
