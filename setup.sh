@@ -260,7 +260,7 @@ toolkit 12.x or a driver from 580 on, then run ./setup.sh again"
 # ---- Configure and build ----------------------------------------------------------------------------------------
 
 configure() {
-    local options=(-G Ninja -DCMAKE_BUILD_TYPE=Release)
+    local options=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DPERTEV_UNITY=ON)
     if command -v ccache >/dev/null; then
         # Without these it would not keep what is compiled with precompiled headers.
         options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=cmake;-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache")

@@ -32,12 +32,6 @@ struct BuildFlags {
     ReportFlags report;
 };
 
-void check_scene(const std::string& name) {
-    const RecordScene* const record = find_record_scene(name);
-    if (record == nullptr) return check_bench_scene(name, "sponza, bunny or forest nor ");
-    if (record->file != nullptr) record_file(*record, public_scenes_folder());
-}
-
 /// All triangles that do not move, in one world; where there are none, those of the first mesh.
 std::vector<BvhTriangle> read_triangles(const std::string& name, Messages& messages) {
     Scene scene;
@@ -108,7 +102,7 @@ int bench_build(const BuildFlags& flags) {
     if (scenes.empty()) {
         for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
     }
-    for (const std::string& scene : scenes) check_scene(scene);
+    for (const std::string& scene : scenes) check_record_scene(scene);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     reporter.answer(fmt::format("{}: from triangles on the device to compressed nodes and triangles there; others on "

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
+#include "lab/record_scenes.h"
 
 namespace pertev {
 
@@ -17,6 +18,12 @@ void check_bench_scene(const std::string& name, std::string_view others) {
     if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
         throw Error(ErrorCode::BadInput, fmt::format("--scene {}: no such file", name));
     }
+}
+
+void check_record_scene(const std::string& name) {
+    const RecordScene* const record = find_record_scene(name);
+    if (record == nullptr) return check_bench_scene(name, "sponza, bunny or forest nor ");
+    if (record->file != nullptr) record_file(*record, public_scenes_folder());
 }
 
 void refuse_flags_before(const CLI::App& verb) {

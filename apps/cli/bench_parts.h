@@ -28,6 +28,8 @@ inline std::filesystem::path public_scenes_folder() {
 /// Throws Error(BadInput) where there is no such scene; `others` are names that are taken beside it. Asked of all
 /// scenes before the first is measured.
 void check_bench_scene(const std::string& name, std::string_view others = "");
+/// The same where scenes of the record may be named too (lab/record_scenes.h).
+void check_record_scene(const std::string& name);
 
 /// Throws Error(BadInput) for a flag of `bench` itself before the name of this verb of it, which would not see it.
 void refuse_flags_before(const CLI::App& verb);

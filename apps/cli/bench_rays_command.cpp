@@ -44,13 +44,6 @@ struct SetFigures {
     const RecordedSet* record = nullptr; // of another tracer, where there is one
 };
 
-/// Throws Error(BadInput) where there is no such scene, before the first is measured.
-void check_scene(const std::string& name) {
-    const RecordScene* const record = find_record_scene(name);
-    if (record == nullptr) return check_bench_scene(name, "sponza, bunny or forest nor ");
-    if (record->file != nullptr) record_file(*record, public_scenes_folder());
-}
-
 /// A scene of the record by its name, else a built-in scene or a file.
 Scene read_geometry(const std::string& name, Messages& messages) {
     if (const RecordScene* record = find_record_scene(name)) {
@@ -193,7 +186,7 @@ int bench_rays(const RaysFlags& flags) {
     if (scenes.empty()) {
         for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
     }
-    for (const std::string& scene : scenes) check_scene(scene);
+    for (const std::string& scene : scenes) check_record_scene(scene);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     std::string header =

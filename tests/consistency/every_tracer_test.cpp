@@ -15,7 +15,7 @@ using namespace pertev;
 
 namespace {
 
-RenderSettings small_settings() {
+RenderSettings tracer_settings() {
     RenderSettings settings;
     settings.width = 24, settings.height = 16;
     settings.samples = 2;
@@ -42,12 +42,6 @@ Scene make_opaque(Scene scene) {
     return scene;
 }
 
-Hash128 hash_of(const RenderResult& result) {
-    Hasher hasher;
-    test::add_picture(hasher, result);
-    return hasher.result();
-}
-
 std::vector<WalkOptions> all_switches() {
     std::vector<WalkOptions> all;
     for (const bool rta : {true, false}) {
@@ -68,10 +62,10 @@ struct Tally {
 Tally check_all(const Scene& scene) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    RenderSettings settings = small_settings();
+    RenderSettings settings = tracer_settings();
     Queue cpu = Queue::make_cpu();
     const Camera camera = test::mixed_scene_camera();
-    const Hash128 wanted = hash_of(render_picture(cpu, prepared, camera, settings));
+    const Hash128 wanted = test::render_hash(render_picture(cpu, prepared, camera, settings));
     Queue queue = test::queue_asked_for();
     Session session(queue, prepared, camera, settings);
     Tally tally;
@@ -89,7 +83,7 @@ Tally check_all(const Scene& scene) {
                     session.cut();
                     session.render(settings.samples);
                     ++tally.pictures;
-                    if (hash_of(session.result()) == wanted) continue;
+                    if (test::render_hash(session.result()) == wanted) continue;
                     ++tally.wrong;
                     FAIL_CHECK(name_of(c));
                 }
@@ -123,11 +117,11 @@ TEST_CASE("each kind of ray may have a tracer of its own") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    RenderSettings settings = small_settings();
+    RenderSettings settings = tracer_settings();
     Queue queue = test::queue_asked_for();
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     session.render(settings.samples);
-    const Hash128 wanted = hash_of(session.result());
+    const Hash128 wanted = test::render_hash(session.result());
     const Combination kd = {.structure = StructureKind::KdSah, .walk = WalkKind::Kd},
                       octree = {.structure = StructureKind::Octree, .walk = WalkKind::Octree},
                       wide = {.structure = StructureKind::SpatialSplits, .walk = WalkKind::Compressed};
@@ -137,7 +131,7 @@ TEST_CASE("each kind of ray may have a tracer of its own") {
         session.set_settings(settings);
         session.cut();
         session.render(settings.samples);
-        CHECK(hash_of(session.result()) == wanted);
+        CHECK(test::render_hash(session.result()) == wanted);
     }
 }
 
@@ -146,7 +140,7 @@ TEST_CASE("pictures are refused by tests that leak, and by walks that a device h
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::queue_asked_for();
-    RenderSettings settings = small_settings();
+    RenderSettings settings = tracer_settings();
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     session.render(1);
     const auto refuses = [&](const Combination& c) {

@@ -23,10 +23,10 @@ namespace {
 
 // Of each kind, in public scenes; sanitizers take fifty times as long for a ray and a tree.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr uint64_t kRays = 3'000;
+constexpr uint64_t kRaysAKind = 3'000;
 constexpr const char* kFiles[] = {"sibenik/sibenik.obj"};
 #else
-constexpr uint64_t kRays = 100'000;
+constexpr uint64_t kRaysAKind = 100'000;
 constexpr const char* kFiles[] = {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"};
 #endif
 
@@ -153,7 +153,7 @@ TEST_CASE("every combination gives the same hits in meshes made to break them") 
 TEST_CASE("every combination gives the same hits on 10^5 rays of each kind in Sponza and Sibenik") {
     Queue queue = Queue::make_cpu();
     for (const char* file : kFiles) {
-        if (const auto path = test_scene(file)) check_file(*path, queue, effort(kRays, 10 * kRays));
+        if (const auto path = test_scene(file)) check_file(*path, queue, effort(kRaysAKind, 10 * kRaysAKind));
     }
 }
 

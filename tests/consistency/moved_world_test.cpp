@@ -69,7 +69,7 @@ TEST_CASE("a scene moved in its file has the same picture and layers to the bit,
             const uint64_t pixel = k / 3;
             const bool is_hit = a.layers[2].image.pixels[pixel] != 0; // depth
             const float wanted = is_hit ? here.pixels[k] + component(by, static_cast<int>(k % 3)) : 0.0f;
-            farthest = max(farthest, abs(there.pixels[k] - wanted));
+            farthest = max(farthest, std::abs(there.pixels[k] - wanted));
             hits += is_hit ? 1 : 0;
         }
         CHECK(hits > here.pixels.size() / 2);

@@ -12,7 +12,7 @@ using namespace pertev;
 
 namespace {
 
-RenderSettings small_settings() {
+RenderSettings odd_settings() {
     RenderSettings settings;
     settings.width = 61; // odd on purpose: tiles do not fit
     settings.height = 35;
@@ -22,10 +22,8 @@ RenderSettings small_settings() {
     return settings;
 }
 
-constexpr LightStrategy kStrategies[] = {LightStrategy::Mis, LightStrategy::NeeOnly, LightStrategy::BsdfOnly};
-
 /// Hash of the picture, the layers, the ids and the share of hidden backs.
-Hash128 hash_of(const RenderResult& result) {
+Hash128 hash_of_mixed(const RenderResult& result) {
     Hasher hasher;
     test::add_picture(hasher, result);
     CHECK(result.hidden_back_share > 0.001); // a sheet of the mixed scene
@@ -35,11 +33,11 @@ Hash128 hash_of(const RenderResult& result) {
 
 Hash128 cpu_hash(const RenderSettings& settings, const PrepareOptions& prepare = {}) {
     Queue queue = Queue::make_cpu();
-    return hash_of(test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings, prepare));
+    return hash_of_mixed(test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings, prepare));
 }
 
 const Hash128& reference_hash() {
-    static const Hash128 hash = cpu_hash(small_settings());
+    static const Hash128 hash = cpu_hash(odd_settings());
     return hash;
 }
 
@@ -49,13 +47,13 @@ TEST_CASE("the picture does not depend on the number of threads") {
     for (const int threads : {1, 2, 5}) {
         CAPTURE(threads);
         set_thread_count(threads);
-        CHECK(cpu_hash(small_settings()) == reference_hash());
+        CHECK(cpu_hash(odd_settings()) == reference_hash());
     }
     set_thread_count(0);
 }
 
 TEST_CASE("the picture does not depend on how the samples are split into passes") {
-    RenderSettings settings = small_settings();
+    RenderSettings settings = odd_settings();
     for (const uint32_t pass : {1u, 4u, 6u}) {
         CAPTURE(pass);
         settings.pass_samples = pass;
@@ -64,7 +62,7 @@ TEST_CASE("the picture does not depend on how the samples are split into passes"
 }
 
 TEST_CASE("the wavefront gives the bytes of the loop, for any number of paths in flight") {
-    RenderSettings settings = small_settings();
+    RenderSettings settings = odd_settings();
     settings.body = PathBody::Wavefront;
     for (const uint32_t batch : {777u, 5000u, 1u << 20}) { // less than a picture, two samples, all
         CAPTURE(batch);
@@ -74,9 +72,9 @@ TEST_CASE("the wavefront gives the bytes of the loop, for any number of paths in
 }
 
 TEST_CASE("the wavefront gives the bytes of the loop, however lights are found") {
-    for (const LightStrategy strategy : kStrategies) {
+    for (const LightStrategy strategy : test::kLightStrategies) {
         CAPTURE(static_cast<int>(strategy));
-        RenderSettings settings = small_settings();
+        RenderSettings settings = odd_settings();
         settings.path.strategy = strategy;
         const Hash128 loop = cpu_hash(settings);
         CHECK((loop == reference_hash()) == (strategy == LightStrategy::Mis));
@@ -114,17 +112,17 @@ TEST_CASE("the wavefront, which knows something of materials, gives the bytes of
         CAPTURE(static_cast<int>(known));
         const Scene scene = scene_of(known);
         CHECK(known_of(scene) == known);
-        RenderSettings settings = small_settings();
+        RenderSettings settings = odd_settings();
         settings.samples = 2;
         std::vector<Queue> queues;
         queues.push_back(Queue::make_cpu());
         if (test::cuda_requested()) queues.push_back(test::make_cuda_queue());
-        const Hash128 loop = hash_of(test::render(queues[0], scene, test::mixed_scene_camera(), settings));
+        const Hash128 loop = hash_of_mixed(test::render(queues[0], scene, test::mixed_scene_camera(), settings));
         CHECK(loop != before);
         before = loop;
         settings.body = PathBody::Wavefront;
         for (Queue& queue : queues) {
-            CHECK(hash_of(test::render(queue, scene, test::mixed_scene_camera(), settings)) == loop);
+            CHECK(hash_of_mixed(test::render(queue, scene, test::mixed_scene_camera(), settings)) == loop);
         }
     }
     Scene unlit = scene_of(MaterialsKnown::PlainDiffuse);
@@ -143,16 +141,16 @@ TEST_CASE("the picture does not depend on how the trees were built") {
             PrepareOptions prepare;
             prepare.bvh.bins = bins;
             prepare.bvh.max_leaf = leaf;
-            CHECK(cpu_hash(small_settings(), prepare) == reference_hash());
+            CHECK(cpu_hash(odd_settings(), prepare) == reference_hash());
         }
     }
 }
 
 TEST_CASE("another seed or number of samples gives another hash: it can tell pictures apart") {
-    RenderSettings settings = small_settings();
+    RenderSettings settings = odd_settings();
     settings.path.seed = 1;
     CHECK(cpu_hash(settings) != reference_hash());
-    settings = small_settings();
+    settings = odd_settings();
     settings.samples = 7;
     CHECK(cpu_hash(settings) != reference_hash());
 }
@@ -163,14 +161,14 @@ TEST_CASE("the GPU gives the bytes of the CPU") {
     for (const uint32_t batch : {777u, 1u << 20}) {
         for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent}) {
             for (const PathLight light : {PathLight::Path, PathLight::Direct, PathLight::Indirect}) {
-                for (const LightStrategy strategy : kStrategies) {
-                    RenderSettings settings = small_settings();
+                for (const LightStrategy strategy : test::kLightStrategies) {
+                    RenderSettings settings = odd_settings();
                     settings.batch = batch;
                     settings.path.sampler = sampler;
                     settings.path.light = light;
                     settings.path.strategy = strategy;
-                    const Hash128 gpu =
-                        hash_of(test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings));
+                    const Hash128 gpu = hash_of_mixed(
+                        test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings));
                     CHECK(gpu == cpu_hash(settings));
                 }
             }

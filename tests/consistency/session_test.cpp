@@ -46,7 +46,7 @@ struct World {
     }
 };
 
-RenderSettings small_settings() {
+RenderSettings changing_settings() {
     RenderSettings settings;
     settings.width = 23, settings.height = 14, settings.samples = 3;
     settings.aovs = kAovAlbedo;
@@ -92,7 +92,7 @@ TEST_CASE("a session that has changed scene, camera, size and settings gives the
     const World world;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
     std::size_t scene = 0, camera = 0;
-    RenderSettings settings = small_settings();
+    RenderSettings settings = changing_settings();
     Session session(queue, world.prepared[scene], world.cameras[camera], settings);
     test::Random random(12);
     const uint64_t steps = test::effort(120, 2000);
@@ -120,7 +120,7 @@ TEST_CASE("a session that has changed scene, camera, size and settings gives the
 TEST_CASE("samples that are added later give the bytes of samples rendered at once") {
     const World world;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
-    RenderSettings settings = small_settings();
+    RenderSettings settings = changing_settings();
     settings.aovs = kAllAovs;
     settings.samples = 8;
     const Hash128 at_once = hash_of(render_picture(cpu, world.prepared[0], world.cameras[0], settings));
@@ -141,7 +141,7 @@ TEST_CASE("samples that are added later give the bytes of samples rendered at on
 TEST_CASE("settings of the machine go on with the film that another body began") {
     const World world;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
-    RenderSettings settings = small_settings();
+    RenderSettings settings = changing_settings();
     settings.samples = 6;
     const Hash128 at_once = hash_of(render_picture(cpu, world.prepared[0], world.cameras[0], settings));
     Session session(queue, world.prepared[0], world.cameras[0], settings);
@@ -158,7 +158,7 @@ TEST_CASE("settings of the machine go on with the film that another body began")
 TEST_CASE("two sessions on one queue do not see each other") {
     const World world;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
-    RenderSettings settings = small_settings(), other = small_settings();
+    RenderSettings settings = changing_settings(), other = changing_settings();
     other.width = 31;
     other.filter = PixelFilter::Gaussian;
     Session a(queue, world.prepared[0], world.cameras[0], settings);
@@ -174,7 +174,7 @@ TEST_CASE("two sessions on one queue do not see each other") {
 TEST_CASE("a session that takes parts of a changed scene gives the picture of the changed scene, and copies no more") {
     const World world;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
-    RenderSettings settings = small_settings();
+    RenderSettings settings = changing_settings();
     Session session(queue, world.prepared[0], world.cameras[0], settings);
     session.render(settings.samples);
     Scene after = world.scenes[0];

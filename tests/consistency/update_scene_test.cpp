@@ -14,19 +14,13 @@ using namespace pertev;
 
 namespace {
 
-RenderSettings small_settings() {
+RenderSettings update_settings() {
     RenderSettings settings;
     settings.width = 24, settings.height = 16;
     settings.samples = 2;
     settings.path.max_depth = 4;
     settings.aovs = kAovNormal | kAovDepth | kAovIds;
     return settings;
-}
-
-Hash128 hash_of(const RenderResult& result) {
-    Hasher hasher;
-    test::add_picture(hasher, result);
-    return hasher.result();
 }
 
 PreparedScene prepare_afresh(const Scene& scene, Vec3 centre) {
@@ -79,14 +73,14 @@ std::vector<Step> steps() {
 TEST_CASE("an updated scene gives the picture of one prepared afresh, by every structure and walk") {
     Messages messages;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
-    RenderSettings settings = small_settings();
+    RenderSettings settings = update_settings();
     const Camera camera = test::mixed_scene_camera();
     std::vector<Hash128> fresh; // after each step
     Scene changed = test::make_mixed_scene();
     const Vec3 centre = prepare_scene(changed, {}, messages).centre;
     for (const Step& step : steps()) {
         step.change(changed);
-        fresh.push_back(hash_of(render_picture(cpu, prepare_afresh(changed, centre), camera, settings)));
+        fresh.push_back(test::render_hash(render_picture(cpu, prepare_afresh(changed, centre), camera, settings)));
     }
     int pictures = 0;
     for (const StructureKind structure : all_structures()) {
@@ -110,10 +104,10 @@ TEST_CASE("an updated scene gives the picture of one prepared afresh, by every s
                 Scene& scene = scenes.emplace_back(scenes.back());
                 step.change(scene);
                 prepared = update_scene(prepared, scene, step.update, messages);
-                const Hash128 before = hash_of(session.result());
+                const Hash128 before = test::render_hash(session.result());
                 session.update_scene(prepared, parts_of(step.update));
                 session.render(settings.samples);
-                const Hash128 after = hash_of(session.result());
+                const Hash128 after = test::render_hash(session.result());
                 CHECK(after == fresh[k]);
                 CHECK(after != before);
                 ++pictures;
@@ -173,6 +167,6 @@ TEST_CASE("where a change would have other instances baked, all is prepared anew
     CHECK(updated.centre == before.centre);
     Queue cpu = Queue::make_cpu();
     const Camera camera = test::mixed_scene_camera();
-    CHECK(hash_of(render_picture(cpu, updated, camera, small_settings())) ==
-          hash_of(render_picture(cpu, prepare_afresh(after, before.centre), camera, small_settings())));
+    CHECK(test::render_hash(render_picture(cpu, updated, camera, update_settings())) ==
+          test::render_hash(render_picture(cpu, prepare_afresh(after, before.centre), camera, update_settings())));
 }

@@ -64,7 +64,7 @@ TEST_CASE("samples of any bsdf from any direction with any random numbers are fi
                     const BsdfSample s = c.bsdf.sample(wo, p.lobe, p.u);
                     if (s.pdf == 0) continue;
                     const bool fine = is_value(s.weight) && is_value(s.pdf) && is_finite(s.wi) &&
-                                      abs(length_squared(s.wi) - 1.0f) < 1e-5f && s.wi.z != 0 &&
+                                      std::abs(length_squared(s.wi) - 1.0f) < 1e-5f && s.wi.z != 0 &&
                                       s.is_transmission == (s.wi.z * wo.z < 0 || (s.wi.z < 0) != (wo.z < 0));
                     bad += fine ? 0 : 1;
                     largest = max(largest, max_component(s.weight));

@@ -9,11 +9,13 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "shading/environment_light.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/estimate.h"
 #include "tests/support/lit_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
@@ -23,26 +25,7 @@ using namespace pertev::test;
 
 namespace {
 
-constexpr double kPiDouble = 3.141592653589793;
-
-double as_double(float x) { return static_cast<double>(x); }
 double luminance_in_double(Rgb c) { return as_double(c.r) + as_double(c.g) + as_double(c.b); }
-
-/// Mean and standard error of `draw` over `count` draws.
-struct Estimate {
-    double mean = 0, error = 0, variance = 0;
-};
-Estimate estimate(uint64_t count, const std::function<double()>& draw) {
-    double sum = 0, squares = 0;
-    for (uint64_t i = 0; i < count; ++i) {
-        const double value = draw();
-        sum += value;
-        squares += value * value;
-    }
-    const double n = static_cast<double>(count), mean = sum / n;
-    const double variance = std::max(0.0, squares / n - mean * mean);
-    return {mean, std::sqrt(variance / n), variance};
-}
 
 /// Some dark noise, a black band and a sun of one texel.
 Environment make_sky(uint32_t width, uint32_t height, float rotation) {
@@ -77,7 +60,7 @@ Vec3 direction_at(double longitude, double theta) {
 /// Integral over the sphere of f(direction), by midpoints in `steps` x 2 `steps` cells of equal angle.
 double integrate_sphere(int steps, const std::function<double(Vec3)>& f) {
     double sum = 0;
-    const double d = kPiDouble / steps;
+    const double d = std::numbers::pi / steps;
     for (int i = 0; i < steps; ++i) {
         const double theta = (i + 0.5) * d, weight = (std::cos(i * d) - std::cos((i + 1) * d)) * d;
         for (int j = 0; j < 2 * steps; ++j) sum += weight * f(direction_at((j + 0.5) * d, theta));
@@ -139,7 +122,7 @@ TEST_CASE("environment: a sample's density and radiance are found again from its
         int differing = 0, far_off = 0;
         constexpr int draws = 100'000;
         for (int i = 0; i < draws; ++i) {
-            EnvironmentSample sample;
+            EnvironmentSample sample = {};
             REQUIRE(sample_environment(view, random_bits(random), sample));
             CHECK(as_double(length(sample.wi)) == doctest::Approx(1).epsilon(1e-6));
             const float pdf = environment_pdf(view, sample.wi);
@@ -163,15 +146,16 @@ TEST_CASE("environment: samples follow the density, within texels too") {
     // Cells: each texel cut into 3 x 3 parts of equal solid angle, placed by the convention's own formulas in double.
     const auto height_at = [&](uint32_t edge) { // cos(theta) at the upper edge of a row of cells
         const uint32_t row = edge / parts;
-        const double upper = std::cos(kPiDouble * row / height), lower = std::cos(kPiDouble * (row + 1) / height);
+        const double upper = std::cos(std::numbers::pi * row / height),
+                     lower = std::cos(std::numbers::pi * (row + 1) / height);
         return upper + (lower - upper) * (edge % parts) / parts;
     };
     std::vector<double> observed(width * height * parts * parts), expected(observed.size());
     for (uint32_t y = 0; y < height * parts; ++y) {
         const double theta = std::acos(0.5 * (height_at(y) + height_at(y + 1)));
-        const double cell = (height_at(y) - height_at(y + 1)) * 2 * kPiDouble / (width * parts);
+        const double cell = (height_at(y) - height_at(y + 1)) * 2 * std::numbers::pi / (width * parts);
         for (uint32_t x = 0; x < width * parts; ++x) {
-            const double longitude = 2 * kPiDouble * ((x + 0.5) / (width * parts) - 0.5) - 1.1;
+            const double longitude = 2 * std::numbers::pi * ((x + 0.5) / (width * parts) - 0.5) - 1.1;
             const Vec3 direction = direction_at(longitude, theta);
             expected[y * width * parts + x] = samples * cell * as_double(environment_pdf(view, direction));
         }
@@ -181,8 +165,8 @@ TEST_CASE("environment: samples follow the density, within texels too") {
         EnvironmentSample sample;
         REQUIRE(sample_environment(view, random_bits(random), sample));
         const double longitude = std::atan2(as_double(sample.wi.x), as_double(-sample.wi.z)) + 1.1;
-        const double turns = longitude / (2 * kPiDouble) + 0.5;
-        const double row = std::acos(std::clamp(as_double(sample.wi.y), -1.0, 1.0)) / kPiDouble * height;
+        const double turns = longitude / (2 * std::numbers::pi) + 0.5;
+        const double row = std::acos(std::clamp(as_double(sample.wi.y), -1.0, 1.0)) / std::numbers::pi * height;
         uint32_t y = std::min(static_cast<uint32_t>(row), height - 1) * parts;
         while (y % parts < parts - 1 && as_double(sample.wi.y) < height_at(y + 1)) ++y;
         const uint32_t x =
@@ -201,7 +185,7 @@ TEST_CASE("environment: radiance over density averages to the integral of radian
             960, [&](Vec3 direction) { return luminance_in_double(environment_radiance(view, direction)); });
         Random random(2);
         const Estimate power = estimate(200'000, [&] {
-            EnvironmentSample sample;
+            EnvironmentSample sample = {};
             if (!sample_environment(view, random_bits(random), sample)) return 0.0;
             return luminance_in_double(sample.radiance) / as_double(sample.pdf);
         });
@@ -209,7 +193,7 @@ TEST_CASE("environment: radiance over density averages to the integral of radian
         CHECK(std::abs(power.mean - exact) < 4 * power.error + 2e-4 * exact);
         // A lone texel, filtered: the best that weights constant over texels can do is 0.888.
         CHECK(power.variance < exact * exact);
-        CHECK(luminance_in_double(data.mean_radiance) * 4 * kPiDouble == doctest::Approx(exact).epsilon(0.02));
+        CHECK(luminance_in_double(data.mean_radiance) * 4 * std::numbers::pi == doctest::Approx(exact).epsilon(0.02));
     }
 }
 
@@ -225,7 +209,7 @@ TEST_CASE("environment: no image, one pixel and equal pixels are drawn uniformly
         Random random(3);
         std::array<double, 3> mean{};
         for (int i = 0; i < 10'000; ++i) {
-            EnvironmentSample sample;
+            EnvironmentSample sample = {};
             REQUIRE(sample_environment(view, random_bits(random), sample));
             CHECK(sample.pdf == 0.25f * kInvPi);
             CHECK(environment_pdf(view, sample.wi) == sample.pdf);
@@ -247,8 +231,8 @@ TEST_CASE("environment: the image of one bright row at the pole is drawn with fu
     const EnvironmentView view = view_of(data);
     Random random(4);
     // Light reaches half a row past the first: radiance falls from 1 at theta = 1/2 row to 0 at 3/2 rows.
-    const double row = kPiDouble / 8192;
-    const double exact = 2 * kPiDouble * row * row * (13.0 / 24.0);
+    const double row = std::numbers::pi / 8192;
+    const double exact = 2 * std::numbers::pi * row * row * (13.0 / 24.0);
     const Estimate power = estimate(100'000, [&] {
         EnvironmentSample sample;
         return sample_environment(view, random_bits(random), sample) ? as_double(sample.radiance.r / sample.pdf) : 0.0;

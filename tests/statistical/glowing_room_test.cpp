@@ -65,12 +65,10 @@ void check_radiance(double wanted, float albedo, const PathSettings& path) {
     CHECK(seen.standard_error < 5e-3 * wanted);
 }
 
-constexpr LightStrategy kStrategies[] = {LightStrategy::Mis, LightStrategy::NeeOnly, LightStrategy::BsdfOnly};
-
 } // namespace
 
 TEST_CASE("a depth limit of n leaves the first n scatterings, none of them lost or counted twice") {
-    for (const LightStrategy strategy : kStrategies) {
+    for (const LightStrategy strategy : test::kLightStrategies) {
         double wanted = 0;
         for (uint32_t depth = 0; depth <= 4; ++depth) {
             CAPTURE(static_cast<int>(strategy));
@@ -86,7 +84,7 @@ TEST_CASE("a depth limit of n leaves the first n scatterings, none of them lost 
 }
 
 TEST_CASE("Russian roulette takes no light away and adds none") {
-    for (const LightStrategy strategy : kStrategies) {
+    for (const LightStrategy strategy : test::kLightStrategies) {
         for (const Roulette roulette : {Roulette::Throughput, Roulette::FourthRoot}) {
             CAPTURE(static_cast<int>(strategy));
             CAPTURE(static_cast<int>(roulette));

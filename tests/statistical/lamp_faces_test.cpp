@@ -16,9 +16,8 @@ using namespace pertev;
 namespace {
 
 constexpr float kHalf = 0.44f, kRadiance = 78.9f, kAlbedo = 0.5f; // the lamp, 1 m above the floor
-constexpr LightStrategy kStrategies[] = {LightStrategy::Mis, LightStrategy::NeeOnly, LightStrategy::BsdfOnly};
 
-Mesh square(float half, float y) {
+Mesh square_at(float half, float y) {
     Mesh mesh;
     mesh.positions = {{-half, y, -half}, {-half, y, half}, {half, y, half}, {half, y, -half}};
     mesh.indices = {0, 1, 2, 0, 2, 3}; // facing +y
@@ -29,7 +28,7 @@ Mesh square(float half, float y) {
 /// turns an up-facing mesh over as a mirror does.
 Scene lamp_over_floor(bool faces_down, bool is_two_sided, bool by_mirror) {
     Scene scene;
-    scene.meshes = {square(1, 0), square(kHalf, by_mirror ? -1.0f : 1.0f)};
+    scene.meshes = {square_at(1, 0), square_at(kHalf, by_mirror ? -1.0f : 1.0f)};
     if (by_mirror != faces_down) std::ranges::reverse(scene.meshes[1].indices);
     scene.materials.push_back({.name = "floor", .base_color = grey(kAlbedo)});
     scene.materials.push_back(
@@ -45,12 +44,12 @@ double floor_radiance() {
     return static_cast<double>(kAlbedo * kRadiance) / 3.141592653589793 * 4 * (x / p * std::atan(x / p));
 }
 
-struct Seen {
+struct Patch {
     double mean, error;
 };
 
 /// Of a tiny patch of the scene, between lamp and floor: down at the floor, or up at the lamp from `y`.
-Seen look(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
+Patch look(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
     RenderSettings settings;
     settings.width = settings.height = 32;
     settings.samples = static_cast<uint32_t>(test::effort(64, 1024));
@@ -84,9 +83,9 @@ TEST_CASE("a lamp shines from its front or from both faces, however its light is
                 CAPTURE(is_two_sided);
                 const Scene scene = lamp_over_floor(faces_down, is_two_sided, by_mirror);
                 const bool is_lit = faces_down || is_two_sided;
-                for (const LightStrategy strategy : kStrategies) {
+                for (const LightStrategy strategy : test::kLightStrategies) {
                     CAPTURE(static_cast<int>(strategy));
-                    const Seen floor = look(scene, {.strategy = strategy});
+                    const Patch floor = look(scene, {.strategy = strategy});
                     CAPTURE(floor.mean);
                     CAPTURE(floor.error);
                     CHECK(std::abs(floor.mean - (is_lit ? floor_radiance() : 0)) <= 4 * floor.error + 1e-3);
@@ -103,9 +102,9 @@ TEST_CASE("a lamp shines from its front or from both faces, however its light is
 TEST_CASE("a clamp leaves light that was scattered once alone, however it is found") {
     CHECK(floor_radiance() == doctest::Approx(7.74).epsilon(1e-3));
     const Scene scene = lamp_over_floor(true, false, false);
-    for (const LightStrategy strategy : kStrategies) {
+    for (const LightStrategy strategy : test::kLightStrategies) {
         CAPTURE(static_cast<int>(strategy));
-        const Seen floor = look(scene, {.strategy = strategy, .clamp = 5});
+        const Patch floor = look(scene, {.strategy = strategy, .clamp = 5});
         CAPTURE(floor.mean);
         CAPTURE(floor.error);
         CHECK(std::abs(floor.mean - floor_radiance()) <= 4 * floor.error + 1e-3);

@@ -7,11 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "math/random.h"
 #include "math/sampler.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/estimate.h"
 #include "tests/support/lit_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
@@ -20,10 +22,6 @@ using namespace pertev;
 using namespace pertev::test;
 
 namespace {
-
-constexpr double kPiDouble = 3.141592653589793;
-
-double as_double(float x) { return static_cast<double>(x); }
 
 /// A checkered texture of n x n squares, black first, as the emission of the scene's last material.
 void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
@@ -38,10 +36,6 @@ void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
     ref.image = static_cast<int32_t>(scene.images.size() - 1);
     ref.filter = filter;
 }
-
-struct Estimate {
-    double mean = 0, error = 0;
-};
 
 /// Probability that sample_light draws a light, in the order of triangles, punctual lights, the environment.
 float light_pmf(const LightSetView& view, uint32_t light) {
@@ -271,7 +265,7 @@ TEST_CASE("lights: all kinds together add up, however near and far ones share th
         scene.environment->scale = {sky, sky, sky};
         Lights lights(scene);
         double exact = rectangle_irradiance(1, 1, 1, 3) + rectangle_irradiance(1, 1, 3, 1);
-        exact += 1.0 / 4 + 1.0 / 16 + 1 + kPiDouble * as_double(sky);
+        exact += 1.0 / 4 + 1.0 / 16 + 1 + std::numbers::pi * as_double(sky);
         CAPTURE(sky);
         for (const double share : {0.5, 0.1, 31.0 / 32}) {
             share_draws(lights.data, share);

@@ -12,6 +12,7 @@
 #include "tests/statistical/bsdf_cases.h"
 #include "tests/statistical/tilted_surface.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/estimate.h"
 #include "tests/support/options.h"
 
 using namespace pertev;
@@ -36,10 +37,6 @@ double etendue(const Surface& surface, Vec3 w) {
     const double n = inside ? static_cast<double>(surface.bsdf.base.dielectric.ior) : 1.0;
     return n * n * std::fabs(static_cast<double>(dot(w, surface.geometric_normal)));
 }
-
-struct Estimate {
-    double mean = 0, error = 0;
-};
 
 /// Power from the light to the camera: paths start along even directions from the camera, particles from the light.
 Estimate transported(const Surface& surface, bool particles, uint32_t count) {

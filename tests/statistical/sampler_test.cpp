@@ -17,7 +17,7 @@ using namespace pertev;
 namespace {
 
 constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
-constexpr int kTests = 90; // more than this file makes
+constexpr int kSamplerTests = 90; // more than this file makes
 constexpr uint32_t kPairs = 1u << 20;
 
 /// Are the points (first, second) uniform in the square? 32 x 32 boxes.
@@ -29,7 +29,7 @@ void check_uniform(const std::function<Vec2(uint32_t)>& pair, const char* what) 
         observed[static_cast<uint32_t>(p.x * n) * n + static_cast<uint32_t>(p.y * n)] += 1;
     }
     const test::ChiSquareResult result = test::chi_square(observed, expected);
-    CHECK_MESSAGE(result.passes(kTests), what << ": " << result.describe());
+    CHECK_MESSAGE(result.passes(kSamplerTests), what << ": " << result.describe());
 }
 
 } // namespace

@@ -15,9 +15,9 @@ using test::chi_square_of_points;
 
 namespace {
 
-constexpr int kTests = 9; // of this file, for the Sidak correction
+constexpr int kWarpTests = 9; // of this file, for the Sidak correction
 
-void check(const test::ChiSquareResult& result) { CHECK_MESSAGE(result.passes(kTests), result.describe()); }
+void check(const test::ChiSquareResult& result) { CHECK_MESSAGE(result.passes(kWarpTests), result.describe()); }
 
 double inside_disk(Vec2 p) { return p.x * p.x + p.y * p.y <= 1 ? 0.3183098861837907 : 0; }
 
@@ -55,11 +55,11 @@ TEST_CASE("the chi-square test refuses a density that is tilted by 5 % or off by
     const auto sample = [](float, Vec2 u) -> std::optional<Vec3> { return sample_uniform_sphere(u); };
     CHECK(!chi_square_of_directions(sample, [](Vec3 w) {
                return 0.0795774715 * (1 + 0.05 * static_cast<double>(w.z));
-           }).passes(kTests));
-    CHECK(!chi_square_of_directions(sample, [](Vec3) { return 0.0795774715 * 1.001; }).passes(kTests));
-    CHECK(!chi_square_of_directions(sample, [](Vec3) { return 0.0795774715 * 0.999; }).passes(kTests));
+           }).passes(kWarpTests));
+    CHECK(!chi_square_of_directions(sample, [](Vec3) { return 0.0795774715 * 1.001; }).passes(kWarpTests));
+    CHECK(!chi_square_of_directions(sample, [](Vec3) { return 0.0795774715 * 0.999; }).passes(kWarpTests));
     const auto failing = [&](float lobe, Vec2 u) { return lobe < 0.001f ? std::nullopt : sample(lobe, u); };
-    CHECK(chi_square_of_directions(failing, [](Vec3) { return 0.0795774715 * 0.999; }).passes(kTests));
+    CHECK(chi_square_of_directions(failing, [](Vec3) { return 0.0795774715 * 0.999; }).passes(kWarpTests));
 }
 
 TEST_CASE("the incomplete gamma function is right") {

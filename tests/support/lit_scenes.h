@@ -11,6 +11,8 @@
 
 namespace pertev::test {
 
+inline double as_double(float x) { return static_cast<double>(x); }
+
 /// Linear on purpose: the tests' textures then mean the same with and without is_srgb.
 inline std::array<float, 256> make_linear_table() {
     std::array<float, 256> table{};

@@ -168,4 +168,10 @@ void add_picture(Hasher& hasher, const RenderResult& result) {
     }
 }
 
+Hash128 render_hash(const RenderResult& result) {
+    Hasher hasher;
+    add_picture(hasher, result);
+    return hasher.result();
+}
+
 } // namespace pertev::test

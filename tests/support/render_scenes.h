@@ -10,6 +10,9 @@
 
 namespace pertev::test {
 
+inline constexpr LightStrategy kLightStrategies[] = {LightStrategy::Mis, LightStrategy::NeeOnly,
+                                                     LightStrategy::BsdfOnly};
+
 /// A room open to a panorama: diffuse, metal, glass and glTF spheres (two of them instances of one mesh), a textured
 /// floor, a cut-out and a blended sheet, one that hides its back from the camera, an emissive quad that faces down, a
 /// point, a spot and a directional light.
@@ -30,5 +33,6 @@ RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, cons
 
 /// All that a render shows: its picture, its layers and its ids.
 void add_picture(Hasher& hasher, const RenderResult& result);
+Hash128 render_hash(const RenderResult& result);
 
 } // namespace pertev::test

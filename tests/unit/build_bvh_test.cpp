@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <tuple>
 
 #include "accel/bvh/check_bvh.h"
@@ -14,6 +13,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
+#include "tests/support/bvh_bytes.h"
 #include "tests/support/meshes.h"
 
 using namespace pertev;
@@ -96,20 +96,6 @@ const BvhBuildSettings kSettings[] = {{},
                                       {.max_leaf = 8, .node_cost = 0},
                                       {.max_leaf = 8, .node_cost = 100},
                                       {.max_leaf = 4, .max_depth = 13}};
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-int largest_leaf(const Bvh& bvh) {
-    int largest = 0, run = 0;
-    for (const BvhTriangle& t : bvh.triangles) {
-        largest = std::max(largest, ++run);
-        if (t.flags & kLastInLeaf) run = 0;
-    }
-    return largest;
-}
 
 } // namespace
 

@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <string_view>
 
 #include "accel/bvh/binary_tree.h"
@@ -16,6 +15,7 @@
 #include "base/limits.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
+#include "tests/support/bvh_bytes.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
@@ -24,20 +24,6 @@ using namespace pertev;
 using namespace pertev::test;
 
 namespace {
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-int largest_leaf(const Bvh& bvh) {
-    int largest = 0, run = 0;
-    for (const BvhTriangle& t : bvh.triangles) {
-        largest = std::max(largest, ++run);
-        if (t.flags & kLastInLeaf) run = 0;
-    }
-    return largest;
-}
 
 std::string name_of(BvhBuilder builder) { return bvh_builder_name(builder); }
 

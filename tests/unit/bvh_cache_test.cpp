@@ -12,6 +12,7 @@
 
 #include "accel/bvh/check_bvh.h"
 #include "base/read_file.h"
+#include "tests/support/bvh_bytes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 
@@ -20,11 +21,6 @@ using namespace pertev::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
 
 void write_bytes(const fs::path& path, std::span<const std::byte> bytes) {
     fs::remove(path); // cutting a file short makes some file systems wait for the disk

@@ -11,7 +11,7 @@ using namespace pertev;
 
 namespace {
 
-constexpr uint32_t kWidth = 8, kHeight = 4;
+constexpr uint32_t kColumns = 8, kRows = 4;
 
 /// A large square at z = -3, and a camera at z = 2 that looks along -z at 8 x 4 metres of it, one a pixel.
 RenderResult render_plane(PixelFilter filter, bool whole_plane) {
@@ -28,8 +28,8 @@ RenderResult render_plane(PixelFilter filter, bool whole_plane) {
     camera.ortho_height = 4;
     camera.world_from_camera = make_translation({0, 0, 2});
     RenderSettings settings;
-    settings.width = kWidth;
-    settings.height = kHeight;
+    settings.width = kColumns;
+    settings.height = kRows;
     settings.samples = 1024;
     settings.filter = filter;
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
@@ -45,8 +45,8 @@ TEST_CASE("a pixel's samples lie about its centre, left to right and from the to
          {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {
         CAPTURE(static_cast<int>(filter));
         const Image position = render_plane(filter, true).layers.at(3).image;
-        for (uint32_t y = 0; y < kHeight; ++y) {
-            for (uint32_t x = 0; x < kWidth; ++x) {
+        for (uint32_t y = 0; y < kRows; ++y) {
+            for (uint32_t x = 0; x < kColumns; ++x) {
                 CHECK(std::abs(double(position.at(x, y)[0]) - (x + 0.5 - 4)) < 2e-3);
                 CHECK(std::abs(double(position.at(x, y)[1]) - (2 - (y + 0.5))) < 2e-3);
                 CHECK(position.at(x, y)[2] == doctest::Approx(-3).epsilon(1e-6));
@@ -57,7 +57,7 @@ TEST_CASE("a pixel's samples lie about its centre, left to right and from the to
 
 TEST_CASE("albedo, normal, depth and ids are those of the first surface") {
     const RenderResult result = render_plane(PixelFilter::Box, true);
-    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    for (uint32_t i = 0; i < kColumns * kRows; ++i) {
         CHECK(result.layers.at(0).image.pixels[3 * i + 2] == 0.75f);
         CHECK(result.layers.at(1).image.pixels[3 * i + 2] == 1.0f); // towards the camera
         CHECK(result.layers.at(2).image.pixels[i] == doctest::Approx(5).epsilon(1e-6));
@@ -77,5 +77,5 @@ TEST_CASE("where only a part of a pixel is covered, alpha is that part and depth
     CHECK(result.layers.at(2).image.at(4, 1)[0] == doctest::Approx(5).epsilon(1e-6));
     CHECK(result.layers.at(2).image.at(5, 1)[0] == 0);
     CHECK(result.layers.at(0).image.at(3, 1)[1] == doctest::Approx(0.5 * 0.875).epsilon(3e-3));
-    CHECK(result.ids.at(kWidth + 6).instance == kNoHit);
+    CHECK(result.ids.at(kColumns + 6).instance == kNoHit);
 }

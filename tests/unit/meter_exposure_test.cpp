@@ -54,7 +54,7 @@ Camera camera_at(Vec3 eye, Vec3 target) {
     return camera;
 }
 
-RenderSettings small_settings() {
+RenderSettings metered_settings() {
     RenderSettings settings;
     settings.width = 64, settings.height = 36, settings.samples = 64;
     return settings;
@@ -66,7 +66,7 @@ struct Shown {
 };
 
 Shown show_surfaces(Queue& queue, const Scene& scene, const Camera& camera, float stops) {
-    RenderSettings settings = small_settings();
+    RenderSettings settings = metered_settings();
     const Rgba8Image shown = tone_map_image(test::render(queue, scene, camera, settings).picture, ToneMap::Agx, stops);
     settings.path.max_depth = 0;
     settings.transparent = true; // alpha: what is hit
@@ -92,7 +92,7 @@ TEST_CASE("samples, seed, sampler, filter, size, time and alpha do not move the 
     Queue queue = test::queue_asked_for();
     const Scene scene = test::make_mixed_scene();
     const Camera camera = test::mixed_scene_camera();
-    const RenderSettings settings = small_settings();
+    const RenderSettings settings = metered_settings();
     const float stops = stops_of(queue, scene, camera, settings);
     CHECK(stops != 0);
     RenderSettings other = settings;
@@ -113,7 +113,7 @@ TEST_CASE("a GPU's meter shows what the CPU's does") {
     if (!test::cuda_requested()) return;
     Queue cpu = Queue::make_cpu(), cuda = test::make_cuda_queue();
     const Scene scene = test::make_mixed_scene();
-    const RenderSettings settings = small_settings();
+    const RenderSettings settings = metered_settings();
     for (const ToneMap tone_map : {ToneMap::Agx, ToneMap::Srgb}) {
         CHECK(stops_of(cpu, scene, test::mixed_scene_camera(), settings, tone_map) ==
               stops_of(cuda, scene, test::mixed_scene_camera(), settings, tone_map));
@@ -124,7 +124,7 @@ TEST_CASE("a room stays legible beside its bright window") {
     Queue queue = test::queue_asked_for();
     const Scene scene = make_room_with_window();
     const Camera camera = camera_at({0, 1.5f, -0.3f}, {0, 1.5f, -5});
-    const Shown room = show_surfaces(queue, scene, camera, stops_of(queue, scene, camera, small_settings()));
+    const Shown room = show_surfaces(queue, scene, camera, stops_of(queue, scene, camera, metered_settings()));
     CHECK(room.mean > 0.42); // AgX shows middle grey as 0.5
     CHECK(room.mean < 0.62);
     CHECK(room.burnt <= 0.01);
@@ -139,7 +139,7 @@ TEST_CASE("a lamp in view takes nothing from what it lights") {
     add_quad(scene, {-2, 1.5f, -4}, {2, 1.5f, -4}, {2, 4, -4}, {-2, 4, -4});
     scene.instances.back().material = 1;
     const Camera camera = camera_at({0, 1, 3}, {0, 1, 0});
-    const Shown floor = show_surfaces(queue, scene, camera, stops_of(queue, scene, camera, small_settings()));
+    const Shown floor = show_surfaces(queue, scene, camera, stops_of(queue, scene, camera, metered_settings()));
     CHECK(floor.mean > 0.42);
     CHECK(floor.burnt <= 0.01);
 }
@@ -148,7 +148,7 @@ TEST_CASE("where there is only sky, the sky becomes middle grey") {
     Queue queue = test::queue_asked_for();
     Scene scene = make_room_with_window();
     scene.environment->scale = grey(0.72f);
-    CHECK(stops_of(queue, scene, camera_at({0, 1, -9}, {0, 1, -20}), small_settings()) == -2.0f);
+    CHECK(stops_of(queue, scene, camera_at({0, 1, -9}, {0, 1, -20}), metered_settings()) == -2.0f);
 }
 
 TEST_CASE("a patch of sun on the floor is not burnt") {
@@ -159,7 +159,7 @@ TEST_CASE("a patch of sun on the floor is not burnt") {
                             .direction = normalize(Vec3{0.2f, -1, 0.9f}),
                             .intensity = grey(20'000)});
     const Camera camera = camera_at({0, 1.5f, -0.3f}, {0, 1.2f, -5});
-    const Shown room = show_surfaces(queue, scene, camera, stops_of(queue, scene, camera, small_settings()));
+    const Shown room = show_surfaces(queue, scene, camera, stops_of(queue, scene, camera, metered_settings()));
     CHECK(room.burnt <= 0.01);
     CHECK(room.mean > 0.25);
 }

@@ -61,7 +61,7 @@ TEST_CASE("samples of a pixel filter follow its formula: chi-square along an axi
         std::vector<double> observed(cells), expected(cells);
         for (int i = 0; i < samples; ++i) {
             const float x = sample_filter_axis(filter.view, random.unit()) / 1.75f;
-            REQUIRE(abs(x) <= 1);
+            REQUIRE(std::abs(x) <= 1);
             ++observed[static_cast<std::size_t>(to_int((x + 1) * 0.5f * cells, 0, cells - 1))];
         }
         const auto f = [&](double x) { return formula(kind, x); };
@@ -105,8 +105,8 @@ TEST_CASE("a pixel filter's samples grow with u, are symmetric and stay inside t
             const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(1 << 14);
             const float x = sample_filter_axis(filter.view, u);
             CHECK(x >= last);
-            CHECK(abs(x) <= 2.0f);
-            CHECK(abs(x + sample_filter_axis(filter.view, 1.0f - u)) < 2e-5f);
+            CHECK(std::abs(x) <= 2.0f);
+            CHECK(std::abs(x + sample_filter_axis(filter.view, 1.0f - u)) < 2e-5f);
             last = x;
         }
         CHECK(sample_filter_axis(filter.view, 0x1.fffffep-1f) <= 2.0f);
@@ -130,6 +130,6 @@ TEST_CASE("only filters without a closed form have a table, which ends at the ra
         REQUIRE(table.size() == kFilterTableSize + 1);
         CHECK(table.front() == doctest::Approx(-1).epsilon(1e-3));
         CHECK(table.back() == 1.0f);
-        CHECK(abs(table[kFilterTableSize / 2]) < 1e-6f);
+        CHECK(std::abs(table[kFilterTableSize / 2]) < 1e-6f);
     }
 }

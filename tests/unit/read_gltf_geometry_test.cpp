@@ -18,7 +18,7 @@ using test::GltfBuilder;
 
 namespace {
 
-const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+const std::vector<float> kCorners = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 const std::vector<float> kFivePoints = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0};
 
 /// One node that shows one mesh with this primitive.
@@ -44,7 +44,7 @@ std::vector<uint32_t> read_topology(int mode) {
 
 TEST_CASE("a glTF triangle arrives with its positions, indices and the default material") {
     GltfBuilder builder;
-    const int positions = builder.add("VEC3", kTriangle);
+    const int positions = builder.add("VEC3", kCorners);
     const int indices = builder.add("SCALAR", std::vector<uint16_t>{2, 0, 1});
     const Scene scene = read_primitive(builder, "\"indices\":" + std::to_string(indices) + ",\"attributes\":{" +
                                                     attribute("POSITION", positions) + "}");
@@ -66,7 +66,7 @@ TEST_CASE("a glTF triangle arrives with its positions, indices and the default m
 TEST_CASE("a GLB file reads like the same document with its data in base64") {
     GltfBuilder builder;
     const std::string members =
-        one_primitive("\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kTriangle)) + "}");
+        one_primitive("\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kCorners)) + "}");
     const auto path = test::scratch_folder() / "model.glb";
     write_file_atomically(path, builder.glb(members));
     Messages messages;
@@ -79,7 +79,7 @@ TEST_CASE("a GLB file reads like the same document with its data in base64") {
 
 TEST_CASE("a buffer is found beside the file, under a percent-encoded name") {
     const auto folder = test::scratch_folder();
-    write_file_atomically(folder / "a b.bin", std::as_bytes(std::span(kTriangle)));
+    write_file_atomically(folder / "a b.bin", std::as_bytes(std::span(kCorners)));
     const std::string text =
         R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"a%20b.bin"}],"bufferViews":[{"buffer":0,)"
         R"("byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],)" +
@@ -98,7 +98,7 @@ TEST_CASE("strips and fans become triangles with the winding of the specificatio
 
 TEST_CASE("points and lines are left out with a warning, and the rest of the mesh stays") {
     GltfBuilder builder;
-    const std::string positions = "\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kTriangle)) + "}";
+    const std::string positions = "\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kCorners)) + "}";
     Messages messages;
     const Scene scene = test::read_gltf_text(
         builder.json(one_primitive("\"mode\":0," + positions + "},{\"mode\":3," + positions + "},{" + positions)),
@@ -111,7 +111,7 @@ TEST_CASE("points and lines are left out with a warning, and the rest of the mes
 TEST_CASE("all attributes are read") {
     GltfBuilder builder;
     const std::string attributes =
-        attribute("POSITION", builder.add("VEC3", kTriangle)) + "," +
+        attribute("POSITION", builder.add("VEC3", kCorners)) + "," +
         attribute("NORMAL", builder.add("VEC3", std::vector<float>{0, 0, 1, 0, 0, 1, 0, 1, 0})) + "," +
         attribute("TANGENT", builder.add("VEC4", std::vector<float>{1, 0, 0, 1, 0, 1, 0, -1, 0, 0, 1, -1})) + "," +
         attribute("TEXCOORD_0", builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1})) + "," +
@@ -156,7 +156,7 @@ TEST_CASE("interleaved attributes are read with the view's stride") {
     GltfBuilder builder;
     std::vector<float> interleaved; // position, uv
     for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k) interleaved.push_back(kTriangle[static_cast<std::size_t>(3 * i + k)]);
+        for (int k = 0; k < 3; ++k) interleaved.push_back(kCorners[static_cast<std::size_t>(3 * i + k)]);
         interleaved.push_back(static_cast<float>(10 * i));
         interleaved.push_back(static_cast<float>(10 * i + 1));
     }
@@ -173,7 +173,7 @@ TEST_CASE("interleaved attributes are read with the view's stride") {
 
 TEST_CASE("a sparse accessor overrides its base, or zeros where it has none") {
     GltfBuilder builder;
-    const int base = builder.add_view(kTriangle);
+    const int base = builder.add_view(kCorners);
     const int indices = builder.add_view(std::vector<uint8_t>{1, 2});
     const int values = builder.add_view(std::vector<float>{4, 5, 6, 7, 8, 9});
     const std::string sparse = "\"componentType\":5126,\"type\":\"VEC3\",\"count\":3,\"sparse\":{\"count\":2,"
@@ -201,7 +201,7 @@ TEST_CASE("a sparse accessor overrides its base, or zeros where it has none") {
 
 TEST_CASE("parts with the same data share one mesh whatever their material") {
     GltfBuilder builder;
-    const std::string part = "\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kTriangle)) + "}";
+    const std::string part = "\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kCorners)) + "}";
     const Scene scene =
         test::read_gltf_text(builder.json("\"materials\":[{},{\"name\":\"b\"}]," +
                                           one_primitive("\"material\":0," + part + "},{\"material\":1," + part)));

@@ -36,7 +36,7 @@ Camera camera_at(float x) {
     return camera;
 }
 
-RenderSettings small_settings() {
+RenderSettings queued_settings() {
     RenderSettings settings;
     settings.width = 24, settings.height = 16;
     settings.body = PathBody::Wavefront; // which has queues, on the CPU too
@@ -56,7 +56,7 @@ std::size_t resident_bytes() {
 TEST_CASE("a new camera takes no memory and copies nothing to the device; so do most settings") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     Session session(queue, mixed.prepared, camera_at(0), settings);
     session.render(4);
     const uint64_t allocations = queue.allocation_count(), uploaded = queue.uploaded_bytes();
@@ -86,7 +86,7 @@ TEST_CASE("a new camera takes no memory and copies nothing to the device; so do 
 TEST_CASE("a smaller picture takes a new film and no more; a larger one takes larger queues as well") {
     Queue queue = test::queue_asked_for();
     const Prepared furnace(test::make_furnace_scene(0.5f));
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     Session session(queue, furnace.prepared, camera_at(0), settings);
     session.render(1);
     const std::size_t bytes = queue.allocated_bytes();
@@ -109,7 +109,7 @@ TEST_CASE("a smaller picture takes a new film and no more; a larger one takes la
 TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and scene") {
     Queue queue = test::queue_asked_for();
     const Prepared a(test::make_furnace_scene(0.5f)), b(test::make_mixed_scene());
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     Session session(queue, a.prepared, camera_at(0), settings);
     std::size_t bytes = 0, resident = 0;
     constexpr int kCycles = 100, kWarm = 20; // of 10 changes each
@@ -146,7 +146,7 @@ TEST_CASE("nothing of a session is left on the device when it ends") {
     Queue queue = test::queue_asked_for();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     {
-        Session session(queue, furnace.prepared, camera_at(0), small_settings());
+        Session session(queue, furnace.prepared, camera_at(0), queued_settings());
         session.render(1);
         session.meter(ToneMap::Agx);
     }
@@ -156,7 +156,7 @@ TEST_CASE("nothing of a session is left on the device when it ends") {
 TEST_CASE("the bytes that are predicted are those that a session takes") {
     Queue queue = test::queue_asked_for();
     const Prepared furnace(test::make_furnace_scene(0.5f));
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     settings.samples = 3;
     settings.aovs = kAovAlbedo | kAovIds;
     Session session(queue, furnace.prepared, camera_at(0), settings);
@@ -169,7 +169,7 @@ TEST_CASE("the bytes that are predicted are those that a session takes") {
 TEST_CASE("a render ends at a whole sample when it is told to, and goes on from there") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     settings.pass_samples = 2;
     Session whole(queue, mixed.prepared, camera_at(0), settings);
     whole.render(9);
@@ -203,7 +203,7 @@ TEST_CASE("a render ends at a whole sample when it is told to, and goes on from 
 TEST_CASE("a call's time is over at a whole sample, and the next call has its own") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     settings.time_limit_s = 1e-9;
     Session session(queue, mixed.prepared, camera_at(0), settings);
     CHECK(session.render(100) == 1);
@@ -214,7 +214,7 @@ TEST_CASE("a call's time is over at a whole sample, and the next call has its ow
 TEST_CASE("what does not change the picture lets the film be; what does begins it anew") {
     Queue queue = test::queue_asked_for();
     const Prepared furnace(test::make_furnace_scene(0.5f));
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     Session session(queue, furnace.prepared, camera_at(0), settings);
     session.render(2);
     settings.samples = 1000;
@@ -251,7 +251,7 @@ TEST_CASE("what does not change the picture lets the film be; what does begins i
 TEST_CASE("the history knows the camera of the last samples, until a cut") {
     Queue queue = test::queue_asked_for();
     const Prepared furnace(test::make_furnace_scene(0.5f));
-    Session session(queue, furnace.prepared, camera_at(0), small_settings());
+    Session session(queue, furnace.prepared, camera_at(0), queued_settings());
     CHECK(!session.history().previous_camera);
     session.set_camera(camera_at(1)); // nothing was seen by the one before
     CHECK(!session.history().previous_camera);
@@ -279,7 +279,7 @@ TEST_CASE("the history knows the camera of the last samples, until a cut") {
 TEST_CASE("a display shows the picture's tones") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     for (const bool transparent : {false, true}) {
         settings.transparent = transparent;
         Session session(queue, mixed.prepared, camera_at(0), settings);
@@ -295,7 +295,7 @@ TEST_CASE("a display shows the picture's tones") {
 TEST_CASE("the meter looks at the scene on the device, uploads nothing, and leaves the film as it is") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     Session session(queue, mixed.prepared, camera_at(0), settings);
     session.render(3);
     const Hash128 before = picture_hash(session.picture());
@@ -338,7 +338,7 @@ TEST_CASE(
     "seconds of each kind of ray are of the last call that renders, and of nothing that looks at the scene since") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     settings.time_kinds = true;
     Session session(queue, mixed.prepared, camera_at(0), settings);
     session.meter(ToneMap::Agx);
@@ -356,7 +356,7 @@ TEST_CASE(
 TEST_CASE("the share of hidden backs follows scene, camera and size") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene()), furnace(test::make_furnace_scene(0.5f));
-    RenderSettings settings = small_settings();
+    RenderSettings settings = queued_settings();
     const auto fresh = [&](const Prepared& scene, const Camera& camera) {
         return Session(queue, scene.prepared, camera, settings).stats().hidden_back_share;
     };

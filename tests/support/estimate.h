@@ -1,0 +1,28 @@
+#pragma once
+
+// The mean of random draws, and how well it is known.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+namespace pertev::test {
+
+struct Estimate {
+    double mean = 0, error = 0, variance = 0; // error: the standard error of the mean; variance: of one draw
+};
+
+inline Estimate estimate(uint64_t count, const std::function<double()>& draw) {
+    double sum = 0, squares = 0;
+    for (uint64_t i = 0; i < count; ++i) {
+        const double value = draw();
+        sum += value;
+        squares += value * value;
+    }
+    const double n = static_cast<double>(count), mean = sum / n;
+    const double variance = std::max(0.0, squares / n - mean * mean);
+    return {mean, std::sqrt(variance / n), variance};
+}
+
+} // namespace pertev::test
