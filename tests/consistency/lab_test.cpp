@@ -54,8 +54,10 @@ LabSettings all_combinations(bool is_cuda, bool brute_force) {
     return settings;
 }
 
-/// Every walk with every switch on one tree; every structure with all switches on.
+/// Every walk with every switch on one tree; every structure with all switches on, and in the long setting with RTA at
+/// nodes alone too.
 LabSettings some_combinations(bool is_cuda) {
+    const bool at_nodes = test::effort(0, 1) != 0;
     const LabSettings all = all_combinations(is_cuda, false);
     LabSettings settings = all;
     for (const Distribution distribution : all.distributions) {
@@ -65,7 +67,7 @@ LabSettings some_combinations(bool is_cuda) {
                 const bool every_switch =
                     structure == StructureKind::SpatialSplits || walk == WalkKind::Kd || walk == WalkKind::Octree;
                 for (const WalkOptions& options : all.options) {
-                    if (every_switch || (options.rta && options.near_first)) {
+                    if (every_switch || (options.rta && options.near_first && (options.rta_at_pops || at_nodes))) {
                         settings.only.push_back({structure, walk, options, distribution});
                     }
                 }

@@ -7,6 +7,7 @@
 
 #include "accel/bvh/compress_boxes.h"
 #include "base/error.h"
+#include "base/parallel_for.h"
 
 namespace pertev {
 namespace {
@@ -15,6 +16,8 @@ Bounds3 child_box(const WideBvhNode<8>& node, int k) {
     return {{node.planes[0][k], node.planes[2][k], node.planes[4][k]},
             {node.planes[1][k], node.planes[3][k], node.planes[5][k]}};
 }
+
+constexpr uint64_t kNodesAtOnce = 256; // of one thread
 
 int byte_of(const uint32_t (&words)[2], int slot) { return static_cast<int>(words[slot / 4] >> 8 * (slot % 4) & 0xff); }
 
@@ -88,44 +91,57 @@ CompressedBvh compress(const WideBvh<8>& wide) {
     result.depth = wide.depth;
     result.sah_cost = wide.sah_cost;
     if (wide.nodes.empty()) return result;
-    result.triangles.reserve(wide.triangles.size());
-    result.nodes.reserve(wide.nodes.size());
-    result.nodes.resize(1);
-    struct Pending {
-        uint32_t wide, compressed;
+    struct Slots {
+        int child[8];
     };
-    std::vector<Pending> pending = {{0, 0}};
+    std::vector<Slots> slots(wide.nodes.size());
+    parallel_for(slots.size(), kNodesAtOnce, [&](uint64_t i) { assign_slots(wide.nodes[i], slots[i].child); });
+
+    // Where each node, and each node's triangles, lie.
+    std::vector<uint32_t> wide_of = {0};
+    wide_of.reserve(wide.nodes.size());
+    result.nodes.resize(wide.nodes.size());
+    uint32_t triangles = 0;
+    std::vector<uint32_t> pending = {0}; // of the result
     while (!pending.empty()) {
-        const Pending at = pending.back();
+        const uint32_t at = pending.back();
         pending.pop_back();
-        const WideBvhNode<8>& from = wide.nodes[at.wide];
-        CompressedBvhNode node{};
-        node.child_base = static_cast<uint32_t>(result.nodes.size());
-        node.triangle_base = static_cast<uint32_t>(result.triangles.size());
-        int child_of_slot[8];
-        assign_slots(from, child_of_slot);
-        Bounds3 boxes[8];
+        const WideBvhNode<8>& from = wide.nodes[wide_of[at]];
+        CompressedBvhNode& node = result.nodes[at];
+        node.child_base = static_cast<uint32_t>(wide_of.size());
+        node.triangle_base = triangles;
         for (int s = 0; s < 8; ++s) {
-            const int k = child_of_slot[s];
+            const int k = slots[wide_of[at]].child[s];
             if (k < 0) continue;
-            boxes[s] = child_box(from, k);
             if (!(from.child[k] & kLeafBit)) {
                 node.exponents_and_inner |= 1u << (24 + s);
-                pending.push_back({from.child[k], static_cast<uint32_t>(result.nodes.size())});
-                result.nodes.emplace_back();
+                pending.push_back(static_cast<uint32_t>(wide_of.size()));
+                wide_of.push_back(from.child[k]);
                 continue;
             }
             PERTEV_CHECK(from.count[k] >= 1 && from.count[k] <= kCompressedLeaf);
             node.triangles |= (((1u << 8 * from.count[k]) - 1) & 0x010101u) << s;
+            triangles += from.count[k];
         }
-        for (uint32_t left = node.triangles; left != 0; left &= left - 1) {
-            const int bit = std::countr_zero(left);
-            const uint32_t leaf = from.child[child_of_slot[bit % 8]] & ~kLeafBit;
-            result.triangles.push_back(wide.triangles[leaf + static_cast<uint32_t>(bit / 8)]);
+    }
+
+    result.triangles.resize(triangles);
+    parallel_for(wide_of.size(), kNodesAtOnce, [&](uint64_t i) {
+        CompressedBvhNode& node = result.nodes[i];
+        const WideBvhNode<8>& from = wide.nodes[wide_of[i]];
+        const Slots& of = slots[wide_of[i]];
+        Bounds3 boxes[8];
+        for (int s = 0; s < 8; ++s) {
+            if (of.child[s] >= 0) boxes[s] = child_box(from, of.child[s]);
         }
         set_boxes(node, boxes);
-        result.nodes[at.compressed] = node;
-    }
+        uint32_t triangle = node.triangle_base;
+        for (uint32_t left = node.triangles; left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            const uint32_t leaf = from.child[of.child[bit % 8]] & ~kLeafBit;
+            result.triangles[triangle++] = wide.triangles[leaf + static_cast<uint32_t>(bit / 8)];
+        }
+    });
     return result;
 }
 
