@@ -67,9 +67,9 @@ std::string lower_case(std::string_view text) {
     return lower;
 }
 
-class Parser {
+class MtlParser {
 public:
-    Parser(std::string_view text, const std::string& file, Messages& messages)
+    MtlParser(std::string_view text, const std::string& file, Messages& messages)
         : lines_(text), file_(file), messages_(messages) {}
 
     std::vector<MtlStatements> run() {
@@ -253,7 +253,7 @@ private:
 } // namespace
 
 std::vector<MtlStatements> parse_mtl(std::span<const std::byte> bytes, const std::string& file, Messages& messages) {
-    return Parser(text_of(bytes), file, messages).run();
+    return MtlParser(text_of(bytes), file, messages).run();
 }
 
 } // namespace pertev

@@ -32,9 +32,9 @@ struct RawGroup {
     std::vector<Face> faces;
 };
 
-class Parser {
+class ObjParser {
 public:
-    Parser(std::string_view text, const std::string& file, Messages& messages)
+    ObjParser(std::string_view text, const std::string& file, Messages& messages)
         : lines_(text), file_(file), messages_(messages) {}
 
     ObjData run() {
@@ -270,7 +270,7 @@ private:
 } // namespace
 
 ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages) {
-    return Parser(text_of(bytes), file, messages).run();
+    return ObjParser(text_of(bytes), file, messages).run();
 }
 
 } // namespace pertev

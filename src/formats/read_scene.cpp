@@ -18,24 +18,24 @@
 namespace pertev {
 namespace {
 
-struct Reader {
+struct FormatReader {
     std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Messages&);
     bool tells_sides; // its files can say whether a surface emits from both faces
 };
 
 const std::array kReaders = {
-    Reader{".obj", read_obj, false},
-    Reader{".ply", read_ply, false},
-    Reader{".gltf", read_gltf, true},
-    Reader{".glb", read_gltf, true},
+    FormatReader{".obj", read_obj, false},
+    FormatReader{".ply", read_ply, false},
+    FormatReader{".gltf", read_gltf, true},
+    FormatReader{".glb", read_gltf, true},
 };
 
 /// Null for an extension that no reader has.
-const Reader* find_reader(const std::filesystem::path& path) {
+const FormatReader* find_reader(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    const auto found = std::ranges::find(kReaders, extension, &Reader::extension);
+    const auto found = std::ranges::find(kReaders, extension, &FormatReader::extension);
     return found == kReaders.end() ? nullptr : &*found;
 }
 
@@ -44,7 +44,7 @@ Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions&
     if (const auto bytes = builtin_scene(path.string())) {
         return read_gltf(path, {bytes->begin(), bytes->end()}, access, options, messages);
     }
-    if (const Reader* reader = find_reader(path)) return reader->read(path, access, options, messages);
+    if (const FormatReader* reader = find_reader(path)) return reader->read(path, access, options, messages);
     throw Error(ErrorCode::BadInput, fmt::format("{}: neither {}", path.string(), scene_kinds()));
 }
 
@@ -60,7 +60,7 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
 }
 
 bool tells_lamp_sides(const std::filesystem::path& path) {
-    const Reader* reader = find_reader(path);
+    const FormatReader* reader = find_reader(path);
     return reader == nullptr || reader->tells_sides;
 }
 
@@ -70,7 +70,7 @@ bool is_scene_name(const std::filesystem::path& path) {
 
 std::string scene_kinds() {
     std::vector<std::string_view> extensions;
-    for (const Reader& reader : kReaders) extensions.emplace_back(reader.extension);
+    for (const FormatReader& reader : kReaders) extensions.emplace_back(reader.extension);
     return fmt::format("a scene file ({}) nor a built-in scene ({})", fmt::join(extensions, " "),
                        fmt::join(builtin_scene_names(), " "));
 }
