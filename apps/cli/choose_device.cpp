@@ -11,21 +11,30 @@
 
 namespace pertev {
 
-std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages) {
-    if (name == "cpu") return std::make_unique<Queue>(Queue::make_cpu());
-    if (name == "auto") return ComingMachine({}, messages).take();
+namespace {
+
+/// Throws Error(BadInput).
+int cuda_index(const std::string& name) {
+    if (name == "cuda") return 0;
     int index = 0;
     const char* const end = name.data() + name.size();
     const bool numbered = name.starts_with("cuda:");
     const auto parsed = numbered ? std::from_chars(name.data() + 5, end, index) : std::from_chars_result{end, {}};
-    if ((name != "cuda" && !numbered) || parsed.ec != std::errc() || parsed.ptr != end) {
+    if (!numbered || parsed.ec != std::errc() || parsed.ptr != end) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--device {}: expected auto, cpu, cuda or cuda:N with N a device's number", name));
     }
-    if (const std::string reason = why_no_cuda(index); !reason.empty()) {
-        throw Error(ErrorCode::BadInput, fmt::format("--device {}: {}", name, reason));
-    }
-    return std::make_unique<Queue>(Queue::make_cuda(index));
+    return index;
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& reason) {
+    throw Error(ErrorCode::BadInput, fmt::format("--device {}: {}", name, reason));
+}
+
+} // namespace
+
+std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages) {
+    return ComingMachine({.device = name}, messages).take();
 }
 
 void add_machine_flags(CLI::App& verb, MachineFlags& flags, const char* group) {
@@ -44,33 +53,37 @@ std::unique_ptr<Queue> take_machine(const MachineFlags& flags, Messages& message
     return choose_device(flags.device, messages);
 }
 
-ComingMachine::ComingMachine(const MachineFlags& flags, Messages& messages) : messages_(messages) {
-    if (flags.device != "auto") {
-        queue_ = take_machine(flags, messages);
-        is_cuda_ = queue_->is_cuda();
+ComingMachine::ComingMachine(const MachineFlags& flags, Messages& messages) : name_(flags.device), messages_(messages) {
+    if (flags.threads > 0) set_thread_count(flags.threads);
+    if (name_ == "cpu") {
+        queue_ = std::make_unique<Queue>(Queue::make_cpu());
+        is_cuda_ = false;
         return;
     }
-    if (flags.threads > 0) set_thread_count(flags.threads);
+    const bool is_auto = name_ == "auto";
+    const int index = is_auto ? 0 : cuda_index(name_);
+    if (const std::string reason = is_auto ? "" : why_no_driver(); !reason.empty()) refuse(name_, reason);
     std::promise<std::string> why_no_gpu;
     why_no_gpu_ = why_no_gpu.get_future();
-    coming_ = std::async(std::launch::async, [why_no_gpu = std::move(why_no_gpu)]() mutable {
+    coming_ = std::async(std::launch::async, [index, why_no_gpu = std::move(why_no_gpu)]() mutable {
         std::string reason;
         try {
-            reason = why_no_cuda(0);
+            reason = why_no_cuda(index);
         } catch (...) {
             why_no_gpu.set_exception(std::current_exception());
             throw;
         }
         why_no_gpu.set_value(reason);
-        return std::make_unique<Queue>(reason.empty() ? Queue::make_cuda(0) : Queue::make_cpu());
+        return std::make_unique<Queue>(reason.empty() ? Queue::make_cuda(index) : Queue::make_cpu());
     });
 }
 
 bool ComingMachine::is_cuda() {
     if (!is_cuda_) {
         const std::string reason = why_no_gpu_.get();
-        if (!reason.empty()) messages_.note(fmt::format("using the CPU: {}", reason));
         is_cuda_ = reason.empty();
+        if (!reason.empty() && name_ != "auto") refuse(name_, reason);
+        if (!reason.empty()) messages_.note(fmt::format("using the CPU: {}", reason));
     }
     return *is_cuda_;
 }

