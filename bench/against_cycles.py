@@ -80,7 +80,13 @@ class Cycles:
         shader.inputs["Color"].default_value = (*color, 1)
         if strength is not None:
             shader.inputs["Strength"].default_value = strength
-        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        if strength is None:
+            tree.links.new(shader.outputs[0], output.inputs["Surface"])
+            return material
+        face, mix = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeMixShader")
+        tree.links.new(face.outputs["Backfacing"], mix.inputs[0])  # a lamp shines from its front
+        tree.links.new(shader.outputs[0], mix.inputs[1])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
         return material
 
     def set_camera(self, world_from_camera, vertical_fov):
