@@ -44,7 +44,7 @@ struct ScenePlace<Walk, SceneTrees<typename Walk::Tree>> {
     Ray local; // the ray in the tree's space
     uint32_t instance = kNoHit;
     TreeWalk top = {kNoLink}; // of the tree over instances; kNoLink: at its end
-    WalkStackEntry top_stack[kMaxTopLevelDepth];
+    TreeStack::Slot top_stack[kMaxTopLevelDepth];
 
     HD explicit ScenePlace(typename Walk::Place::Slot* slots) : place(slots) {}
 

@@ -33,7 +33,7 @@ HD inline void walk_scene(const SingleTree<typename Walk::Tree>& scene, const Ra
 template <class Walk, class Visitor, class Counter>
 HD inline void walk_scene(const SceneTrees<typename Walk::Tree>& scene, const Ray& ray, Visitor& visitor,
                           const Counter& counter) {
-    WalkStackEntry top_stack[kMaxTopLevelDepth];
+    TreeStack::Slot top_stack[kMaxTopLevelDepth];
     TreeWalk top = {scene.top_root};
     typename Walk::Tree tree = scene.baked;
     Ray local = ray;

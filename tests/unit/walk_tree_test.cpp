@@ -52,12 +52,14 @@ TEST_CASE("a box whose entry equals the limit is entered, one ulp less and it is
 }
 
 TEST_CASE("a node on the stack whose entry equals the limit is taken, greater ones are dropped") {
-    const WalkStackEntry stack[] = {{7, 1.0f}, {8, 2.0f}, {9, 2.0000002f}};
-    TreeWalk walk = {kNoLink, 3};
-    leave_leaf(walk, stack, 2.0f);
+    TreeStack::Slot slots[3];
+    TreeStack stack = {slots};
+    stack.push(7, 1.0f), stack.push(8, 2.0f), stack.push(9, 2.0000002f);
+    TreeWalk walk = {kNoLink, stack.size};
+    leave_leaf(walk, slots, 2.0f);
     CHECK(walk.link == 8);
     CHECK(walk.size == 1);
-    leave_leaf(walk, stack, 0.5f);
+    leave_leaf(walk, slots, 0.5f);
     CHECK(walk.link == kNoLink);
     CHECK(walk.size == 0);
 }
@@ -69,9 +71,11 @@ TEST_CASE("an inner node without a box on the ray goes back to what waits on the
     set_child(node, 1, {{200, 200, 200}, {201, 201, 201}}, kLeafBit | 2u);
     const RayBoxes boxes = make_ray_boxes({0, 0, 0}, {1, 0, 0}, 201);
     for (const float limit : {2.0f, std::nextafterf(2.0f, 0)}) {
-        WalkStackEntry stack[4] = {{kLeafBit | 5u, 2.0f}};
-        TreeWalk walk = {0, 1};
-        CHECK(next_leaf(walk, &node, boxes, 0, limit, stack, NoWalkCounter{}) ==
+        TreeStack::Slot slots[4];
+        TreeStack stack = {slots};
+        stack.push(kLeafBit | 5u, 2.0f);
+        TreeWalk walk = {0, stack.size};
+        CHECK(next_leaf(walk, &node, boxes, 0, limit, slots, NoWalkCounter{}) ==
               (limit == 2.0f ? (kLeafBit | 5u) : kNoLink));
     }
 }

@@ -13,7 +13,7 @@
 
 #include "base/limits.h"
 #include "math/bits.h"
-#include "trace/binary/walk_tree.h"
+#include "trace/binary/walk_stack.h"
 #include "trace/intersect/test_leaf.h"
 #include "trace/walk_options.h"
 

@@ -46,6 +46,12 @@ struct WalkStack<false> {
     HD uint32_t pop(float) { return size > 0 ? slots[--size] : kNoLink; }
 };
 
+/// Of walks whose stack is of another shape.
+struct WalkStackEntry {
+    uint32_t link;
+    float entry;
+};
+
 /// The link to go on with after `node`: a child, or what is popped where neither is entered.
 template <bool kNearFirst, class Stack>
 HD inline uint32_t step_down(const BvhNode& node, const RayBoxes& boxes, float t_min, float t_limit, Stack& stack) {

@@ -11,7 +11,7 @@
 #include "accel/bvh/wide_bvh.h"
 #include "base/host_device.h"
 #include "math/float4.h"
-#include "trace/binary/walk_tree.h"
+#include "trace/binary/walk_stack.h"
 #include "trace/intersect/test_leaf.h"
 #include "trace/load_bvh.h"
 #include "trace/walk_options.h"
