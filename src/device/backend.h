@@ -53,6 +53,8 @@ public:
     virtual void free(void* memory) noexcept = 0;
     virtual void copy_to_device(void* device, const void* host, std::size_t bytes) = 0;
     virtual void copy_to_host(void* host, const void* device, std::size_t bytes) = 0;
+    /// In the stream's order.
+    virtual void copy_on_device(void* to, const void* from, std::size_t bytes) = 0;
     virtual void fill(void* device, unsigned char value, std::size_t bytes) = 0;
     /// Waits for all work given to the current stream so far. Throws Error(DeviceFault) that names `stage`, the last
     /// one launched.

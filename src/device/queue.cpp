@@ -58,6 +58,7 @@ public:
         std::memcpy(device, host, bytes);
     }
     void copy_to_host(void* host, const void* device, std::size_t bytes) override { std::memcpy(host, device, bytes); }
+    void copy_on_device(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
     void fill(void* device, unsigned char value, std::size_t bytes) override { std::memset(device, value, bytes); }
     void wait(const char*) override {}
     void check_launch(const char*) override {}

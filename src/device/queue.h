@@ -78,6 +78,8 @@ public:
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
         backend_->copy_to_host(host, device, bytes);
     }
+    /// After all work given to the stream before, and before all that is given later.
+    void copy_on_device(void* to, const void* from, std::size_t bytes) { backend_->copy_on_device(to, from, bytes); }
     void zero(void* device, std::size_t bytes) { backend_->fill(device, 0, bytes); }
     /// Every byte.
     void fill(void* device, unsigned char value, std::size_t bytes) { backend_->fill(device, value, bytes); }

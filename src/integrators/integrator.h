@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "render/film.h"
+#include "render/film_view.h"
 #include "render/picture_view.h"
 #include "render/tracer/scene_tracer.h"
 
@@ -28,9 +28,9 @@ public:
     virtual void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) = 0;
 
     /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
-    /// that is done. A sample is a function of the picture, the settings and its number alone, so work may be split any
+    /// that is done. A film view of a noisy frame (render/noisy_frame.h) takes one sample alone. A sample is a function of the picture, the settings and its number alone, so work may be split any
     /// way. Throws Error(DeviceFault).
-    virtual void render(uint32_t first, uint32_t count, Film& film) = 0;
+    virtual void render(uint32_t first, uint32_t count, const FilmView& film) = 0;
 
     /// Since begin().
     virtual RayCounts rays() const = 0;

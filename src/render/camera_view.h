@@ -45,4 +45,29 @@ HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
             normalize(transform_vector(camera.world_from_camera, direction)), kInfinity};
 }
 
+/// Where a camera sees a point: pixels from the picture's upper left corner, and metres along its axis.
+struct SeenPoint {
+    Vec2 pixel;
+    float depth;
+};
+
+/// A pinhole's view of `point`, world space. Of a point behind a perspective camera (depth <= 0) the pixel says
+/// nothing.
+HD inline SeenPoint see_point(const CameraView& camera, Vec3 point) {
+    const Vec3 local = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
+    const float depth = -local.z;
+    const float scale = camera.projection == Projection::Perspective ? 1.0f / depth : 1.0f;
+    return {{(0.5f * (scale * local.x) / camera.half_width + 0.5f) / camera.inv_width,
+             (0.5f - 0.5f * (scale * local.y) / camera.half_height) / camera.inv_height},
+            depth};
+}
+
+/// The point of the camera's own space that a pinhole sees at `pixel` and `depth`.
+HD inline Vec3 point_seen(const CameraView& camera, Vec2 pixel, float depth) {
+    const float x = (2.0f * (pixel.x * camera.inv_width) - 1.0f) * camera.half_width;
+    const float y = (1.0f - 2.0f * (pixel.y * camera.inv_height)) * camera.half_height;
+    const float scale = camera.projection == Projection::Perspective ? depth : 1.0f;
+    return {scale * x, scale * y, -depth};
+}
+
 } // namespace pertev

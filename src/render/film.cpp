@@ -57,7 +57,7 @@ void Film::clear() {
     invalid_.zero();
 }
 
-FilmView Film::view() const { return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_}; }
+FilmView Film::view() const { return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_, {}}; }
 
 void Film::add(const Film& other) {
     PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_);

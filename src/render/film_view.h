@@ -9,6 +9,7 @@
 #include "math/vec3.h"
 #include "render/film_channels.h"
 #include "render/fixed_sum.h"
+#include "render/noisy_frame_view.h"
 
 namespace pertev {
 
@@ -24,6 +25,7 @@ struct FilmView {
     uint32_t channels;
     uint32_t aovs; // AovBits
     uint32_t width, height;
+    NoisyFrameView frame; // where it is there, samples go to it: there are no sums, ids or auxiliary channels
 
     HD FixedSum* pixel(uint32_t index) const { return sums + static_cast<uint64_t>(index) * channels; }
 };
@@ -40,6 +42,15 @@ HD inline void add_radiance(const FilmView& film, uint32_t pixel, Rgb radiance) 
     atomic_add(&sums[0], to_fixed(radiance.r));
     atomic_add(&sums[1], to_fixed(radiance.g));
     atomic_add(&sums[2], to_fixed(radiance.b));
+}
+
+/// A pixel's sample goes to a frame: `radiance`, of which the first surface scatters `diffuse` by its diffuse lobes. A
+/// sample with an invalid channel is stored as black and counted.
+HD inline void store_sample(const FilmView& film, uint32_t pixel, Rgb radiance, Rgb diffuse) {
+    const bool is_valid = is_valid_sample(radiance.r) && is_valid_sample(radiance.g) && is_valid_sample(radiance.b);
+    if (!is_valid) atomic_add(film.invalid, 1);
+    film.frame.light[pixel] = is_valid ? Float4{radiance.r, radiance.g, radiance.b, 1} : Float4{0, 0, 0, 0};
+    if (film.frame.splits_light()) film.frame.diffuse[pixel] = {diffuse.r, diffuse.g, diffuse.b, 0};
 }
 
 /// Adds a value to an auxiliary channel; an invalid one adds 0.

@@ -47,6 +47,9 @@ struct Surface {
         return {(1.0f / from.slope) * value.f, value.pdf / from.slope};
     }
 
+    /// About how much of evaluate() is by diffuse lobes, [0, 1]: a guide for denoisers.
+    HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const { return bsdf.diffuse_share(frame.to_local(wo), frame.to_local(wi)); }
+
     /// A wi in world space with the density of evaluate(), or of a delta lobe; pdf 0: nothing.
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         const Vec3 wo_local = frame.to_local(wo);

@@ -49,7 +49,16 @@ void Session::set_scene(const PreparedScene& scene) {
 
 void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
     begin_film();
+    keep_places();
     upload(scene, parts);
+}
+
+/// Of instances, for the next frame, before they are moved.
+void Session::keep_places() {
+    if (!reconstruction_ || reconstruction_->frames() == 0 || has_moved_) return;
+    if (places_before_.size() != instance_count_) places_before_ = {queue_, instance_count_, "instances before"};
+    queue_.copy_on_device(places_before_.data(), scene_->view().instances, instance_count_ * sizeof(InstanceView));
+    has_moved_ = true;
 }
 
 /// Those parts of `scene`; the others stay. What a part lies in is kept where it is large enough.
@@ -70,6 +79,7 @@ void Session::upload(const PreparedScene& scene, uint32_t parts) {
         scene_.reset(); // parts of it may be missing
         throw;
     }
+    instance_count_ = static_cast<uint32_t>(scene.scene->instances.size());
     if (tracer_) tracer_->set_surfaces(scene_->view());
     take_tracer();
     queue_.wait();
@@ -97,6 +107,8 @@ void Session::set_settings(const RenderSettings& settings) {
 void Session::cut() {
     history_.previous_camera.reset();
     ++history_.cuts;
+    if (reconstruction_) reconstruction_->cut();
+    has_moved_ = false;
     begin_film();
 }
 
@@ -164,7 +176,7 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     const Stopwatch watch;
     for (uint32_t done = 0; done < count;) {
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
-        integrator_->render(first + done, pass, film);
+        integrator_->render(first + done, pass, film.view());
         done += pass;
         const double seconds = watch.seconds();
         history_.samples = first + done;
@@ -176,6 +188,32 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
     }
     return history_.samples - first;
+}
+
+void Session::render_frame(uint32_t number, const ReconstructionSettings& settings) {
+    const bool splits_light = scene_.value().view().known == MaterialsKnown::Nothing;
+    const uint32_t width = settings_.width, height = settings_.height;
+    if (!noisy_frame_ || noisy_frame_->width() != width || noisy_frame_->height() != height ||
+        noisy_frame_->splits_light() != splits_light) {
+        noisy_frame_.reset(); // before the new ones, so that both need not fit
+        reconstruction_.reset();
+        noisy_frame_.emplace(queue_, width, height, splits_light);
+        reconstruction_.emplace(queue_, width, height);
+    }
+    begin(settings_, 1);
+    noisy_frame_->begin();
+    integrator_->render(number, 1, noisy_frame_->film_view());
+    frame_rays_ = integrator_->rays();
+    const PictureView picture = view_of(settings_);
+    const SceneView& scene = picture.scene;
+    reconstruction_->add(*noisy_frame_, picture.camera.view, scene,
+                         {has_moved_ ? places_before_.data() : scene.instances, scene.meshes}, settings);
+    has_moved_ = false;
+}
+
+const Reconstruction& Session::frame() const {
+    PERTEV_CHECK(reconstruction_.has_value());
+    return *reconstruction_;
 }
 
 Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
@@ -199,7 +237,7 @@ float Session::meter(ToneMap tone_map) {
         Film& film = fit(meter_film_, settings);
         film.clear();
         begin(settings, settings.samples);
-        integrator_->render(0, settings.samples, film);
+        integrator_->render(0, settings.samples, film.view());
         return film.picture(settings.samples, settings.transparent);
     });
 }

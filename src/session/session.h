@@ -20,6 +20,7 @@
 #include <memory>
 #include <optional>
 
+#include "denoise/reconstruction.h"
 #include "image/tone_map_image.h"
 #include "render/filter_table.h"
 #include "render/picture_view.h"
@@ -81,6 +82,16 @@ public:
     /// is uploaded. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
     float meter(ToneMap tone_map);
 
+    /// A frame of a sequence: renders sample `number` of each pixel and reconstructs the picture from it and from the
+    /// frames since the last cut, each of which had its own scene and camera. The film stays as it is. The frame is
+    /// a function of scene, camera, settings and number of each of these frames, on every device alike. Throws
+    /// Error(OutOfMemory, DeviceFault).
+    void render_frame(uint32_t number, const ReconstructionSettings& settings);
+    /// Of the last render_frame.
+    const Reconstruction& frame() const;
+    /// Rays of the last render_frame.
+    RayCounts frame_rays() const { return frame_rays_; }
+
     const History& history() const { return history_; }
     const Camera& camera() const { return camera_; }
     const RenderSettings& settings() const { return settings_; }
@@ -89,6 +100,7 @@ private:
     Film& fit(std::optional<Film>& film, const RenderSettings& settings);
     Film& current_film();
     void begin_film();
+    void keep_places();
     void take_tracer();
     void upload(const PreparedScene& scene, uint32_t parts);
     PictureView view_of(const RenderSettings& settings);
@@ -106,6 +118,12 @@ private:
     std::optional<SceneTracer> tracer_;
     FilterTable filter_;
     std::optional<Film> film_, meter_film_;
+    std::optional<NoisyFrame> noisy_frame_;
+    std::optional<Reconstruction> reconstruction_;
+    Buffer<InstanceView> places_before_; // of instances, in the frame before
+    uint32_t instance_count_ = 0;
+    bool has_moved_ = false; // since the last frame: places_before_ counts
+    RayCounts frame_rays_;
     bool film_is_old_ = false; // holds samples of a picture that is no more asked for
     std::unique_ptr<Integrator> integrator_;
     IntegratorSettings integrator_settings_; // that it has

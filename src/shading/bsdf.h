@@ -86,6 +86,23 @@ struct Lobe {
         }
         return 0;
     }
+    HD Gloss gloss(float cos_o) const {
+        switch (kind) {
+        case LobeKind::None:
+        case LobeKind::Diffuse:
+        case LobeKind::Sheen:
+            break;
+        case LobeKind::Conductor:
+            return conductor.gloss(cos_o);
+        case LobeKind::Dielectric:
+            return dielectric.gloss(cos_o);
+        case LobeKind::Schlick:
+            return schlick.gloss(cos_o);
+        case LobeKind::Coat:
+            return coat.gloss(cos_o);
+        }
+        return {};
+    }
     /// What it adds under `way`, which a layer then moves to beneath itself.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, Passage& way) const {
         switch (kind) {
@@ -168,8 +185,15 @@ struct Bsdf {
         return sample_lobes(wo, u_lobe, u);
     }
 
+    /// Of eval(), how much is by diffuse lobes, [0, 1].
+    HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const {
+        return is_diffuse() ? Rgb{1, 1, 1} : diffuse_share_of_lobes(*this, wo, wi);
+    }
     /// sample() looks at u_lobe.
     HD bool draws_lobe() const { return !is_diffuse() && (layer_count != 0 || base.kind != LobeKind::None); }
+
+    /// Of all that is not diffuse, seen at `cos_o` >= 0.
+    HD Gloss gloss(float cos_o) const { return is_diffuse() ? Gloss{} : gloss_of_lobes(*this, cos_o); }
 
     HD bool has_delta() const {
         if (base.kind != LobeKind::None && base.lobe_class() == LobeClass::Specular) return true;
@@ -194,6 +218,16 @@ private:
         layers[layer_count] = layer;
         layers[layer_count++].beneath = min(beneath, 1.0f);
         is_stacked = true;
+    }
+    HD_CALL static Rgb diffuse_share_of_lobes(Bsdf bsdf, Vec3 wo, Vec3 wi) {
+        const Rgb all = bsdf.eval(wo, wi), f = bsdf.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
+        return {all.r > 0 ? min(f.r / all.r, 1.0f) : 0.0f, all.g > 0 ? min(f.g / all.g, 1.0f) : 0.0f,
+                all.b > 0 ? min(f.b / all.b, 1.0f) : 0.0f};
+    }
+    HD_CALL static Gloss gloss_of_lobes(Bsdf bsdf, float cos_o) {
+        Gloss gloss = bsdf.base.gloss(cos_o);
+        for (int i = 0; i < bsdf.layer_count; ++i) gloss = gloss + bsdf.layers[i].gloss(cos_o);
+        return gloss;
     }
     HD static BsdfValue masked(LobeClass lobe_class, BsdfValue value, LobeClasses classes) {
         if (!classes.has(lobe_class)) value.f = {};

@@ -212,8 +212,8 @@ TEST_CASE("an integrator that knows nothing of the path tracer renders through t
             make_camera_rays(camera, filter.set(PixelFilter::Box, 0.5f), 15, 9, scene.view().centre);
         SceneTracer tracer(on, *world.prepared[1].structures, default_tracers(on.is_cuda()));
         integrator->begin({scene.view(), rays, false}, tracer, 8);
-        integrator->render(0, in_first_call, film);
-        integrator->render(in_first_call, 8 - in_first_call, film);
+        integrator->render(0, in_first_call, film.view());
+        integrator->render(in_first_call, 8 - in_first_call, film.view());
         CHECK(integrator->rays().camera == 15 * 9 * 8);
         return film.picture(8, false);
     };

@@ -50,7 +50,7 @@ public:
         integrator_->begin({scene_.view(), rays}, tracer_, kSamples);
     }
 
-    void add_sample(uint32_t sample) { integrator_->render(sample, 1, film_); }
+    void add_sample(uint32_t sample) { integrator_->render(sample, 1, film_.view()); }
     void add_all() {
         for (uint32_t sample = 0; sample < kSamples; ++sample) add_sample(sample);
     }

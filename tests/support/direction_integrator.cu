@@ -33,9 +33,9 @@ void DirectionIntegrator::begin(const PictureView& picture, SceneTracer&, uint32
     rays_ = {};
 }
 
-void DirectionIntegrator::render(uint32_t first, uint32_t count, Film& film) {
+void DirectionIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
-    launch(queue_, "add_directions", pixels, AddDirections{picture_.camera, first, count, film.view()});
+    launch(queue_, "add_directions", pixels, AddDirections{picture_.camera, first, count, film});
     rays_.camera += uint64_t(pixels) * count;
     queue_.wait();
 }

@@ -12,7 +12,7 @@ public:
     explicit DirectionIntegrator(Queue& queue) : queue_(queue) {}
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
-    void render(uint32_t first, uint32_t count, Film& film) override;
+    void render(uint32_t first, uint32_t count, const FilmView& film) override;
     RayCounts rays() const override { return rays_; }
     std::size_t bytes() const override { return 0; }
 

@@ -149,6 +149,10 @@ public:
         check_cuda(cudaMemcpyAsync(host, device, bytes, cudaMemcpyDeviceToHost, current()), "copy to host");
         wait("copy to host");
     }
+    void copy_on_device(void* to, const void* from, std::size_t bytes) override {
+        make_current();
+        check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, current()), "copy on device");
+    }
     void fill(void* device, unsigned char value, std::size_t bytes) override {
         make_current();
         check_cuda(cudaMemsetAsync(device, value, bytes, current()), "fill");

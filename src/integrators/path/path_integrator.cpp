@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/error.h"
 #include "base/parallel_for.h"
 #include "device/launch.h"
 #include "integrators/path/path_loop.h"
@@ -40,13 +41,21 @@ PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
       hit_places(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 2, "path counts"),
       seen(queue) {}
 
-PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
-    const Paths& set = sets[of_round % 2];
-    return {set.rays.data(), path_starts.data(), path_keys.data(), set.throughput.data(), set.radiance.data()};
+void PathIntegrator::Wavefront::split_light(Queue& queue) {
+    if (shadow_diffuse.size() > 0) return;
+    for (Paths& set : sets) set.diffuse = {queue, capacity, "paths"};
+    shadow_diffuse = {queue, capacity, "shadow rays"};
 }
 
-ShadowQueueView PathIntegrator::Wavefront::shadows() const {
-    return {shadow_rays.data(), shadow_starts.data(), shadow_targets.data(), shadow_keys.data(), contribution.data()};
+PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round, bool splits_light) const {
+    const Paths& set = sets[of_round % 2];
+    return {set.rays.data(),       path_starts.data(),  path_keys.data(),
+            set.throughput.data(), set.radiance.data(), splits_light ? set.diffuse.data() : nullptr};
+}
+
+ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light) const {
+    return {shadow_rays.data(), shadow_starts.data(), shadow_targets.data(),
+            shadow_keys.data(), contribution.data(),  splits_light ? shadow_diffuse.data() : nullptr};
 }
 
 std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda) {
@@ -84,12 +93,12 @@ const HostTrees* PathIntegrator::trees_of_loop() const {
     return body_ == PathBody::Loop ? tracer_->host_trees() : nullptr;
 }
 
-void PathIntegrator::render(uint32_t first, uint32_t count, Film& film) {
-    const FilmView view = film.view();
+void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
+    PERTEV_CHECK(!film.frame.is_there() || count == 1);
     if (const HostTrees* trees = trees_of_loop()) {
-        render_loop(first, count, view, *trees);
+        render_loop(first, count, film, *trees);
     } else {
-        render_wavefront(first, count, view);
+        render_wavefront(first, count, film);
     }
 }
 
@@ -118,6 +127,7 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
         w.round = 0;
         w.known = {};
         w.is_done = false;
+        if (film.frame.splits_light()) w.split_light(queue_);
         w.counts.zero();
         w.path_stream = i;
         w.light_stream = in_turns ? i : going + i;
@@ -146,8 +156,9 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
 void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const uint32_t pixels = picture_.camera.width * picture_.camera.height, last = w.capacity - 1;
     const bool any_alpha = picture_.scene.any_alpha != 0;
-    const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
-    const ShadowQueueView shadows = w.shadows();
+    const bool splits_light = work.film.frame.splits_light();
+    const PathQueueView paths = w.paths(w.round, splits_light), next = w.paths(w.round + 1, splits_light);
+    const ShadowQueueView shadows = w.shadows(splits_light);
     const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
     RoundCounts* const counts = w.counts.data() + w.round % 2;
     // Once all paths have begun, a round has no more of them than the one before.
@@ -170,19 +181,24 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
                                {hits.places + last, hits.instances + last, -1});
         }
         const WorkCount active = {most, &counts->active};
-        const auto shade = [&]<MaterialsKnown kKnown>() {
+        const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
             launch(queue_, "shade_hits", active,
-                   ShadeHits<kKnown>{picture_, settings_, work.film, paths, next, hits, shadows, counts, last});
+                   ShadeHits<kKnown, kMayBeFrame>{picture_, settings_, work.film, paths, next, hits, shadows, counts,
+                                                  last});
         };
         switch (picture_.scene.known) {
         case MaterialsKnown::Nothing:
-            shade.operator()<MaterialsKnown::Nothing>();
+            if (work.film.frame.is_there()) {
+                shade.operator()<MaterialsKnown::Nothing, true>();
+            } else {
+                shade.operator()<MaterialsKnown::Nothing, false>();
+            }
             break;
         case MaterialsKnown::Diffuse:
-            shade.operator()<MaterialsKnown::Diffuse>();
+            shade.operator()<MaterialsKnown::Diffuse, true>();
             break;
         case MaterialsKnown::PlainDiffuse:
-            shade.operator()<MaterialsKnown::PlainDiffuse>();
+            shade.operator()<MaterialsKnown::PlainDiffuse, true>();
             break;
         }
     }

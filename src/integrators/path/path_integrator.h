@@ -35,7 +35,7 @@ public:
     static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
-    void render(uint32_t first, uint32_t count, Film& film) override;
+    void render(uint32_t first, uint32_t count, const FilmView& film) override;
     RayCounts rays() const override { return rays_; }
     std::size_t bytes() const override;
 
@@ -68,13 +68,16 @@ private:
     struct Wavefront {
         Wavefront(Queue& queue, uint32_t capacity);
         /// Of a round: rounds read and write two sets of arrays in turns.
-        PathQueueView paths(uint32_t of_round) const;
-        ShadowQueueView shadows() const;
+        /// Takes what a frame that splits light needs; it is kept.
+        void split_light(Queue& queue);
+        PathQueueView paths(uint32_t of_round, bool splits_light) const;
+        ShadowQueueView shadows(bool splits_light) const;
 
         struct Paths {
             Paths(Queue& queue, uint32_t capacity);
             Buffer<Ray> rays;
             Buffer<Float4> throughput, radiance;
+            Buffer<Float4> diffuse; // where frames split light
         };
         uint32_t capacity;
         Paths sets[2];
@@ -82,6 +85,7 @@ private:
         Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
         Buffer<uint32_t> path_keys, shadow_keys;
         Buffer<Float4> contribution, hit_places;
+        Buffer<Float4> shadow_diffuse; // where frames split light
         Buffer<uint32_t> hit_instances;
         Buffer<RoundCounts> counts; // of two rounds in turns
         Readback<RoundCounts> seen; // of the round given last, at its start

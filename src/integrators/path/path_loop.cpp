@@ -30,7 +30,13 @@ public:
             Asked& asked = asked_[shadows];
             const uint32_t key = key_of(paths_[i], true);
             bool wants_shadow = false;
+            LightSplit split;
+            if (splits_light_) split.take_out(paths_[i], paths_[i].depth > 0 ? diffuse_[i] : Float4{0, 0, 0, 0});
             goes_on_[i] = shade_hit(picture_, settings_, film_, paths_[i], hits_[i], asked.ray, wants_shadow);
+            if (splits_light_) {
+                split.put_back(paths_[i]);
+                diffuse_[i] = split.diffuse;
+            }
             asked.start = {hits_[i].instance, hits_[i].primitive};
             asked.key = key, asked.path = i;
             shadows += wants_shadow ? 1 : 0;
@@ -104,7 +110,14 @@ private:
         };
         find_occlusions(trees_, shadows, RayOrder::Together, ray_of, accept_of, occluded_);
         for (uint32_t i = 0; i < shadows; ++i) {
-            if (!occluded_[i]) paths_[asked_[i].path].radiance += asked_[i].ray.contribution;
+            if (occluded_[i]) continue;
+            const uint32_t path = asked_[i].path;
+            paths_[path].radiance += asked_[i].ray.contribution;
+            if (splits_light_) {
+                const Rgb add = asked_[i].ray.diffuse;
+                Float4& d = diffuse_[path];
+                d = {d.x + add.r, d.y + add.g, d.z + add.b, d.w};
+            }
         }
     }
 
@@ -112,20 +125,32 @@ private:
         going_on_ = 0;
         for (uint32_t i = 0; i < count_; ++i) {
             if (!goes_on_[i]) {
-                add_radiance(film_, paths_[i].pixel, paths_[i].radiance);
+                finish(i);
             } else if (going_on_++ != i) {
                 paths_[going_on_ - 1] = paths_[i];
+                if (splits_light_) diffuse_[going_on_ - 1] = diffuse_[i];
             }
         }
         count_ = going_on_;
+    }
+
+    void finish(uint32_t i) {
+        const PathState& path = paths_[i];
+        if (film_.frame.is_there()) {
+            store_sample(film_, path.pixel, path.radiance, {diffuse_[i].x, diffuse_[i].y, diffuse_[i].z});
+        } else {
+            add_radiance(film_, path.pixel, path.radiance);
+        }
     }
 
     const PictureView& picture_;
     const PathSettings& settings_;
     const HostTrees& trees_;
     const FilmView& film_;
+    const bool splits_light_ = film_.frame.splits_light();
     uint32_t count_ = 0, going_on_ = 0; // paths; of which those that are not new
     PathState paths_[kPaths];
+    Float4 diffuse_[kPaths]; // LightSplit's, where a frame splits light
     Hit hits_[kPaths];
     bool goes_on_[kPaths];
     Asked asked_[kPaths + 1]; // one more: written before it is known whether it is wanted

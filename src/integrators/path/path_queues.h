@@ -22,6 +22,8 @@ struct PathQueueView {
     uint32_t* keys;     // written where some surface is blended
     Float4* throughput; // rgb, bits of (depth | rough_depth << 16)
     Float4* radiance;   // rgb, bsdf_pdf; of a path that has ended rgb, bits of the pixel
+    Float4* diffuse; // of the radiance, rgb that went through diffuse lobes of the first vertex; 1 where the path left
+                     // it by one, else 0. Null unless a frame splits light
 
     /// Of the rays at places 0, 1, ..., or back from `last`.
     RayQueueView query() const { return {.rays = rays, .starts = starts, .keys = keys, .is_endless = true}; }
@@ -61,6 +63,14 @@ struct PathQueueView {
     }
     HD uint32_t load_pixel(uint32_t i) const { return bits_of(radiance[i].w); }
     HD Rgb load_radiance(uint32_t i) const { return {radiance[i].x, radiance[i].y, radiance[i].z}; }
+    HD Rgb load_diffuse(uint32_t i) const {
+        if (diffuse == nullptr) return {};
+        return {diffuse[i].x, diffuse[i].y, diffuse[i].z};
+    }
+    HD void add_diffuse(uint32_t i, Float4 value) const {
+        const Float4 d = diffuse[i];
+        diffuse[i] = {d.x + value.x, d.y + value.y, d.z + value.z, d.w};
+    }
     /// Keeps what lies beside it.
     HD void add_radiance(uint32_t i, Rgb value) const {
         const Float4 r = radiance[i];
@@ -73,6 +83,7 @@ struct ShadowQueueView {
     Uint2 *starts, *targets;
     uint32_t* keys;       // then what the ray met
     Float4* contribution; // rgb, bits of the path's place in the next round's arrays
+    Float4* diffuse;      // ShadowRay's; null unless a frame splits light
 
     RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets, .keys = keys}; }
 
@@ -82,6 +93,7 @@ struct ShadowQueueView {
         targets[i] = {ray.target.instance, ray.target.primitive};
         keys[i] = key;
         contribution[i] = {ray.contribution.r, ray.contribution.g, ray.contribution.b, float_of(path)};
+        if (diffuse != nullptr) diffuse[i] = {ray.diffuse.r, ray.diffuse.g, ray.diffuse.b, 0};
     }
 };
 

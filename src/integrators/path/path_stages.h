@@ -51,7 +51,8 @@ struct GeneratePaths {
     }
 };
 
-template <MaterialsKnown kKnown>
+/// `kMayBeFrame`: as shade_hit has it.
+template <MaterialsKnown kKnown, bool kMayBeFrame>
 struct ShadeHits {
     PictureView picture;
     PathSettings settings;
@@ -70,14 +71,20 @@ struct ShadeHits {
         const TriangleId here = {hit.instance, hit.primitive};
         ShadowRay shadow;
         bool wants_shadow = false;
+        const bool splits_light = kMayBeFrame && kKnown == MaterialsKnown::Nothing && paths.diffuse != nullptr;
+        LightSplit split;
+        if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
         uint32_t to = 0;
-        if (shade_hit<kKnown>(picture, settings, film, path, hit, shadow, wants_shadow)) {
+        const bool goes_on = shade_hit<kKnown, kMayBeFrame>(picture, settings, film, path, hit, shadow, wants_shadow);
+        if (splits_light) split.put_back(path);
+        if (goes_on) {
             to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
         } else {
             to = last - atomic_add(&round->ended, 1u);
             next.store_ended(to, path);
         }
+        if (splits_light) next.diffuse[to] = split.diffuse;
         if (wants_shadow) shadows.store(atomic_add(&round->shadows, 1u), shadow, to, here, key);
     }
 };
@@ -91,6 +98,7 @@ struct AddLight {
         if (shadows.keys[i] != kNoHit) return;
         const Float4 c = shadows.contribution[i];
         next.add_radiance(bits_of(c.w), {c.x, c.y, c.z});
+        if (shadows.diffuse != nullptr) next.add_diffuse(bits_of(c.w), shadows.diffuse[i]);
     }
 };
 
@@ -101,7 +109,13 @@ struct AddToFilm {
     uint32_t last; // place of the first one
 
     HD void operator()(uint32_t i) const {
-        add_radiance(film, next.load_pixel(last - i), next.load_radiance(last - i));
+        const uint32_t pixel = next.load_pixel(last - i);
+        const Rgb radiance = next.load_radiance(last - i);
+        if (film.frame.is_there()) {
+            store_sample(film, pixel, radiance, next.load_diffuse(last - i));
+        } else {
+            add_radiance(film, pixel, radiance);
+        }
     }
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "math/float4.h"
 #include "math/rgb.h"
 #include "math/sampler.h"
 #include "render/accept_hit.h"
@@ -17,9 +18,10 @@ struct PathState {
     Rgb radiance = {0, 0, 0}; // gathered so far
     float bsdf_pdf = 0;       // density with which `direction` was drawn, 1/sr; 0 after the camera or a delta lobe
     uint32_t pixel = 0, sample = 0;
-    TriangleId start;         // triangle that the ray leaves
-    uint32_t depth = 0;       // scattering vertices so far
-    uint32_t rough_depth = 0; // of which not delta
+    TriangleId start;              // triangle that the ray leaves
+    uint32_t depth = 0;            // scattering vertices so far
+    uint32_t rough_depth = 0;      // of which not delta
+    bool is_first_diffuse = false; // the first vertex was left by a diffuse lobe
 };
 
 /// Asked for by shade_hit: `contribution` counts if nothing stands between origin and origin + direction * t_max.
@@ -28,6 +30,30 @@ struct ShadowRay {
     float t_max = 0;
     TriangleId target; // the light's triangle
     Rgb contribution;
+    Rgb diffuse; // of it, what goes through diffuse lobes of the first vertex; where a frame splits light alone
+};
+
+/// Which part of a path's radiance went through diffuse lobes of its first vertex. Beside the path, as frames that
+/// split light alone ask for it: the vertex at hand adds to a radiance of nothing, from which the diffuse part is
+/// known.
+struct LightSplit {
+    Float4 diffuse; // rgb; w: 1 where the path left its first vertex by a diffuse lobe, else 0
+    Rgb before;
+
+    /// Before a vertex.
+    HD void take_out(PathState& path, Float4 diffuse_before) {
+        diffuse = diffuse_before;
+        before = path.radiance;
+        path.radiance = {0, 0, 0};
+        path.is_first_diffuse = diffuse.w != 0;
+    }
+    /// After it. Light that the camera's ray itself meets is not scattered.
+    HD void put_back(PathState& path) {
+        if (diffuse.w != 0)
+            diffuse = {diffuse.x + path.radiance.r, diffuse.y + path.radiance.g, diffuse.z + path.radiance.b, 1};
+        diffuse.w = path.is_first_diffuse ? 1.0f : 0.0f;
+        path.radiance = before + path.radiance;
+    }
 };
 
 /// Random numbers of a path, in groups of four (math/sampler.h). The places of numbers that nothing draws yet are kept:

@@ -53,10 +53,10 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
     path.radiance += clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
-/// Draws one point of one light. True when `shadow` is to be traced.
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+/// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted.
+template <MaterialsKnown kKnown>
 HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
-                             const Surface& surface, Vec3 wo, ShadowRay& shadow) {
+                             const Surface& surface, Vec3 wo, bool splits_light, ShadowRay& shadow) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = {path.pixel, path.sample, settings.seed};
@@ -78,6 +78,11 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     }
     shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
+    if (splits_light) {
+        const Rgb share =
+            path.depth == 0 ? surface.diffuse_share(wo, light.wi) : grey(path.is_first_diffuse ? 1.0f : 0.0f);
+        shadow.diffuse = share * shadow.contribution;
+    }
     shadow.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, light.wi);
     shadow.target = {light.instance, light.primitive};
     if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
@@ -115,6 +120,7 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     if (!(sample.pdf > 0)) return false;
     const Vec3 wi = sample.wi;
 
+    if (path.depth == 0) path.is_first_diffuse = sample.lobe_class == LobeClass::Diffuse;
     path.throughput = path.throughput * sample.weight;
     path.bsdf_pdf = sample.is_delta() ? 0.0f : sample.pdf;
     path.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
@@ -163,34 +169,70 @@ HD inline void add_first_hit(const FilmView& film, const PathState& path, const 
     }
 }
 
+/// The surface that a camera ray met, for a frame. Emission follows by itself.
+HD inline void store_first_hit(const NoisyFrameView& frame, const PathState& path, const Hit& hit,
+                               const Surface& surface, Vec3 camera_axis) {
+    const Vec3 normal = surface.frame.normal;
+    const float cosine = dot(normal, path.direction);
+    const Vec3 seen = cosine > 0 ? -normal : normal;
+    const Gloss gloss = surface.bsdf.gloss(abs(cosine));
+    frame.place[path.pixel] = {float_of(hit.instance), float_of(hit.primitive), hit.u, hit.v};
+    frame.normal[path.pixel] = {seen.x, seen.y, seen.z, dot(surface.position - path.origin, camera_axis)};
+    frame.albedo[path.pixel] = {surface.albedo.r, surface.albedo.g, surface.albedo.b, gloss.alpha};
+    frame.gloss[path.pixel] = {gloss.reflectance.r, gloss.reflectance.g, gloss.reflectance.b, kFarAway};
+}
+
+HD inline void store_emission(const NoisyFrameView& frame, const PathState& path) {
+    frame.emission[path.pixel] = {path.radiance.r, path.radiance.g, path.radiance.b, 0};
+}
+
+/// A camera ray that met nothing.
+HD inline void store_no_hit(const NoisyFrameView& frame, uint32_t pixel) {
+    frame.place[pixel] = {float_of(kNoHit), float_of(kNoHit), 0, 0};
+    frame.normal[pixel] = {0, 0, 0, kFarAway};
+    frame.albedo[pixel] = {0, 0, 0, 1};
+    frame.gloss[pixel] = {0, 0, 0, kFarAway};
+}
+
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+/// Where `kMayBeFrame` is false `film` is none of a noisy frame: code for frames would cost others registers.
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true>
 HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
                          PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow) {
     const SceneView& scene = picture.scene;
+    const bool is_frame = kMayBeFrame && film.frame.is_there();
+    const bool splits_light = kKnown == MaterialsKnown::Nothing && is_frame && film.frame.splits_light();
     wants_shadow = false;
     if (hit.instance == kNoHit) {
         if (path.depth == 0 && (film.aovs & kAovIds) != 0 && path.sample == 0) {
             film.ids[path.pixel] = {kNoHit, kNoHit, kNoHit};
         }
+        if (is_frame && path.depth == 0) store_no_hit(film.frame, path.pixel);
         const bool is_hidden = picture.hide_background && path.depth == 0;
         if (scene.lights.has_environment() && !is_hidden) {
             add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction),
                          path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f);
         }
+        if (is_frame && path.depth == 0) store_emission(film.frame, path);
         return false;
     }
     const Surface surface = make_surface<kKnown>(scene, hit, path.direction);
-    if (path.depth == 0) add_first_hit(film, path, hit, surface, picture.camera.axis, scene.centre);
+    if (is_frame) {
+        if (path.depth == 0) store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
+        if (path.depth == 1) film.frame.gloss[path.pixel].w = hit.t;
+    } else if (path.depth == 0) {
+        add_first_hit(film, path, hit, surface, picture.camera.axis, scene.centre);
+    }
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
         add_emission(settings, path, surface.emission,
                      light != kNoLight ? pdf_light_hit(scene.lights, light, path.origin, surface.position) : 0.0f);
     }
+    if (is_frame && path.depth == 0) store_emission(film.frame, path);
     if (surface.is_unlit || path.depth >= settings.max_depth) return false;
     const Vec3 wo = -path.direction;
-    wants_shadow = ask_for_light<kKnown>(scene, settings, path, surface, wo, shadow);
+    wants_shadow = ask_for_light<kKnown>(scene, settings, path, surface, wo, splits_light, shadow);
     return scatter(settings, path, surface, wo);
 }
 

@@ -2,7 +2,8 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, false>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, true>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse, true>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse, true>&);
 } // namespace pertev

@@ -19,6 +19,7 @@ struct CoatLobe {
 
     HD LobeClass lobe_class() const { return interface().lobe_class(); }
     HD float energy() const { return strength * interface().energy(); }
+    HD Gloss gloss(float cos_o) const { return {strength * fresnel_schlick(cos_o, grey(f0)), alpha}; }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};

@@ -22,6 +22,7 @@ struct ConductorLobe {
 
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(fresnel_conductor_average(eta, k)); }
+    HD Gloss gloss(float cos_o) const { return {fresnel_conductor(cos_o, eta, k), alpha}; }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
         if (is_smooth() || !(wo.z * wi.z > 0)) return {};

@@ -35,6 +35,7 @@ struct DielectricLobe {
 
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return 1; }
+    HD Gloss gloss(float) const { return {grey(1), alpha}; }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
         if (is_smooth() || !(abs(wo.z) > 0 && abs(wi.z) > 0)) return {};

@@ -6,12 +6,14 @@
 //   lobe_class  what it scatters
 //   energy      about the largest share of light that it scatters, [0, 1]: how often it is drawn from beneath a layer
 //   evaluate    value and density of what it adds under a Passage; a layer then moves the Passage to beneath itself
+//   gloss       seen at a cosine: what a denoiser is told (shading/gloss.h); none of a diffuse lobe
 //   draw        a direction from u_lobe and u in [0, 1), or word that what is beneath is to draw one
 // A layer also takes `beneath`, the energy of all that it lies on.
 
 #include "base/host_device.h"
 #include "math/scalar.h"
 #include "shading/bsdf_sample.h"
+#include "shading/gloss.h"
 
 namespace pertev {
 

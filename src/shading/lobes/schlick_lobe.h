@@ -50,6 +50,7 @@ struct SchlickLobe {
     HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(fresnel_schlick_average(mixed_f0())); }
+    HD Gloss gloss(float cos_o) const { return {fresnel_schlick(cos_o, mixed_f0()), alpha}; }
     HD Rgb mixed_f0() const { return lerp(grey(f0), base_color, metallic); }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {

@@ -1,0 +1,154 @@
+// pertev bench frames: how long a frame in real time takes while the camera moves, with reconstruction and tone
+// mapping, and how much of that the reconstruction is.
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/bench_parts.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/parse_values.h"
+#include "apps/cli/render_flags.h"
+#include "device/device_timer.h"
+#include "image/picture_hash.h"
+#include "image/write_png.h"
+#include "math/portable_math.h"
+#include "session/session.h"
+
+namespace pertev {
+namespace {
+
+struct FramesFlags {
+    RenderFlags render;
+    uint32_t frames = 60;
+    bool still = false, no_reconstruction = false;
+    std::string write;
+};
+
+/// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
+Camera moved(const Camera& camera, float yaw, Vec3 step) {
+    const float c = cos(yaw), s = sin(yaw);
+    const auto turned = [&](Vec3 v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
+    const Transform& m = camera.world_from_camera;
+    Camera result = camera;
+    const Vec3 x = turned(column(m, 0)), y = turned(column(m, 1)), z = turned(column(m, 2));
+    result.world_from_camera = {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, {}};
+    result.world_from_camera.translation = m.translation + transform_vector(result.world_from_camera, step);
+    return result;
+}
+
+/// A walk: forward by a thousandth of the scene a frame, looking to the left and to the right.
+Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
+    const float k = static_cast<float>(frame);
+    return moved(first, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k});
+}
+
+struct FrameFigures {
+    RunTimes whole, reconstruction;
+    RayCounts rays; // of all frames
+    double seconds = 0;
+};
+
+FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
+                     ToneMap tone_map, Reporter& reporter) {
+    ReconstructionSettings settings;
+    if (flags.no_reconstruction) settings = {1, 0, false, false, false};
+    const Camera first = session.camera();
+    std::vector<double> whole, reconstruction;
+    FrameFigures figures;
+    DeviceTimer timer(queue);
+    for (uint32_t frame = 0; frame < flags.frames; ++frame) {
+        throw_if_interrupted();
+        timer.start();
+        if (!flags.still) session.set_camera(camera_of(first, frame, scene_size));
+        session.render_frame(frame, settings);
+        const Rgba8Image shown = session.frame().display(tone_map, exposure);
+        timer.stop();
+        reporter.progress((frame + 1.0) / flags.frames, fmt::format("frame {} of {}", frame + 1, flags.frames));
+        if (!flags.write.empty())
+            write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", frame), shown);
+        if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
+        whole.push_back(timer.seconds());
+        reconstruction.push_back(session.frame().seconds());
+        const RayCounts rays = session.frame_rays();
+        figures.rays = {figures.rays.camera + rays.camera, figures.rays.bounce + rays.bounce,
+                        figures.rays.shadow + rays.shadow};
+        figures.seconds += whole.back();
+    }
+    figures.whole = summarize_runs(whole);
+    figures.reconstruction = summarize_runs(reconstruction);
+    return figures;
+}
+
+int bench_frames(const FramesFlags& flags) {
+    Reporter reporter(flags.render.report);
+    Messages& messages = reporter.messages();
+    parse_size("--size", flags.render.size); // before anything is read
+    check_scene_options(flags.render.scene);
+    listen_for_interrupt();
+    const std::unique_ptr<Queue> queue = take_machine(flags.render.machine, messages);
+    reporter.say_messages();
+    reporter.set_work(fmt::format("loading {}", flags.render.scene.scene));
+    const Scene scene = load_scene(flags.render.scene, messages);
+    const RenderSettings settings = render_settings(flags.render, scene);
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    const Camera camera = choose_camera(flags.render.scene, scene, aspect, messages);
+    throw_if_interrupted();
+    reporter.set_work("building trees");
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    reporter.say_messages();
+    Session session(*queue, prepared, camera, settings);
+    const ToneMap tone_map = ToneMap::Agx;
+    const float exposure = session.meter(tone_map);
+    session.cut();
+    const Bounds3 bounds = bounds_of(scene);
+    const FrameFigures figures =
+        measure(session, *queue, flags, length(bounds.hi - bounds.lo), exposure, tone_map, reporter);
+    reporter.end_progress();
+    const std::string hash = picture_hash(session.frame().picture()).hex();
+    const double rays_a_second = millions_a_second(figures.rays.total(), figures.seconds);
+    if (reporter.json()) {
+        reporter.event(fmt::format(
+            R"({{"event":"frames","scene":{},"device":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"picture":"{}"}})",
+            json_string(flags.render.scene.scene), json_string(queue->device_name()), settings.width, settings.height,
+            flags.render.max_depth, flags.frames, flags.still, json_number(figures.whole.median),
+            json_number(figures.whole.least), json_number(figures.whole.greatest),
+            json_number(figures.reconstruction.median), rays_a_second, hash));
+        return 0;
+    }
+    reporter.answer(fmt::format(
+        "{} on {}: {}x{}, at most {} scatterings, {} frames, camera {}\n{:.3f} ms a frame (median; {:.3f} to {:.3f}), "
+        "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
+        flags.render.scene.scene, queue->device_name(), settings.width, settings.height, flags.render.max_depth,
+        flags.frames, flags.still ? "still" : "moving", figures.whole.median * 1e3, figures.whole.least * 1e3,
+        figures.whole.greatest * 1e3, 1 / figures.whole.median, figures.reconstruction.median * 1e3, rays_a_second,
+        hash));
+    return 0;
+}
+
+} // namespace
+
+void add_bench_frames_command(CLI::App& bench, int& status) {
+    CLI::App& verb = *bench.add_subcommand("frames", "Frames in real time, each of one sample a pixel, reconstructed");
+    const auto flags = std::make_shared<FramesFlags>();
+    flags->render.size = "1920x1080";
+    flags->render.max_depth = 4;
+    add_scene_options(verb, flags->render.scene);
+    add_light_path_flags(verb, flags->render, "Picture");
+    verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--frames", flags->frames, "of the sequence; the first two are not timed")
+        ->type_name("N")
+        ->check(whole_between(1, 100000))
+        ->capture_default_str();
+    verb.add_flag("--still", flags->still, "the camera stands still");
+    verb.add_flag("--no-reconstruction", flags->no_reconstruction, "show the samples as they are");
+    verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
+    add_machine_flags(verb, flags->render.machine);
+    add_report_flags(verb, flags->render.report);
+    verb.callback([&verb, flags, &status] {
+        refuse_flags_before(verb);
+        status = bench_frames(*flags);
+    });
+}
+
+} // namespace pertev

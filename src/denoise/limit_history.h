@@ -1,0 +1,104 @@
+#pragma once
+
+// Third stage: long means are held within what recent frames say about a place, and the variance of what is left is
+// estimated: over time, or over neighbours where few frames have seen the place.
+//
+// Sources: Schied et al. 2017, section 4.2; NVIDIA GDC 2020 as in accumulate_signals.h.
+
+#include "denoise/reconstruction_view.h"
+#include "render/tiled_pixel.h"
+
+namespace pertev {
+
+struct LimitHistory {
+    HistoryView now; // the limited means go back to it
+    SignalsView out; // means with their variance
+    uint32_t width, height;
+    bool limits;
+    static constexpr float kFewFrames = 4;
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t pixel = tiled_pixel(i, width, height);
+        if (now.object[pixel] == kNoHit) {
+            out.diffuse[pixel] = out.gloss[pixel] = {0, 0, 0, 0};
+            return;
+        }
+        Float4 diffuse = now.diffuse[pixel], gloss = now.gloss[pixel];
+        const Vec2 squares = now.squares[pixel];
+        const Neighbours around = look_around(pixel);
+        if (limits) {
+            diffuse = limit(diffuse, around);
+            gloss = limit_gloss(gloss, around);
+            now.diffuse[pixel] = diffuse;
+            now.gloss[pixel] = gloss;
+        }
+        out.diffuse[pixel] = with_w(rgb_of(diffuse), variance(squares.x, diffuse, around.variance));
+        out.gloss[pixel] =
+            with_w(rgb_of(gloss), variance(squares.y, gloss, around.gloss_deviation * around.gloss_deviation));
+    }
+
+private:
+    /// Recent means of the pixels about one that show the same object.
+    struct Neighbours {
+        Rgb mean, deviation;
+        float gloss_mean, gloss_deviation;
+        float variance; // of the luminance
+    };
+
+    HD Neighbours look_around(uint32_t pixel) const {
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+        const Vec3 normal = vec3_of(now.normal[pixel]);
+        const uint32_t object = now.object[pixel];
+        Rgb sum = {0, 0, 0}, squares = {0, 0, 0};
+        float gloss = 0, gloss_squares = 0, light = 0, light_squares = 0, count = 0;
+        for (int dy = -2; dy <= 2; ++dy) {
+            for (int dx = -2; dx <= 2; ++dx) {
+                if (x + dx < 0 || y + dy < 0 || x + dx >= w || y + dy >= h) continue;
+                const uint32_t at = static_cast<uint32_t>((y + dy) * w + x + dx);
+                if (now.object[at] != object || !(dot(vec3_of(now.normal[at]), normal) > 0.9f)) continue;
+                const Float4 recent = now.recent[at];
+                const Rgb c = rgb_of(recent);
+                sum += c;
+                squares += c * c;
+                gloss += recent.w;
+                gloss_squares += recent.w * recent.w;
+                const float l = luminance(c);
+                light += l;
+                light_squares += l * l;
+                count += 1;
+            }
+        }
+        const float inv = 1.0f / max(count, 1.0f);
+        Neighbours n;
+        n.mean = inv * sum;
+        const Rgb spread = inv * squares - n.mean * n.mean;
+        n.deviation = {safe_sqrt(spread.r), safe_sqrt(spread.g), safe_sqrt(spread.b)};
+        n.gloss_mean = inv * gloss;
+        n.gloss_deviation = safe_sqrt(inv * gloss_squares - n.gloss_mean * n.gloss_mean);
+        n.variance = max(inv * light_squares - square(inv * light), 0.0f);
+        return n;
+    }
+
+    HD static float within(float x, float mean, float deviation) {
+        return clamp(x, mean - 2.0f * deviation, mean + 2.0f * deviation);
+    }
+    HD Float4 limit(Float4 mean, const Neighbours& around) const {
+        if (!(mean.w > kFewFrames)) return mean;
+        return {within(mean.x, around.mean.r, around.deviation.r), within(mean.y, around.mean.g, around.deviation.g),
+                within(mean.z, around.mean.b, around.deviation.b), mean.w};
+    }
+    HD Float4 limit_gloss(Float4 mean, const Neighbours& around) const {
+        if (!(mean.w > kFewFrames)) return mean;
+        const float light = luminance(rgb_of(mean)), held = within(light, around.gloss_mean, around.gloss_deviation);
+        if (held == light) return mean;
+        return light > 0 ? with_w((held / light) * rgb_of(mean), mean.w) : with_w(grey(held), mean.w);
+    }
+    /// Of a mean over mean.w frames. Few say little of their own spread.
+    HD float variance(float square_mean, Float4 mean, float over_neighbours) const {
+        if (mean.w < kFewFrames) return over_neighbours * (kFewFrames / max(mean.w, 1.0f));
+        return max(square_mean - square(luminance(rgb_of(mean))), 0.0f) / mean.w;
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,110 @@
+#pragma once
+
+// Where what a pixel shows was in the frame before, and what that frame knows of it.
+//
+// Sources: Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017, section 4.1 (bilinear taps, each tested
+// by depth, normal and object); Stachowiak and Uludag, "Stochastic Screen-Space Reflections", SIGGRAPH 2015 (a
+// reflection moves as the virtual object behind the mirror does).
+
+#include "denoise/reconstruction_view.h"
+
+namespace pertev {
+
+/// Of the frame before.
+struct Reprojection {
+    Vec2 pixel;  // place of a pixel's centre
+    float depth; // that what is seen there must have, metres
+};
+
+/// The world's point at `place` (NoisyFrameView).
+HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 place) {
+    const InstanceView& instance = instances[bits_of(place.x)];
+    const MeshView& mesh = meshes[instance.mesh];
+    const Vec3 local = interpolate(mesh.positions, triangle_indices(mesh, bits_of(place.y)), place.z, place.w);
+    return transform_point(instance.world_from_local, local);
+}
+
+/// Of `pixel`, whose sample met the surface at `place`. The sample lay somewhere about the pixel's centre; the centre
+/// is taken to move as it does.
+HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
+                                         const PreviousScene& before, Vec2 centre, Float4 place) {
+    const SeenPoint now = see_point(cameras.now, point_at(scene.instances, scene.meshes, place));
+    const SeenPoint then = see_point(cameras.before, point_at(before.instances, before.meshes, place));
+    return {centre + (then.pixel - now.pixel), then.depth};
+}
+
+/// Of a reflection seen at the pixel's centre: of the virtual point `distance` metres behind the surface.
+HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centre, float depth, float distance) {
+    const Ray ray = make_camera_ray(cameras.now, centre, {0, 0});
+    const Transform& m = cameras.now.world_from_camera;
+    const float along = depth / -dot(transform_transposed(m, ray.direction), Vec3{0, 0, 1}); // metres on the ray
+    const SeenPoint then = see_point(cameras.before, ray.origin + (along + distance) * ray.direction);
+    return {then.pixel, then.depth};
+}
+
+/// Of the sky, which is endlessly far.
+HD inline Vec2 reproject_sky(const FrameCameras& cameras, Vec2 centre) {
+    if (cameras.now.projection == Projection::Orthographic) return centre;
+    const Vec3 direction = make_camera_ray(cameras.now, centre, {0, 0}).direction;
+    return see_point(cameras.before, cameras.before.world_from_camera.translation + direction).pixel;
+}
+
+/// Up to four pixels of the frame before about a place, with their weights; their sum is 0 where none fits.
+struct Taps {
+    uint32_t first;   // upper left pixel, which need not fit
+    float weights[4]; // of it, its right neighbour, the two below
+    float sum;
+};
+
+/// Which of the four have seen `object` at about this depth and with about this normal. `depth` <= 0: at any.
+HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras, Vec2 pixel, float depth, Vec3 normal,
+                         uint32_t object) {
+    Taps taps = {0, {0, 0, 0, 0}, 0};
+    const float x = pixel.x - 0.5f, y = pixel.y - 0.5f, width = static_cast<float>(cameras.width),
+                height = static_cast<float>(cameras.height);
+    if (!(x > -1 && y > -1 && x < width && y < height)) return taps;
+    const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;
+    const int column = to_int(left, -1, static_cast<int>(cameras.width)),
+              row = to_int(top, -1, static_cast<int>(cameras.height));
+    taps.first = static_cast<uint32_t>(row * static_cast<int>(cameras.width) + column);
+    for (int k = 0; k < 4; ++k) {
+        const int px = column + (k & 1), py = row + (k >> 1);
+        if (px < 0 || py < 0 || px >= static_cast<int>(cameras.width) || py >= static_cast<int>(cameras.height))
+            continue;
+        const uint32_t at = static_cast<uint32_t>(py) * cameras.width + static_cast<uint32_t>(px);
+        const Float4 then = before.normal[at];
+        if (before.object[at] != object) continue;
+        if (depth > 0 && !(abs(then.w - depth) <= 0.05f * depth && dot(vec3_of(then), normal) > 0.5f)) continue;
+        const float weight = ((k & 1) != 0 ? in_x : 1.0f - in_x) * ((k >> 1) != 0 ? in_y : 1.0f - in_y);
+        taps.weights[k] = weight;
+        taps.sum += weight;
+    }
+    return taps;
+}
+
+/// Pixel of tap k.
+HD inline uint32_t tap_pixel(const Taps& taps, const FrameCameras& cameras, int k) {
+    return taps.first + static_cast<uint32_t>(k & 1) + static_cast<uint32_t>(k >> 1) * cameras.width;
+}
+
+/// Mean over the taps of what lies in `values`; some fit.
+HD inline Float4 mean_of_taps(const Taps& taps, const FrameCameras& cameras, const Float4* values) {
+    Float4 mean = {0, 0, 0, 0};
+    for (int k = 0; k < 4; ++k) {
+        if (!(taps.weights[k] > 0)) continue;
+        const Float4 value = values[tap_pixel(taps, cameras, k)];
+        const float weight = taps.weights[k] / taps.sum;
+        mean = {mean.x + weight * value.x, mean.y + weight * value.y, mean.z + weight * value.z,
+                mean.w + weight * value.w};
+    }
+    return mean;
+}
+HD inline Vec2 mean_of_taps(const Taps& taps, const FrameCameras& cameras, const Vec2* values) {
+    Vec2 mean = {0, 0};
+    for (int k = 0; k < 4; ++k) {
+        if (taps.weights[k] > 0) mean = mean + (taps.weights[k] / taps.sum) * values[tap_pixel(taps, cameras, k)];
+    }
+    return mean;
+}
+
+} // namespace pertev

@@ -1,0 +1,36 @@
+#pragma once
+
+// Owns the arrays of a NoisyFrameView. A film view of it takes samples in a film's place; it holds one sample a pixel,
+// the last one.
+
+#include "device/buffer.h"
+#include "render/film_view.h"
+
+namespace pertev {
+
+class NoisyFrame {
+public:
+    /// `splits_light`: the scene has surfaces that scatter by other than diffuse lobes.
+    NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light);
+
+    static std::size_t predicted_bytes(uint32_t width, uint32_t height, bool splits_light);
+
+    /// What an integrator adds a sample to.
+    FilmView film_view() const;
+    const NoisyFrameView& view() const { return view_; }
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    bool splits_light() const { return view_.splits_light(); }
+    /// Samples of the present frame that were not finite or over kMaxSampleValue.
+    uint64_t invalid_samples() const { return invalid_.download()[0]; }
+    /// Forgets invalid samples; every other number is written by the next sample.
+    void begin() { invalid_.zero(); }
+
+private:
+    uint32_t width_, height_;
+    Buffer<Float4> numbers_;
+    Buffer<uint64_t> invalid_;
+    NoisyFrameView view_;
+};
+
+} // namespace pertev

@@ -1,0 +1,131 @@
+// Frames in real time: the same bytes on both devices and by both bodies of the path tracer, whatever was rendered
+// before the last cut; and what the parts of a noisy frame add up to.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "image/picture_hash.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr uint32_t kFrames = 30;
+
+RenderSettings frame_settings() {
+    RenderSettings settings;
+    settings.width = 96, settings.height = 64;
+    settings.path.max_depth = 4;
+    return settings;
+}
+
+Camera moved(Camera camera, uint32_t frame) {
+    camera.world_from_camera.translation += (0.01f * static_cast<float>(frame)) * column(camera.world_from_camera, 0);
+    return camera;
+}
+
+/// Hash of the last of `frames`, from frame `first` on.
+Hash128 hash_of_frames(Session& session, const Camera& camera, uint32_t frames,
+                       const ReconstructionSettings& settings) {
+    for (uint32_t k = 0; k < frames; ++k) {
+        session.set_camera(moved(camera, k));
+        session.render_frame(k, settings);
+    }
+    return picture_hash(session.frame().picture());
+}
+
+double mean_of(const Image& picture) {
+    double sum = 0;
+    for (const float value : picture.pixels) sum += static_cast<double>(value);
+    return sum / static_cast<double>(picture.pixels.size());
+}
+
+struct Scenes {
+    Scene scene;
+    Camera camera;
+};
+
+std::vector<Scenes> scenes() { return {{make_mixed_scene(), mixed_scene_camera()}}; }
+
+} // namespace
+
+TEST_CASE("frame 30 has the same bytes on every device, by every body and batch, and after a cut") {
+    for (const Scenes& s : scenes()) {
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
+        const RenderSettings settings = frame_settings();
+        Queue cpu = Queue::make_cpu();
+        Session session(cpu, prepared, s.camera, settings);
+        const Hash128 expected = hash_of_frames(session, s.camera, kFrames, {});
+        session.cut();
+        CHECK(hash_of_frames(session, s.camera, kFrames, {}) == expected);
+
+        RenderSettings wavefront = settings;
+        wavefront.body = PathBody::Wavefront;
+        wavefront.batch = 1000; // several rounds begin paths
+        Session other(cpu, prepared, s.camera, wavefront);
+        other.render(1); // the film is apart
+        CHECK(hash_of_frames(other, s.camera, kFrames, {}) == expected);
+
+        ReconstructionSettings fewer;
+        fewer.passes = 1;
+        session.cut();
+        CHECK(hash_of_frames(session, s.camera, kFrames, fewer) != expected);
+
+        if (cuda_requested()) {
+            Queue cuda = make_cuda_queue();
+            Session there(cuda, prepared, s.camera, settings);
+            CHECK(hash_of_frames(there, s.camera, kFrames, {}) == expected);
+        }
+    }
+}
+
+TEST_CASE("a frame that is not reconstructed is the film's picture of the same sample") {
+    for (const Scenes& s : scenes()) {
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, s.camera, frame_settings());
+        session.render_frame(
+            0, {.history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false});
+        session.render(1);
+        const Image frame = session.frame().picture(), film = session.picture();
+        double difference = 0, light = 0;
+        for (std::size_t i = 0; i < film.pixels.size(); ++i) {
+            difference += static_cast<double>(std::abs(frame.pixels[i] - film.pixels[i]));
+            light += static_cast<double>(film.pixels[i]);
+        }
+        CHECK(light > 0);
+        CHECK(difference < 1e-5 * light); // divided by the surface's colour and multiplied again
+    }
+}
+
+TEST_CASE("the mean of frames from a still camera is the picture's, but for what bounded parts take") {
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = queue_asked_for();
+    RenderSettings settings = frame_settings();
+    Session session(queue, prepared, mixed_scene_camera(), settings);
+    session.render(256);
+    const double expected = mean_of(session.picture());
+    ReconstructionSettings unbounded;
+    unbounded.limit_fireflies = unbounded.limit_history = false;
+    double mean = 0, bounded = 0;
+    constexpr uint32_t kMeasured = 64;
+    for (const bool bounds : {false, true}) {
+        session.cut();
+        double& sum = bounds ? bounded : mean;
+        for (uint32_t k = 0; k < 32 + kMeasured; ++k) {
+            session.render_frame(k, bounds ? ReconstructionSettings{} : unbounded);
+            if (k >= 32) sum += mean_of(session.frame().picture()) / kMeasured;
+        }
+    }
+    CHECK(mean == doctest::Approx(expected).epsilon(0.02));
+    CHECK(bounded == doctest::Approx(expected).epsilon(0.06));
+}

@@ -1,0 +1,74 @@
+#include <doctest/doctest.h>
+
+#include "denoise/reproject.h"
+
+using namespace pertev;
+
+namespace {
+
+Camera camera_at(Vec3 eye, Projection projection = Projection::Perspective) {
+    Camera camera;
+    camera.projection = projection;
+    camera.world_from_camera = look_at(eye, eye + Vec3{0.2f, -0.1f, -1}, {0, 1, 0});
+    return camera;
+}
+
+} // namespace
+
+TEST_CASE("a point is seen at the pixel whose ray goes through it, and found there again") {
+    for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
+        const CameraView view = make_camera_view(camera_at({1, 2, 3}, projection), 640, 360);
+        for (const Vec2 pixel : {Vec2{320, 180}, Vec2{0.5f, 0.5f}, Vec2{600.25f, 100.75f}}) {
+            const Ray ray = make_camera_ray(view, pixel, {0, 0});
+            const SeenPoint seen = see_point(view, ray.origin + 4.0f * ray.direction);
+            CHECK(seen.pixel.x == doctest::Approx(pixel.x).epsilon(1e-4));
+            CHECK(seen.pixel.y == doctest::Approx(pixel.y).epsilon(1e-4));
+            const Vec3 there = transform_point(view.world_from_camera, point_seen(view, pixel, seen.depth));
+            CHECK(length(there - (ray.origin + 4.0f * ray.direction)) < 1e-4f);
+        }
+    }
+}
+
+TEST_CASE("a virtual point at no distance behind the surface moves as the surface does") {
+    const FrameCameras cameras = {make_camera_view(camera_at({1, 2, 3}), 640, 360),
+                                  make_camera_view(camera_at({1.1f, 2, 3}), 640, 360), 640, 360};
+    const Vec2 pixel = {200.5f, 90.5f};
+    const Vec3 point = transform_point(cameras.now.world_from_camera, point_seen(cameras.now, pixel, 5));
+    const SeenPoint then = see_point(cameras.before, point);
+    const Reprojection same = reproject_virtual(cameras, pixel, 5, 0);
+    CHECK(same.pixel.x == doctest::Approx(then.pixel.x).epsilon(1e-4));
+    CHECK(same.pixel.y == doctest::Approx(then.pixel.y).epsilon(1e-4));
+    CHECK(same.depth == doctest::Approx(then.depth).epsilon(1e-4));
+    // Farther behind the mirror it moves less.
+    const Reprojection far = reproject_virtual(cameras, pixel, 5, 1000);
+    CHECK(abs(far.pixel.x - pixel.x) < 0.02f * abs(same.pixel.x - pixel.x) + 0.01f);
+}
+
+TEST_CASE("taps take what shows the same object at this depth with this normal, and nothing else") {
+    constexpr uint32_t kWidth = 4, kHeight = 3;
+    std::vector<Float4> normal(kWidth * kHeight, {0, 0, 1, 2});
+    std::vector<uint32_t> object(kWidth * kHeight, 7);
+    std::vector<Float4> values(kWidth * kHeight);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = {static_cast<float>(i), 0, 0, 1};
+    HistoryView before = {};
+    before.normal = normal.data();
+    before.object = object.data();
+    const FrameCameras cameras = {{}, {}, kWidth, kHeight};
+    const auto taps_at = [&](Vec2 place, float depth = 2, Vec3 n = {0, 0, 1}, uint32_t id = 7) {
+        return find_taps(before, cameras, place, depth, n, id);
+    };
+
+    const Taps all = taps_at({2, 1.5f}); // between pixels 1 and 2 of row 1
+    CHECK(all.sum == doctest::Approx(1));
+    CHECK(mean_of_taps(all, cameras, values.data()).x == doctest::Approx(5.5f));
+    CHECK(taps_at({2, 1.5f}, 2.2f).sum == 0);            // elsewhere
+    CHECK(taps_at({2, 1.5f}, 2, {1, 0, 0}).sum == 0);    // turned away
+    CHECK(taps_at({2, 1.5f}, 2, {0, 0, 1}, 8).sum == 0); // something else
+    CHECK(taps_at({-3, 1.5f}).sum == 0);                 // out of the picture
+    CHECK(taps_at({1e30f, kInfinity}).sum == 0);
+    CHECK(taps_at({-0.25f, 1.5f}).sum == doctest::Approx(0.25f)); // partly
+    object[5] = 9;
+    const Taps one = taps_at({2, 1.5f});
+    CHECK(one.sum == doctest::Approx(0.5f));
+    CHECK(mean_of_taps(one, cameras, values.data()).x == doctest::Approx(6));
+}
