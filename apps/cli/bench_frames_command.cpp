@@ -9,7 +9,9 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
+#include "base/limits.h"
 #include "device/device_timer.h"
+#include "image/flip.h"
 #include "image/picture_hash.h"
 #include "image/write_png.h"
 #include "math/portable_math.h"
@@ -22,7 +24,9 @@ struct FramesFlags {
     RenderFlags render;
     uint32_t frames = 60;
     bool still = false, no_reconstruction = false;
+    bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false;
     std::string write;
+    uint32_t reference = 0, passes = 5, history = 32;
 };
 
 /// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
@@ -43,6 +47,13 @@ Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
     return moved(first, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k});
 }
 
+/// Of all channels and pixels.
+double mean_light(const Image& picture) {
+    double sum = 0;
+    for (const float value : picture.pixels) sum += static_cast<double>(value);
+    return sum / static_cast<double>(picture.pixels.size());
+}
+
 struct FrameFigures {
     RunTimes whole, reconstruction;
     RayCounts rays; // of all frames
@@ -52,6 +63,11 @@ struct FrameFigures {
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
     ReconstructionSettings settings;
+    settings.passes = flags.passes;
+    settings.history = flags.history;
+    settings.limit_fireflies = !flags.no_firefly_limit;
+    settings.limit_history = !flags.no_history_limit;
+    settings.anti_alias = !flags.no_anti_alias;
     if (flags.no_reconstruction) settings = {1, 0, false, false, false};
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction;
@@ -104,8 +120,21 @@ int bench_frames(const FramesFlags& flags) {
     const Bounds3 bounds = bounds_of(scene);
     const FrameFigures figures =
         measure(session, *queue, flags, length(bounds.hi - bounds.lo), exposure, tone_map, reporter);
-    reporter.end_progress();
     const std::string hash = picture_hash(session.frame().picture()).hex();
+    if (flags.reference > 0) {
+        const Image last = session.frame().picture();
+        session.render(1);
+        const Image noisy = session.picture();
+        session.cut();
+        reporter.set_work("rendering the reference");
+        session.render(flags.reference);
+        const Image reference = session.picture();
+        reporter.answer(
+            fmt::format("last frame, HDR-FLIP against {} spp: {:.4f}; its sample alone {:.4f}; mean {:.5f} of {:.5f}\n",
+                        flags.reference, hdr_flip(last, reference).mean, hdr_flip(noisy, reference).mean, mean_light(last),
+                        mean_light(reference)));
+    }
+    reporter.end_progress();
     const double rays_a_second = millions_a_second(figures.rays.total(), figures.seconds);
     if (reporter.json()) {
         reporter.event(fmt::format(
@@ -142,6 +171,21 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
     verb.add_flag("--no-reconstruction", flags->no_reconstruction, "show the samples as they are");
+    verb.add_flag("--no-firefly-limit", flags->no_firefly_limit, "samples stay as bright as they are");
+    verb.add_flag("--no-history-limit", flags->no_history_limit, "means are not held within what recent frames say");
+    verb.add_flag("--no-anti-alias", flags->no_anti_alias, "no mean of shown pictures over time");
+    verb.add_option("--history", flags->history, "frames of a mean at most")
+        ->type_name("N")
+        ->check(whole_between(1, 1024))
+        ->capture_default_str();
+    verb.add_option("--passes", flags->passes, "of the wavelet filter")
+        ->type_name("N")
+        ->check(whole_between(0, 8))
+        ->capture_default_str();
+    verb.add_option("--reference", flags->reference,
+                    "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")
+        ->type_name("SPP")
+        ->check(whole_between(1, kMaxSamplesPerPixel));
     verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
     add_machine_flags(verb, flags->render.machine);
     add_report_flags(verb, flags->render.report);

@@ -69,7 +69,8 @@ struct AccumulateSignals {
     }
 
 private:
-    static constexpr float kEnough = 0.01f;  // weight of taps that fit
+    static constexpr float kEnough = 0.01f; // weight of taps that fit
+    static constexpr float kFirefly = 64;
     static constexpr float kMirrors = 0.09f; // GGX width under which reflections move by themselves
 
     HD void forget(uint32_t pixel) const {
@@ -77,7 +78,8 @@ private:
         now.squares[pixel] = {0, 0};
     }
 
-    /// The sample, no brighter than four times the brightest of its eight neighbours and itself without the brightest.
+    /// The sample, no brighter than kFirefly times the brightest of its eight neighbours. Of one sample a pixel most
+    /// see no light at all, so that less than this would take much of what is real.
     HD Float4 limited(const Float4* signal, uint32_t pixel) const {
         const Float4 own = signal[pixel];
         if (!limit_fireflies) return own;
@@ -90,7 +92,7 @@ private:
                 brightest = max(brightest, luminance(rgb_of(signal[(y + dy) * width + x + dx])));
             }
         }
-        const float light = luminance(rgb_of(own)), most = 4.0f * brightest;
+        const float light = luminance(rgb_of(own)), most = kFirefly * brightest;
         if (!(light > most) || !(brightest > 0)) return own;
         return with_w((most / light) * rgb_of(own), 0);
     }

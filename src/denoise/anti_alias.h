@@ -47,7 +47,7 @@ private:
         const Vec2 then = centre + (moved - of_nearest);
         const float width = static_cast<float>(cameras.width), height = static_cast<float>(cameras.height);
         if (!(then.x >= 0 && then.y >= 0 && then.x < width && then.y < height)) return own;
-        const Rgb old = to_ycocg(compress(sample(then)));
+        const Rgb old = to_ycocg(sample(then));
         const Rgb held = {within(old.r, around.mean.r, around.deviation.r),
                           within(old.g, around.mean.g, around.deviation.g),
                           within(old.b, around.mean.b, around.deviation.b)};
@@ -81,8 +81,9 @@ private:
         return colors;
     }
 
-    /// Of the picture shown before, by Catmull-Rom splines without their corners (Jimenez, "Filmic SMAA", SIGGRAPH
-    /// 2016), which blurs less than straight lines; never negative.
+    /// Of the picture shown before, compressed: light beside a lamp would fall below nothing else. By Catmull-Rom
+    /// splines without their corners (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which blurs less than straight lines;
+    /// never negative.
     HD Rgb sample(Vec2 place) const {
         const float x = place.x - 0.5f, y = place.y - 0.5f, left = floor(x), top = floor(y);
         const Weights wx = spline(x - left), wy = spline(y - top);
@@ -91,15 +92,15 @@ private:
         Rgb sum = {0, 0, 0};
         for (int j = 0; j < 4; ++j) {
             Rgb line = {0, 0, 0};
-            for (int k = 0; k < 4; ++k) line += wx.of[k] * shown_at(column + k - 1, row + j - 1);
+            for (int k = 0; k < 4; ++k) line += wx.of[k] * compressed_at(column + k - 1, row + j - 1);
             sum += wy.of[j] * line;
         }
         return {max(sum.r, 0.0f), max(sum.g, 0.0f), max(sum.b, 0.0f)};
     }
-    HD Rgb shown_at(int x, int y) const {
+    HD Rgb compressed_at(int x, int y) const {
         const int px = clamp(x, 0, static_cast<int>(cameras.width) - 1),
                   py = clamp(y, 0, static_cast<int>(cameras.height) - 1);
-        return rgb_of(before.shown[py * static_cast<int>(cameras.width) + px]);
+        return compress(rgb_of(before.shown[py * static_cast<int>(cameras.width) + px]));
     }
     struct Weights {
         float of[4];

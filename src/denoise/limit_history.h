@@ -16,6 +16,7 @@ struct LimitHistory {
     uint32_t width, height;
     bool limits;
     static constexpr float kFewFrames = 4;
+    static constexpr float kUnknown = 1e6f; // a variance that lets the filter take all that guides allow
 
     HD void operator()(uint32_t i) const {
         const uint32_t pixel = tiled_pixel(i, width, height);
@@ -27,14 +28,15 @@ struct LimitHistory {
         const Vec2 squares = now.squares[pixel];
         const Neighbours around = look_around(pixel);
         if (limits) {
-            diffuse = limit(diffuse, around);
-            gloss = limit_gloss(gloss, around);
+            diffuse = limit(diffuse, around, deviation_of_frames(squares.x, diffuse));
+            gloss = limit_gloss(gloss, around, deviation_of_frames(squares.y, gloss));
             now.diffuse[pixel] = diffuse;
             now.gloss[pixel] = gloss;
         }
         out.diffuse[pixel] = with_w(rgb_of(diffuse), variance(squares.x, diffuse, around.variance));
         out.gloss[pixel] =
-            with_w(rgb_of(gloss), variance(squares.y, gloss, around.gloss_deviation * around.gloss_deviation));
+            with_w(rgb_of(gloss),
+                   variance(squares.y, gloss, around.variance == kUnknown ? kUnknown : square(around.gloss_deviation)));
     }
 
 private:
@@ -42,7 +44,7 @@ private:
     struct Neighbours {
         Rgb mean, deviation;
         float gloss_mean, gloss_deviation;
-        float variance; // of the luminance
+        float variance; // of the luminance; kUnknown where too few pixels are alike
     };
 
     HD Neighbours look_around(uint32_t pixel) const {
@@ -76,23 +78,32 @@ private:
         n.deviation = {safe_sqrt(spread.r), safe_sqrt(spread.g), safe_sqrt(spread.b)};
         n.gloss_mean = inv * gloss;
         n.gloss_deviation = safe_sqrt(inv * gloss_squares - n.gloss_mean * n.gloss_mean);
-        n.variance = max(inv * light_squares - square(inv * light), 0.0f);
+        n.variance = count < 6 ? kUnknown : max(inv * light_squares - square(inv * light), 0.0f);
         return n;
     }
 
-    HD static float within(float x, float mean, float deviation) {
-        return clamp(x, mean - 2.0f * deviation, mean + 2.0f * deviation);
+    /// Of the luminance of single frames about their mean.
+    HD static float deviation_of_frames(float square_mean, Float4 mean) {
+        return safe_sqrt(square_mean - square(luminance(rgb_of(mean))));
     }
-    HD Float4 limit(Float4 mean, const Neighbours& around) const {
-        if (!(mean.w > kFewFrames)) return mean;
-        return {within(mean.x, around.mean.r, around.deviation.r), within(mean.y, around.mean.g, around.deviation.g),
-                within(mean.z, around.mean.b, around.deviation.b), mean.w};
+    /// Recent frames stray too: their mean over some twenty pixels by a tenth of the deviation of single ones. Five
+    /// times that is allowed, or what few bright samples brought would be lost wherever the last frames had none.
+    HD static float within(float x, float mean, float deviation, float of_frames) {
+        const float most = 2.0f * deviation + 0.5f * of_frames;
+        return clamp(x, mean - most, mean + most);
     }
-    HD Float4 limit_gloss(Float4 mean, const Neighbours& around) const {
+    HD Float4 limit(Float4 mean, const Neighbours& around, float of_frames) const {
         if (!(mean.w > kFewFrames)) return mean;
-        const float light = luminance(rgb_of(mean)), held = within(light, around.gloss_mean, around.gloss_deviation);
+        return {within(mean.x, around.mean.r, around.deviation.r, of_frames),
+                within(mean.y, around.mean.g, around.deviation.g, of_frames),
+                within(mean.z, around.mean.b, around.deviation.b, of_frames), mean.w};
+    }
+    HD Float4 limit_gloss(Float4 mean, const Neighbours& around, float of_frames) const {
+        if (!(mean.w > kFewFrames)) return mean;
+        const float light = luminance(rgb_of(mean)),
+                    held = within(light, around.gloss_mean, around.gloss_deviation, of_frames);
         if (held == light) return mean;
-        return light > 0 ? with_w((held / light) * rgb_of(mean), mean.w) : with_w(grey(held), mean.w);
+        return light > 0 ? with_w((held / light) * rgb_of(mean), mean.w) : with_w(grey(max(held, 0.0f)), mean.w);
     }
     /// Of a mean over mean.w frames. Few say little of their own spread.
     HD float variance(float square_mean, Float4 mean, float over_neighbours) const {
