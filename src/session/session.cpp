@@ -44,6 +44,7 @@ Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera,
 
 void Session::set_scene(const PreparedScene& scene) {
     cut();
+    tracer_.reset(); // with its trees, so that two scenes' need not fit
     upload(scene, kAllParts);
 }
 
@@ -56,11 +57,9 @@ void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
 void Session::upload(const PreparedScene& scene, uint32_t parts) {
     const Stopwatch watch;
     hidden_back_share_.reset();
-    if ((parts & kPartTrees) != 0) {
-        tracer_.reset();
-        structures_ = scene.structures;
-    }
+    if ((parts & kPartTrees) != 0) structures_ = scene.structures;
     try {
+        if ((parts & kPartTrees) != 0 && tracer_) tracer_->set_structures(*structures_);
         if (scene_) {
             scene_->update(queue_, scene, parts);
         } else {
@@ -68,6 +67,7 @@ void Session::upload(const PreparedScene& scene, uint32_t parts) {
         }
     } catch (...) {
         scene_.reset(); // parts of it may be missing
+        tracer_.reset();
         throw;
     }
     if (tracer_) tracer_->set_surfaces(scene_->view());
