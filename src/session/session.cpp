@@ -137,6 +137,7 @@ PictureView Session::view_of(const RenderSettings& settings) {
             make_camera_rays(camera_, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
                              settings.height, scene.centre),
             settings.transparent};
+    const PictureView picture = view_of(settings); // first: it checks that there is a scene
 }
 
 /// Makes the integrator ready to add `samples` samples of the picture of `settings`.
@@ -149,7 +150,7 @@ void Session::begin(const RenderSettings& settings, uint32_t samples) {
     }
     integrator_settings_ = wanted;
     tracer_->time_kinds(settings.time_kinds);
-    integrator_->begin(view_of(settings), *tracer_, samples);
+    integrator_->begin(picture, *tracer_, samples);
     queue_.wait();
 }
 
@@ -183,7 +184,10 @@ Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
 }
 
 RenderStats Session::stats() {
-    if (!hidden_back_share_) hidden_back_share_ = hidden_back_share(queue_, *tracer_, view_of(settings_));
+    if (!hidden_back_share_) {
+        const PictureView picture = view_of(settings_); // first: it checks that there is a scene
+        hidden_back_share_ = hidden_back_share(queue_, *tracer_, picture);
+    }
     RenderStats stats = stats_;
     stats.samples = history_.samples;
     stats.invalid_samples = current_film().invalid_samples();

@@ -81,11 +81,11 @@ TEST_CASE("what cannot be written is told before there is a picture, by its name
 
 TEST_CASE("alpha is written to PNG where it is asked for") {
     const std::filesystem::path folder = test::scratch_folder();
-    const Image half{1, 1, 4, {0.1f, 0.1f, 0.1f, 0.5f}};
-    write_image(folder / "t.png", half, {.transparent = true});
+    const Image half_covered{1, 1, 4, {0.1f, 0.1f, 0.1f, 0.5f}};
+    write_image(folder / "t.png", half_covered, {.transparent = true});
     CHECK(read_image(folder / "t.png").channels == 4);
     CHECK(read_image(folder / "t.png").pixels[0] == doctest::Approx(0.2).epsilon(0.02));
-    write_image(folder / "o.png", half);
+    write_image(folder / "o.png", half_covered);
     CHECK(read_image(folder / "o.png").channels == 3);
     CHECK(read_image(folder / "o.png").pixels[0] == doctest::Approx(0.1).epsilon(0.02));
 }

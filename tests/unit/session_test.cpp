@@ -194,6 +194,25 @@ TEST_CASE("1000 frames in which instances of a large mesh and a lamp move copy l
     CHECK(queue.allocation_count() == allocations);
 }
 
+TEST_CASE("a session without a tracer says so and does not look at it") {
+    Queue queue = test::queue_asked_for();
+    Scene scene = test::make_mixed_scene();
+    const test::TriangleMesh sphere = test::make_sphere(7, {0, 0, 0}, 1.0f); // too many for brute force
+    scene.meshes[0].positions = scene.meshes[0].normals = sphere.positions;
+    scene.meshes[0].indices = sphere.indices;
+    const Prepared many(std::move(scene));
+    REQUIRE(many.prepared.triangles > kMaxBruteForceTriangles);
+    RenderSettings settings = queued_settings();
+    Session session(queue, many.prepared, camera_at(0), settings);
+    settings.tracers = same_for_all({.structure = StructureKind::Binned, .walk = WalkKind::BruteForce});
+    CHECK_THROWS_AS(session.set_settings(settings), Error);
+    CHECK_THROWS_AS(session.render(1), std::logic_error);
+    CHECK_THROWS_AS(session.stats(), std::logic_error);
+    settings.tracers.reset();
+    session.set_settings(settings);
+    CHECK(session.render(1) == 1);
+}
+
 TEST_CASE("nothing of a session is left on the device when it ends") {
     Queue queue = test::queue_asked_for();
     const Prepared furnace(test::make_furnace_scene(0.5f));

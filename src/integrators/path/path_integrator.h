@@ -52,6 +52,7 @@ private:
         uint32_t first_sample;
         uint64_t samples; // of pixels
         FilmView film;
+    void give_rounds(int going, const Work& work);
     };
     struct Wavefront;
     void give_round(Wavefront& wavefront, const Work& work);
