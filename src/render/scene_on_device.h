@@ -35,16 +35,13 @@ public:
     /// Several parts (ScenePart).
     void update(Queue& queue, const PreparedScene& prepared, uint32_t parts);
 
-    /// Meshes.
+    // One part each (ScenePart says what is in it).
     void update_geometry(Queue& queue, const Scene& scene);
-    /// Where instances are and the world's centre; of their materials, whether they have alpha and hide their backs.
     void update_instances(Queue& queue, const PreparedScene& prepared);
-    /// All else of materials. What they emit is in the lights too.
     void update_materials(Queue& queue, const Scene& scene);
+    void update_textures(Queue& queue, const Scene& scene);
     void update_lights(Queue& queue, const PreparedScene& prepared);
     void update_environment(Queue& queue, const PreparedScene& prepared);
-    /// Images.
-    void update_textures(Queue& queue, const Scene& scene);
 
 private:
     SceneView view_{};
