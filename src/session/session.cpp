@@ -22,10 +22,6 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
     return std::min(left, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0)));
 }
 
-TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
-    return settings.tracers.value_or(default_tracers(on_cuda));
-}
-
 RayCounts operator+(const RayCounts& a, const RayCounts& b) {
     return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
 }
@@ -137,11 +133,11 @@ PictureView Session::view_of(const RenderSettings& settings) {
             make_camera_rays(camera_, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
                              settings.height, scene.centre),
             settings.transparent};
-    const PictureView picture = view_of(settings); // first: it checks that there is a scene
 }
 
 /// Makes the integrator ready to add `samples` samples of the picture of `settings`.
 void Session::begin(const RenderSettings& settings, uint32_t samples) {
+    const PictureView picture = view_of(settings); // first: it checks that there is a scene
     const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {
