@@ -23,9 +23,6 @@
 
 namespace pertev {
 
-/// Loop is for the CPU, and for tracers that it can walk by itself (SceneTracer::host_trees); else it is Wavefront.
-enum class PathBody : uint8_t { Loop, Wavefront };
-
 class PathIntegrator final : public Integrator {
 public:
     /// `queue` outlives the integrator. `batch`: most paths in flight of the wavefronts together,
@@ -53,9 +50,9 @@ private:
         uint32_t first_sample;
         uint64_t samples; // of pixels
         FilmView film;
-    void give_rounds(int going, const Work& work);
     };
     struct Wavefront;
+    void give_rounds(int going, const Work& work);
     void give_round(Wavefront& wavefront, const Work& work);
 
     Queue& queue_;
