@@ -1,5 +1,6 @@
-# One set of flags for every target. The one-picture law (docs/conventions.md) rests on them: a per-target flag would
-# let the linker pick an inline function compiled with other arithmetic, so nothing here may differ between targets.
+# One set of arithmetic flags for every target. The one-picture law (docs/conventions.md) rests on them: with other ones in
+# one target the linker might pick an inline function compiled to other arithmetic, so nothing here may differ between
+# targets. How much a target is optimised may (apps/cli has -O1): it changes no bit.
 
 set(PERTEV_ARITHMETIC_FLAGS -ffp-contract=off -fno-math-errno -march=x86-64-v3)
 set(PERTEV_WARNING_FLAGS -Wall -Wextra -Wno-missing-field-initializers -Wpedantic -Wshadow -Wdouble-promotion -Wfloat-conversion)

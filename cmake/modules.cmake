@@ -24,7 +24,7 @@ function(pertev_precompile target)
   endif()
 endfunction()
 
-option(PERTEV_UNITY "Compile some files of the command line and of the tests at once: for a whole build, in half the time" OFF)
+option(PERTEV_UNITY "Compile some files of the readers, the laboratory, the command line and the tests at once: a whole build in half the time" OFF)
 function(pertev_unity target batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PERTEV_UNITY} UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()

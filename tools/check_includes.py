@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Holds src/ to the module order: fails on each include that points where it must not, with file and line.
+"""Holds src/ to what each module may know: fails on each include that points where it must not, with file and line.
 
-A module may include only itself and modules before it in ORDER. Beyond that order: scene and formats never see a GPU
-type, accel and trace never see a material, only device/cuda and .cu files include CUDA's headers, and no integrator includes
-another.
+ALLOWED is the "may know" column of docs/architecture.md: a module may include itself and the modules that stand there, all
+of which come before it. Beyond that table: only device/cuda and .cu files include CUDA's headers, no integrator includes
+another, and no files include each other in a circle.
 
 `check_includes.py [ROOT]` checks ROOT/src; `--self-test` makes trees that break each rule and must be caught.
 """
@@ -13,16 +13,23 @@ import re
 import sys
 import tempfile
 
-ORDER = ["base", "math", "image", "device", "scene", "formats", "accel", "trace", "shading", "render", "integrators",
-         "denoise", "session", "lab"]
-
-# Modules that lie before but are still out of bounds.
-FORBIDDEN = {
-    "scene": {"device"},
-    "formats": {"device"},
-    "accel": {"scene", "formats", "image"},
-    "trace": {"scene", "formats", "image"},
+# In their order: a module may know none that comes later.
+ALLOWED = {
+    "base": set(),
+    "math": {"base"},
+    "image": {"base", "math"},
+    "device": {"base"},
+    "scene": {"base", "math", "image"},
+    "formats": {"base", "math", "image", "scene"},
+    "accel": {"base", "math"},
+    "trace": {"base", "math", "device", "accel"},
+    "shading": {"base", "math", "scene"},
+    "render": {"base", "math", "image", "device", "scene", "accel", "trace", "shading"},
 }
+ALLOWED["integrators"] = ALLOWED["render"] | {"render"}
+ALLOWED["denoise"] = ALLOWED["render"] | {"render"}
+ALLOWED["session"] = set(ALLOWED)
+ALLOWED["lab"] = set(ALLOWED)
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")
@@ -41,35 +48,56 @@ def fault_of(path, module, quoted, target):
     if ".." in pathlib.PurePath(target).parts:
         return "paths start at src/"
     owner = target.split("/")[0]
-    if owner not in ORDER:
+    if owner not in ALLOWED:
         return f"'{owner}' is no module; system headers stand in <>"
-    if ORDER.index(owner) > ORDER.index(module):
-        return f"{module} comes before {owner}"
-    if owner in FORBIDDEN.get(module, ()):
-        return f"{module} must not see {owner}"
+    if owner != module and owner not in ALLOWED[module]:
+        known = ", ".join(name for name in ALLOWED if name in ALLOWED[module])
+        return f"{module} may know {known or 'nothing of ours'}, and not {owner}"
     parts = pathlib.PurePath(target).parts
     if owner == "integrators" and len(parts) > 2 and path.parts[:2] != parts[:2] and path.stem != "make_integrator":
         return "an integrator's folder is seen by itself and integrators/make_integrator alone"
     return None
 
 
+def circles(includes):
+    """The first circle that is found from each file, as a line of text; `includes` is {file: files that it includes}."""
+    faults, done = [], set()
+    for start in sorted(includes):
+        way, rest = [start], [iter(includes[start])]
+        while way:
+            following = next((file for file in rest[-1] if file in includes and file not in done), None)
+            if following is None:
+                done.add(way.pop())
+                rest.pop()
+            elif following in way:
+                faults.append("a circle: " + " -> ".join(way[way.index(following):] + [following]))
+            else:
+                way.append(following)
+                rest.append(iter(includes[following]))
+        done.add(start)
+    return faults
+
+
 def check(root):
-    faults = []
+    faults, includes = [], {}
     source = root / "src"
     files = sorted(p for p in source.rglob("*") if p.suffix in SUFFIXES)
     if not files:
         faults.append(f"{source}: no sources found")
     for file in files:
         path = file.relative_to(source)
-        if path.parts[0] not in ORDER:
-            faults.append(f"src/{path}: '{path.parts[0]}' is not in the module order")
+        if path.parts[0] not in ALLOWED:
+            faults.append(f"src/{path}: '{path.parts[0]}' is no module")
             continue
+        included = includes[str(path)] = []
         for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
             match = INCLUDE.match(line)
             fault = match and fault_of(path, path.parts[0], match[1] == '"', match[2])
             if fault:
                 faults.append(f"src/{path}:{number}: #include {match[2]}: {fault}")
-    return faults
+            if match and match[1] == '"':
+                included.append(match[2])
+    return faults + circles(includes)
 
 
 # File, include line, and whether that is allowed.
@@ -83,6 +111,17 @@ CASES = [
     ("trace/walk.h", '#include "accel/bvh/node.h"', True),
     ("trace/walk.h", '#include "scene/material.h"', False),
     ("accel/build.cpp", '#include "shading/bsdf.h"', False),
+    ("accel/build.cpp", '#include "device/queue.h"', False),
+    ("trace/warps.h", '#include "device/queue.h"', True),
+    ("shading/bsdf.h", '#include "scene/material.h"', True),
+    ("shading/bsdf.h", '#include "trace/ray.h"', False),
+    ("render/prepare.cpp", '#include "formats/read_scene.h"', False),
+    ("integrators/integrator.h", '#include "formats/read_scene.h"', False),
+    ("denoise/filter.h", '#include "render/film.h"', True),
+    ("denoise/filter.h", '#include "integrators/integrator.h"', False),
+    ("session/open.cpp", '#include "formats/read_scene.h"', True),
+    ("session/open.cpp", '#include "lab/report.h"', False),
+    ("math/vec3.h", '#include "math/vec3.h"', False),
     ("scene/mesh.h", '#include "device/buffer.h"', False),
     ("formats/read.cpp", '#include "device/buffer.h"', False),
     ("render/film.h", '#include "device/buffer.h"', True),
@@ -121,6 +160,16 @@ def self_test():
         if not check(pathlib.Path(folder)):
             failures += 1
             print("an empty tree passed")
+    with tempfile.TemporaryDirectory() as folder:
+        files = {"a": "bc", "b": "d", "c": "d", "d": "e", "e": "b"}  # b, d and e in a circle
+        target = pathlib.Path(folder) / "src" / "math"
+        target.mkdir(parents=True)
+        for name, included in files.items():
+            (target / f"{name}.h").write_text("".join(f'#include "math/{other}.h"\n' for other in included))
+        faults = check(pathlib.Path(folder))
+        if faults != ["a circle: math/b.h -> math/d.h -> math/e.h -> math/b.h"]:
+            failures += 1
+            print(f"not the one circle that there is: {faults}")
     return failures
 
 

@@ -29,7 +29,6 @@
 #include "session/choose_camera.h"
 #include "session/open_scene.h"
 #include "session/session.h"
-#include "session/survey/default_light.h"
 
 namespace pertev {
 namespace {
@@ -46,7 +45,7 @@ struct BenchFlags {
 /// The binary trees that pictures with these settings need; what they are turned into is made by the session.
 PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue) {
     PrepareOptions options;
-    options.builder = builder_of(settings.tracers.value_or(default_tracers(queue.is_cuda())));
+    options.builder = builder_of(tracers_of(settings, queue.is_cuda()));
     return options;
 }
 
@@ -184,9 +183,10 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     SceneFigures figures{.scene = std::filesystem::path(file).stem().string(), .device = queue.device_name()};
     Messages messages;
     const Stopwatch watch;
-    Scene scene = read_scene_and_lamps(file, {}, messages);
+    OpenOptions open;
+    open.scene = file;
+    const Scene scene = open_scene(open, messages);
     figures.load_s = watch.seconds();
-    add_default_light(scene, messages);
 
     const ScratchCache cache;
     PrepareOptions options = trees_for(settings, queue);
@@ -202,8 +202,7 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     figures.tree_bytes_per_triangle =
         static_cast<double>(tree_bytes(prepared)) / static_cast<double>(std::max<uint64_t>(prepared.triangles, 1));
 
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const Camera camera = choose_camera({}, scene, aspect, messages);
+    const Camera camera = choose_camera({}, scene, aspect_of(settings.width, settings.height), messages);
     {
         Session warm_up(queue, cached, camera, settings); // whose trees are not those that are yet to be converted
         render_anew(warm_up, 1);

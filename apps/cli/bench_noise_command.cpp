@@ -118,8 +118,8 @@ int bench_noise(const NoiseFlags& flags) {
     reporter.set_work(fmt::format("loading {}", flags.render.scene.scene));
     const Scene scene = load_scene(flags.render.scene, messages);
     const RenderSettings settings = render_settings(flags.render, scene);
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const Camera camera = choose_camera(flags.render.scene, scene, aspect, messages);
+    const Camera camera =
+        choose_camera(flags.render.scene, scene, aspect_of(settings.width, settings.height), messages);
     throw_if_interrupted();
     reporter.set_work("building trees");
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -144,8 +144,7 @@ int run(const LabFlags& flags) {
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 
     const Scene scene = read_lab_scene(flags.scene, messages);
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
+    const Camera camera = choose_camera(flags.scene, scene, aspect_of(settings.width, settings.height), messages);
     check_any_can_run(list_combinations(settings, queue->is_cuda())); // before a folder is made
     if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.say_messages();

@@ -9,7 +9,6 @@
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
@@ -74,24 +73,6 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
                     settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
 }
 
-SceneSource scene_source(const SceneOptions& options, const Scene& scene) {
-    return {.scene = options.scene,
-            .environment = options.environment,
-            .environment_scale = options.environment_scale,
-            .environment_rotation_deg = options.environment_rotation_deg,
-            .has_environment = scene.environment.has_value(),
-            .two_sided_lights = options.two_sided_lights,
-            .show_back_faces = options.show_back_faces};
-}
-
-CameraSource camera_source(const SceneOptions& options, const Camera& camera) {
-    CameraSource source = {
-        .camera = camera, .name = options.camera, .target = {}, .up = {}, .fov_deg = options.fov_deg};
-    if (!options.target.empty()) source.target = parse_position("--target", options.target);
-    if (!options.up.empty()) source.up = parse_vec3("--up", options.up);
-    return source;
-}
-
 int render(RenderFlags flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
@@ -106,12 +87,10 @@ int render(RenderFlags flags) {
     if (flags.strict) refuse_missing(messages);
     RenderSettings settings = render_settings(flags, scene);
     settings.tracers = tracers;
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     aim_eye(flags.scene, scene, messages);
-    const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
+    const Camera camera = choose_camera(flags.scene, scene, aspect_of(settings.width, settings.height), messages);
     const double load_s = watch.seconds();
-    PrepareOptions prepare;
-    prepare.tracers = tracers.value_or(default_tracers(machine.is_cuda()));
+    PrepareOptions prepare = prepare_options(settings, machine.is_cuda());
     prepare.may_be_better = may_be_better(flags.tracer);
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
@@ -120,8 +99,8 @@ int render(RenderFlags flags) {
     reporter.say_messages();
     listen_for_interrupt();
     report_start(flags, scene, prepared, settings, *queue, load_s, reporter);
-    PictureRecord record = {.scene = scene_source(flags.scene, scene),
-                            .camera = camera_source(flags.scene, camera),
+    PictureRecord record = {.scene = source_of(open_options(flags.scene), scene),
+                            .camera = source_of(camera_choice(flags.scene), camera),
                             .settings = settings,
                             .device = queue->device_name(),
                             .display = {}};

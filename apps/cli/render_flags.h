@@ -9,7 +9,7 @@
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/tracer_flags.h"
-#include "session/render_settings.h"
+#include "session/settings_text.h"
 
 namespace pertev {
 
@@ -20,11 +20,12 @@ struct RenderFlags {
     std::string tone_map, exposure; // empty: agx, and auto
     bool transparent = false;
     std::vector<std::string> aovs;
-    uint32_t samples = 64;
+    uint32_t samples = RenderSettings{}.samples;
     double time_s = 0;
-    std::string integrator = "path", sampler = "sobol", filter = "blackman-harris";
+    std::string integrator{integrator_name({})}, sampler{name_of(PathSettings{}.sampler)},
+        filter{name_of(RenderSettings{}.filter)};
     float filter_radius = 0, clamp = 0;
-    uint32_t max_depth = 16, seed = 0;
+    uint32_t max_depth = PathSettings{}.max_depth, seed = PathSettings{}.seed;
     MachineFlags machine;
     TracerFlags tracer;
     bool no_cache = false, strict = false;

@@ -6,11 +6,8 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/limits.h"
-#include "session/choose_camera.h"
-#include "session/open_scene.h"
 
 namespace pertev {
-namespace {
 
 OpenOptions open_options(const SceneOptions& options) {
     OpenOptions open;
@@ -43,8 +40,6 @@ CameraChoice camera_choice(const SceneOptions& options) {
     if (options.view_height_m > 0) choice.view_height = options.view_height_m;
     return choice;
 }
-
-} // namespace
 
 void check_scene_options(const SceneOptions& options) { check_camera_choice(camera_choice(options)); }
 

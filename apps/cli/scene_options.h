@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "base/messages.h"
-#include "scene/scene.h"
+#include "session/choose_camera.h"
+#include "session/open_scene.h"
 
 namespace CLI {
 class App;
@@ -49,6 +50,8 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
 // The rest is session/open_scene.h and session/choose_camera.h for flags as they stand on the command line. Each throws
 // Error(BadInput) also for text that is no value.
 
+OpenOptions open_options(const SceneOptions& options);
+CameraChoice camera_choice(const SceneOptions& options);
 Scene load_scene(const SceneOptions& options, Messages& messages);
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene);
 /// Gives `options` the target that an eye alone looks at.

@@ -48,8 +48,7 @@ ThesisScene load(SceneOptions options, const std::string& scene, const LabSettin
     options.scene = scene;
     ThesisScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
     if (has_pictures) thesis.default_light = add_default_light(thesis.scene, messages) != DefaultLight::None;
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    thesis.camera = choose_camera(options, thesis.scene, aspect, messages);
+    thesis.camera = choose_camera(options, thesis.scene, aspect_of(settings.width, settings.height), messages);
     return thesis;
 }
 

@@ -12,12 +12,6 @@
 namespace pertev {
 namespace {
 
-constexpr const char* kRayNames[] = {"camera", "bounce", "shadow"}; // in the order of RayKind
-
-Combination& of_kind(TracerChoice& choice, std::size_t kind) {
-    return kind == 0 ? choice.camera : kind == 1 ? choice.bounce : choice.shadow;
-}
-
 /// Calls set(combination, name) for each ray kind that each of `values` is for; set is false where nothing is named so.
 template <class Set>
 void apply(const char* flag, const std::vector<std::string>& values, TracerChoice& choice, const std::string& known,
@@ -26,10 +20,10 @@ void apply(const char* flag, const std::vector<std::string>& values, TracerChoic
         const std::size_t equals = value.find('=');
         const std::string name = equals == std::string::npos ? value : value.substr(equals + 1);
         bool any = false, good = true;
-        for (std::size_t kind = 0; kind < std::size(kRayNames); ++kind) {
-            if (equals != std::string::npos && value.substr(0, equals) != kRayNames[kind]) continue;
+        for (const RayKind kind : kRayKinds) {
+            if (equals != std::string::npos && value.substr(0, equals) != name_of(kind)) continue;
             any = true;
-            good = good && set(of_kind(choice, kind), name);
+            good = good && set(choice[kind], name);
         }
         if (any && good) continue;
         throw Error(ErrorCode::BadInput,
@@ -46,12 +40,11 @@ std::string list_of(std::span<const Kind> kinds) {
     return list;
 }
 
-/// A structure that only one walk goes over brings that walk with it, and the other way round.
+/// A structure that only one walk goes over brings that walk with it, without the switches of the default's own, and
+/// the other way round.
 void complete(Combination& c, bool structure_named, bool walk_named) {
-    const bool is_kd = c.structure == StructureKind::KdMedian || c.structure == StructureKind::KdSah;
     if (structure_named && !walk_named) {
-        if (is_kd) c.walk = WalkKind::Kd;
-        if (c.structure == StructureKind::Octree) c.walk = WalkKind::Octree;
+        if (const auto walk = only_walk_of(c.structure)) c = {.structure = c.structure, .walk = *walk};
     }
     if (walk_named && !structure_named) {
         if (c.walk == WalkKind::Kd) c.structure = StructureKind::KdSah;
@@ -107,30 +100,22 @@ std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda
         if (kind) c = {.structure = c.structure, .walk = *kind}, walk_named.insert(&c);
         return kind.has_value();
     });
-    for (std::size_t kind = 0; kind < std::size(kRayNames); ++kind) {
-        Combination& c = of_kind(choice, kind);
-        const bool named = structure_named.contains(&c);
-        complete(c, named, walk_named.contains(&c));
-        if (named && !walk_named.contains(&c) && (c.walk == WalkKind::Kd || c.walk == WalkKind::Octree)) {
-            c = {.structure = c.structure, .walk = c.walk};
-        }
+    for (const RayKind kind : kRayKinds) {
+        Combination& c = choice[kind];
+        complete(c, structure_named.contains(&c), walk_named.contains(&c));
     }
     apply("--rta", flags.rta, choice, "on, nodes or off", [](Combination& c, const std::string& name) {
-        c.options.rta = name != "off";
-        c.options.rta_at_pops = name != "nodes";
-        return name == "on" || name == "nodes" || name == "off";
+        const auto options = rta_named(name, c.options);
+        if (options) c.options = *options;
+        return options.has_value();
     });
     apply("--order", flags.order, choice, "on or off",
           [](Combination& c, const std::string& name) { return set_on_off(c.options.near_first, name); });
     apply("--distribution", flags.distributions, choice, "one-a-thread, persistent or dynamic-fetch",
           [](Combination& c, const std::string& name) {
-              for (const Distribution d :
-                   {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
-                  if (name != name_of(d)) continue;
-                  c.distribution = d;
-                  return true;
-              }
-              return false;
+              const auto distribution = distribution_named(name);
+              if (distribution) c.distribution = *distribution;
+              return distribution.has_value();
           });
     check_choice(choice, on_cuda);
     return choice;

@@ -4,11 +4,12 @@
 // call returns when it is done; in CUDA it runs behind, and wait() meets it. Several queues, on one device or on many,
 // may be used in turns from one thread or from several at once; one queue is for one thread at a time.
 //
-// Between fork_streams() and join_streams() a queue has several streams of work: each runs in the order given, and on a
-// GPU they run side by side, so that one fills what another leaves idle.
+// While a Queue::Fork lives a queue has several streams of work: each runs in the order given, and on a GPU they run
+// side by side, so that one fills what another leaves idle.
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,18 +31,26 @@ public:
 
     static constexpr int kMaxStreams = 4;
     int stream_index() const { return stream_index_; }
-    /// From now on streams [0, count), count <= kMaxStreams, go on side by side after all work given so far.
-    void fork_streams(int count) {
-        for (int i = 1; i < count; ++i) backend_->let_wait(i, 0);
-        streams_ = count;
-    }
+    /// From now on streams [0, count), count <= kMaxStreams, go on side by side after all work given so far. When it
+    /// ends, by an exception too, stream 0 goes on alone, after all that the others have been given. One at a time.
+    class Fork {
+    public:
+        Fork(Queue& queue, int count) : queue_(queue) { queue.fork_streams(count); }
+        ~Fork() {
+            try {
+                queue_.join_streams();
+            } catch (const std::exception&) { // the device is lost: the next wait() says so
+                queue_.streams_ = 1;
+            }
+        }
+        Fork(const Fork&) = delete;
+        Fork& operator=(const Fork&) = delete;
+
+    private:
+        Queue& queue_;
+    };
     /// Stream `waiting` goes on after what stream `other` has been given so far.
     void let_wait(int waiting, int other) { backend_->let_wait(waiting, other); }
-    /// From now on stream 0 goes on alone, after all that the others have been given.
-    void join_streams() {
-        for (int i = 1; i < streams_; ++i) backend_->let_wait(0, i);
-        streams_ = 1;
-    }
     /// How many go side by side.
     int streams() const { return streams_; }
     /// While it lives, launches, fills, and waits are those of stream `index`. Of copies a Readback alone: uploads and
@@ -108,6 +117,14 @@ private:
     };
 
     explicit Queue(std::unique_ptr<DeviceBackend> backend) : backend_(std::move(backend)) {}
+    void fork_streams(int count) {
+        streams_ = count;
+        for (int i = 1; i < count; ++i) backend_->let_wait(i, 0);
+    }
+    void join_streams() {
+        for (int i = 1; i < streams_; ++i) backend_->let_wait(0, i);
+        streams_ = 1;
+    }
     void use_stream(int index) {
         stream_index_ = index;
         backend_->use_stream(index);

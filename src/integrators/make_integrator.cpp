@@ -1,5 +1,7 @@
 #include "integrators/make_integrator.h"
 
+#include "integrators/path/path_integrator.h"
+
 namespace pertev {
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {

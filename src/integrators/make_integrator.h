@@ -1,12 +1,12 @@
 #pragma once
 
-// Every integrator there is, and the settings of each: the only file that knows them all.
+// Every integrator there is, and the settings of each: this file and its .cpp alone know them all.
 
 #include <cstdint>
 #include <memory>
 
 #include "integrators/integrator.h"
-#include "integrators/path/path_integrator.h"
+#include "integrators/path/path_settings.h"
 
 namespace pertev {
 

@@ -1,7 +1,9 @@
 #pragma once
 
-// The oracle: each ray against every triangle of the scene, without any tree. The result rule of docs/conventions.md
-// word by word, by the triangle test that the walks use.
+// The laboratory's oracle: each ray against every triangle of the scene as it was read, without any tree. The result
+// rule of docs/conventions.md word by word, by the triangle test that the walks use. That test is all it shares with
+// what it judges: trace/brute_force_walk.h goes over the triangles of a tree, by the machinery of the walks, and is
+// judged too.
 
 #include <cstdint>
 #include <memory>

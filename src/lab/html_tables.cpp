@@ -195,8 +195,8 @@ std::string html_wrong(const LabReport& report) {
         if (c.wrong) names += "<br>" + html_text(c.name) + ": " + html_text(c.refused);
     }
     if (names.empty()) return {};
-    return "<p class=\"wrong\"><strong>WRONG: these combinations differ from the proven walk and have no "
-           "figures.</strong>" +
+    return "<p class=\"wrong\"><strong>WRONG: these combinations differ from the proven walk (the one "
+           "that is held against brute force) and have no figures.</strong>" +
            names + "</p>\n";
 }
 
@@ -212,7 +212,8 @@ std::string html_sets(const LabReport& report) {
     for (const std::string& note : report.notes) notes += "<li>" + html_text(note) + "</li>\n";
     if (!notes.empty()) notes = "<ul>\n" + notes + "</ul>\n";
     if (rows.empty()) return notes;
-    return table({"set", "kind", "depth", "rays", "that hit", "rays the proven walk was held against brute force on"},
+    return table({"set", "kind", "depth", "rays", "that hit",
+                  "rays that were also tested against every triangle (brute force)"},
                  rows) +
            notes;
 }

@@ -14,7 +14,8 @@
 
 namespace pertev {
 
-/// A set of rays of one kind, traced as a whole.
+/// A set of rays of one kind, traced as a whole. The proven walk is the one that is held against brute force, and that
+/// all others are held to (lab/run_lab.h).
 struct SetFigures {
     std::string name; // "primary", "shadow", "diffuse1", ...
     bool any_hit = false;

@@ -69,7 +69,8 @@ std::string speed_of(const LabReport& report, const RunFigures& run) {
     if (run.nodes && run.triangles) {
         text += fmt::format("{}({:.1f} + {:.1f})", text.empty() ? "" : " ", *run.nodes, *run.triangles);
     }
-    return text.empty() ? "right" : text; // held to the proven walk, and nothing else was asked for
+    return text.empty() ? "right"
+                        : text; // the hits are those of the proven walk (lab/run_lab.h), and nothing else was asked for
 }
 
 std::string speeds_of(const LabReport& report, const std::vector<const CombinationFigures*>& order) {

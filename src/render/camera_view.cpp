@@ -5,7 +5,7 @@
 namespace pertev {
 
 CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height, Vec3 centre) {
-    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    const float aspect = aspect_of(width, height);
     const float half_height =
         camera.projection == Projection::Perspective ? tan(0.5f * camera.fov_y) : 0.5f * camera.ortho_height;
     return {moved_to(camera.world_from_camera, centre),

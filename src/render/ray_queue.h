@@ -44,7 +44,7 @@ struct RayQueueView {
     const Uint2* targets = nullptr;
     const uint32_t* keys = nullptr; // of the coin that blended surfaces toss; null where no surface is blended
     int32_t step = 1;               // -1: these are the last elements, and ray i lies i before them
-    bool is_endless = false;        // all go from t = 0 to infinity; numbers of the owner\'s stand in these places
+    bool is_endless = false;        // all go from t = 0 to infinity; numbers of the owner's stand in these places
 
     HD int64_t place(uint32_t i) const { return step * static_cast<int64_t>(i); }
     HD Ray load(uint32_t i) const {

@@ -76,13 +76,14 @@ PartArrays list_textures(const Scene& scene, std::vector<TextureImageView>& imag
     return arrays;
 }
 
+void add_table(PartArrays& arrays, const OrderedTable& table, OrderedTableView& view) {
+    arrays.add(table.starts, view.starts);
+    arrays.add(table.guide, view.guide);
+}
+
 PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
     PartArrays arrays;
-    const auto add_table = [&](const OrderedTable& table, OrderedTableView& table_view) {
-        arrays.add(table.starts, table_view.starts);
-        arrays.add(table.guide, table_view.guide);
-    };
-    add_table(lights.choice, view.choice);
+    add_table(arrays, lights.choice, view.choice);
     arrays.add(lights.emitters, view.emitters);
     arrays.add(lights.triangle_order, view.triangle_order);
     arrays.add(lights.triangle_starts, view.triangle_starts);
@@ -91,11 +92,16 @@ PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
     arrays.add(lights.punctual, view.punctual);
     arrays.add(lights.first_light, view.first_light);
     arrays.add(lights.emissions, view.emissions);
-    if (!lights.has_environment) return arrays;
-    arrays.add(lights.environment.pixels, view.environment.pixels);
-    arrays.add(lights.environment.row_bounds, view.environment.row_bounds);
-    add_table(lights.environment.rows, view.environment.rows);
-    add_table(lights.environment.columns, view.environment.columns);
+    return arrays;
+}
+
+PartArrays list_environment(const EnvironmentData* environment, EnvironmentView& view) {
+    PartArrays arrays;
+    if (environment == nullptr) return arrays;
+    arrays.add(environment->pixels, view.pixels);
+    arrays.add(environment->row_bounds, view.row_bounds);
+    add_table(arrays, environment->rows, view.rows);
+    add_table(arrays, environment->columns, view.columns);
     return arrays;
 }
 
@@ -109,6 +115,7 @@ void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it looks at
+    if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
 }
 
 void SceneOnDevice::update_geometry(Queue& queue, const Scene& scene) {
@@ -134,8 +141,17 @@ void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {
 }
 
 void SceneOnDevice::update_lights(Queue& queue, const PreparedScene& prepared) {
+    const EnvironmentView environment = view_.lights.environment;
     view_.lights = view_of(prepared.lights, view_.images, view_.linear_from_srgb);
+    view_.lights.environment = environment;
     list_lights(prepared.lights, view_.lights).upload(queue, lights_, "lights");
+}
+
+void SceneOnDevice::update_environment(Queue& queue, const PreparedScene& prepared) {
+    const EnvironmentData* environment = prepared.lights.environment.get();
+    EnvironmentView& view = view_.lights.environment;
+    view = environment != nullptr ? view_of(*environment) : EnvironmentView{};
+    list_environment(environment, view).upload(queue, environment_, "environment");
 }
 
 std::size_t predicted_bytes(const PreparedScene& prepared) {
@@ -147,7 +163,8 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
     std::vector<TextureImageView> images;
     return list_geometry(scene, meshes, view).bytes() + list_instances(prepared, instances, view).bytes() +
            list_materials(scene, materials, view).bytes() + list_textures(scene, images, view).bytes() +
-           list_lights(prepared.lights, view.lights).bytes();
+           list_lights(prepared.lights, view.lights).bytes() +
+           list_environment(prepared.lights.environment.get(), view.lights.environment).bytes();
 }
 
 } // namespace pertev

@@ -17,9 +17,10 @@ enum ScenePart : uint32_t {
                         // their backs
     kPartMaterials = 4, // all else of materials; what they emit is in the lights too
     kPartTextures = 8,  // images
-    kPartLights = 16,   // near and far ones
+    kPartLights = 16,   // near and far ones, and how often each is drawn, but for the environment's own
     kPartTrees = 32,    // not here: a tracer's (render/tracer/)
-    kAllParts = 63,
+    kPartEnvironment = 64, // its pixels, and the tables that draw one; with another environment go the lights too
+    kAllParts = 127,
 };
 
 /// Every update copies: what it is given may go away afterwards. The view, and each copy of it, is void after an
@@ -34,19 +35,17 @@ public:
     /// Several parts (ScenePart).
     void update(Queue& queue, const PreparedScene& prepared, uint32_t parts);
 
-    /// Meshes.
+    // One part each (ScenePart says what is in it).
     void update_geometry(Queue& queue, const Scene& scene);
-    /// Where instances are and the world's centre; of their materials, whether they have alpha and hide their backs.
     void update_instances(Queue& queue, const PreparedScene& prepared);
-    /// All else of materials. What they emit is in the lights too.
     void update_materials(Queue& queue, const Scene& scene);
-    void update_lights(Queue& queue, const PreparedScene& prepared);
-    /// Images.
     void update_textures(Queue& queue, const Scene& scene);
+    void update_lights(Queue& queue, const PreparedScene& prepared);
+    void update_environment(Queue& queue, const PreparedScene& prepared);
 
 private:
     SceneView view_{};
-    Buffer<std::byte> geometry_, instances_, materials_, lights_, textures_;
+    Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
 };
 
 /// Bytes that SceneOnDevice asks for.

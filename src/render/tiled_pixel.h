@@ -1,7 +1,7 @@
 #pragma once
 
-// The order in which the pixels of a picture are given out: 8 x 4 at a time, so that the 32 camera rays of a warp stay
-// together.
+// The order in which the pixels of a picture are given out: tiles of 8 x 4, row by row, so that the 32 camera rays of a
+// warp stay together.
 
 #include <cstdint>
 
@@ -9,8 +9,7 @@
 
 namespace pertev {
 
-/// Pixels of a picture in 8 x 4 tiles, row by row: a warp's 32 camera rays stay together. Columns and rows that do not
-/// fill a tile come last.
+/// The pixel that comes as number `i`. Columns and rows that do not fill a tile come last.
 HD inline uint32_t tiled_pixel(uint32_t i, uint32_t width, uint32_t height) {
     const uint32_t tiles_x = width / 8, tiles_y = height / 4, tiled = tiles_x * tiles_y * 32;
     if (i < tiled) {

@@ -30,7 +30,8 @@ struct SceneUpdate {
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
                            Messages& messages);
 
-/// The parts (ScenePart) that Session::update_scene then takes.
+/// The parts (ScenePart) that Session::update_scene then takes. Lights are always among them: how often each is drawn
+/// depends on what lies where. The environment is not, which is the same.
 uint32_t parts_of(const SceneUpdate& update);
 
 } // namespace pertev

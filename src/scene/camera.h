@@ -26,4 +26,9 @@ struct Camera {
     bool operator==(const Camera&) const = default;
 };
 
+/// Width / height of a picture of so many pixels.
+inline float aspect_of(uint32_t width, uint32_t height) {
+    return static_cast<float>(width) / static_cast<float>(height);
+}
+
 } // namespace pertev

@@ -56,6 +56,8 @@ struct Material {
                 &roughness_texture,  &emission_texture, &normal_texture};
     }
     bool is_emissive() const { return max_component(emission) > 0; }
+    /// Gives light to other surfaces: what an unlit one emits is seen by the camera alone.
+    bool is_lamp() const { return is_emissive() && kind != MaterialKind::Unlit; }
 };
 
 } // namespace pertev

@@ -59,6 +59,12 @@ void show_back_faces(Scene& scene, Messages& messages) {
 
 } // namespace
 
+std::string environment_text(const OpenOptions& options) {
+    if (!options.environment_radiance) return options.environment.string();
+    const Rgb radiance = *options.environment_radiance;
+    return fmt::format("{},{},{}", radiance.r, radiance.g, radiance.b);
+}
+
 Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_scene(path, options, messages);
     if (!options.two_sided_lights && !tells_lamp_sides(path)) say_lamp_fronts(scene, path.string(), messages);

@@ -26,6 +26,9 @@ struct OpenOptions {
     bool show_back_faces = false;            // the camera sees backs that a glTF file hides
 };
 
+/// The environment that is asked for, in the words of --environment: a file, or a radiance R,G,B; empty: none.
+std::string environment_text(const OpenOptions& options);
+
 /// The scene read, with the environment that the options give it or else, where it has no light, the default light. An
 /// option that this scene makes useless is a warning. The scene has been through validate(). Throws Error.
 Scene open_scene(const OpenOptions& options, Messages& messages);

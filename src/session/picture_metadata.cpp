@@ -24,6 +24,24 @@ ExrMetadata environment_metadata(const SceneSource& source) {
 
 } // namespace
 
+SceneSource source_of(const OpenOptions& options, const Scene& scene) {
+    return {.scene = options.scene,
+            .environment = environment_text(options),
+            .environment_scale = options.environment_scale,
+            .environment_rotation_deg = options.environment_rotation_deg,
+            .has_environment = scene.environment.has_value(),
+            .two_sided_lights = options.two_sided_lights,
+            .show_back_faces = options.show_back_faces};
+}
+
+CameraSource source_of(const CameraChoice& choice, const Camera& camera) {
+    return {.camera = camera,
+            .name = choice.camera,
+            .target = choice.target,
+            .up = choice.up,
+            .fov_deg = choice.fov_deg.value_or(0)};
+}
+
 ExrMetadata camera_metadata(const CameraSource& source) {
     const Camera& camera = source.camera;
     const Transform& from = camera.world_from_camera;

@@ -7,6 +7,8 @@
 
 #include "image/exr_file.h"
 #include "image/tone_map.h"
+#include "session/choose_camera.h"
+#include "session/open_scene.h"
 #include "session/render_settings.h"
 
 namespace pertev {
@@ -43,6 +45,11 @@ struct PictureRecord {
     std::string device;
     std::optional<Display> display; // none: the picture is shown nowhere
 };
+
+/// Of a scene that open_scene() made of these options; without seconds.
+SceneSource source_of(const OpenOptions& options, const Scene& scene);
+/// Of a camera that choose_camera() made of this choice, after aim_eye().
+CameraSource source_of(const CameraChoice& choice, const Camera& camera);
 
 /// What places this camera again: to the bit where words have placed it or none are given, else as near as their
 /// numbers go. And its matrix, column by column.

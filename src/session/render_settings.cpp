@@ -2,6 +2,16 @@
 
 namespace pertev {
 
+TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
+    return settings.tracers.value_or(default_tracers(on_cuda));
+}
+
+PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda) {
+    PrepareOptions options;
+    options.tracers = tracers_of(settings, on_cuda);
+    return options;
+}
+
 void set_default_size(RenderSettings& settings, const Camera* own) {
     settings.width = 1280, settings.height = 720;
     if (own == nullptr || !(own->aspect > 0)) return;

@@ -8,6 +8,7 @@
 #include "integrators/make_integrator.h"
 #include "render/film.h"
 #include "render/pixel_filter.h"
+#include "render/prepare_scene.h"
 #include "scene/camera.h"
 
 namespace pertev {
@@ -35,6 +36,12 @@ struct RenderSettings : IntegratorSettings {
 inline float filter_radius_of(const RenderSettings& settings) {
     return settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
 }
+
+/// The tracers asked for, or the device's default.
+TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda);
+
+/// What a scene is prepared with for a session of these settings: trees and structures of its tracers.
+PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda);
 
 /// For a picture that is given no size: 1280x720, or 720 high in the shape that `own`, a camera of the scene, asks for.
 /// Null: there is none.

@@ -22,10 +22,6 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
     return std::min(left, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0)));
 }
 
-TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
-    return settings.tracers.value_or(default_tracers(on_cuda));
-}
-
 RayCounts operator+(const RayCounts& a, const RayCounts& b) {
     return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
 }
@@ -44,6 +40,7 @@ Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera,
 
 void Session::set_scene(const PreparedScene& scene) {
     cut();
+    tracer_.reset(); // with its trees, so that two scenes' need not fit
     upload(scene, kAllParts);
 }
 
@@ -65,11 +62,9 @@ void Session::keep_places() {
 void Session::upload(const PreparedScene& scene, uint32_t parts) {
     const Stopwatch watch;
     hidden_back_share_.reset();
-    if ((parts & kPartTrees) != 0) {
-        tracer_.reset();
-        structures_ = scene.structures;
-    }
+    if ((parts & kPartTrees) != 0) structures_ = scene.structures;
     try {
+        if ((parts & kPartTrees) != 0 && tracer_) tracer_->set_structures(*structures_);
         if (scene_) {
             scene_->update(queue_, scene, parts);
         } else {
@@ -77,6 +72,7 @@ void Session::upload(const PreparedScene& scene, uint32_t parts) {
         }
     } catch (...) {
         scene_.reset(); // parts of it may be missing
+        tracer_.reset();
         throw;
     }
     instance_count_ = static_cast<uint32_t>(scene.scene->instances.size());
@@ -153,6 +149,7 @@ PictureView Session::view_of(const RenderSettings& settings) {
 
 /// Makes the integrator ready to add `samples` samples of the picture of `settings`.
 void Session::begin(const RenderSettings& settings, uint32_t samples) {
+    const PictureView picture = view_of(settings); // first: it checks that there is a scene
     const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {
@@ -161,7 +158,7 @@ void Session::begin(const RenderSettings& settings, uint32_t samples) {
     }
     integrator_settings_ = wanted;
     tracer_->time_kinds(settings.time_kinds);
-    integrator_->begin(view_of(settings), *tracer_, samples);
+    integrator_->begin(picture, *tracer_, samples);
     queue_.wait();
 }
 
@@ -221,7 +218,10 @@ Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
 }
 
 RenderStats Session::stats() {
-    if (!hidden_back_share_) hidden_back_share_ = hidden_back_share(queue_, *tracer_, view_of(settings_));
+    if (!hidden_back_share_) {
+        const PictureView picture = view_of(settings_); // first: it checks that there is a scene
+        hidden_back_share_ = hidden_back_share(queue_, *tracer_, picture);
+    }
     RenderStats stats = stats_;
     stats.samples = history_.samples;
     stats.invalid_samples = current_film().invalid_samples();

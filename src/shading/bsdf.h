@@ -164,7 +164,7 @@ struct Bsdf {
         layers[0].beneath = base.energy();
         layer_count = 1;
     }
-    /// Puts a layer on all that there is; at most kMaxLayers in all.
+    /// Puts a layer on all that there is. There is room for kMaxLayers in all: one more is left out.
     HD void add(const CoatLobe& lobe) { stack(lobe); }
     HD void add(const SheenLobe& lobe) { stack(lobe); }
 
@@ -213,6 +213,7 @@ private:
     HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
 
     HD void stack(const Lobe& layer) {
+        if (layer_count == kMaxLayers) return;
         float beneath = base.energy();
         for (int i = 0; i < layer_count; ++i) beneath += layers[i].energy();
         layers[layer_count] = layer;

@@ -64,14 +64,12 @@ double punctual_power(const PunctualLight& light, double radius) {
     return 0;
 }
 
-bool is_light(const Material& material) { return material.is_emissive() && material.kind != MaterialKind::Unlit; }
-
 void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
     uint64_t count = 0;
     data.first_light.assign(scene.instances.size(), kNoLight);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (!is_light(scene.materials[instance.material])) continue;
+        if (!scene.materials[instance.material].is_lamp()) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
         const uint64_t triangles = scene.meshes[instance.mesh].triangle_count();
         data.emitters.push_back(
@@ -238,18 +236,24 @@ void store_probabilities(LightSetData& data) {
 
 } // namespace
 
-LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages, Vec3 centre) {
+LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages, Vec3 centre,
+                             std::shared_ptr<const EnvironmentData> environment) {
     LightSetData data;
     for (const Material& material : scene.materials) {
-        data.emissions.push_back({is_light(material) ? material.emission : Rgb{}, material.emission_texture});
+        data.emissions.push_back({material.is_lamp() ? material.emission : Rgb{}, material.emission_texture});
     }
     add_triangles(scene, centre, data);
     for (const Light& light : scene.lights) {
         data.punctual.push_back({light.kind, light.position - centre, light.direction, light.intensity, light.cos_inner,
                                  light.cos_outer, light.range});
     }
-    data.has_environment = scene.environment.has_value();
-    if (data.has_environment) data.environment = build_environment_light(*scene.environment, messages);
+    if (scene.environment) {
+        if (environment == nullptr) {
+            environment =
+                std::make_shared<const EnvironmentData>(build_environment_light(*scene.environment, messages));
+        }
+        data.environment = std::move(environment);
+    }
 
     const Bounds3 bounds = bounds_of(scene);
     const double radius = bounds.is_empty() ? 1.0 : 0.5 * static_cast<double>(length(bounds.size()));
@@ -267,8 +271,8 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     for (const PunctualLight& light : data.punctual) {
         add_source(punctual_power(light, radius), light.kind == LightKind::Directional);
     }
-    if (data.has_environment) {
-        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment.mean_radiance),
+    if (data.environment) {
+        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment->mean_radiance),
                    true);
     }
     share_draws(data, kEvenShare);
@@ -298,7 +302,7 @@ void share_draws(LightSetData& data, double far_share) {
 uint64_t count_emissive_triangles(const Scene& scene) {
     uint64_t count = 0;
     for (const Instance& instance : scene.instances) {
-        if (is_light(scene.materials[instance.material])) count += scene.meshes[instance.mesh].triangle_count();
+        if (scene.materials[instance.material].is_lamp()) count += scene.meshes[instance.mesh].triangle_count();
     }
     return count;
 }
@@ -315,12 +319,12 @@ LightSetView view_of(const LightSetData& data, const TextureImageView* images, c
     view.emitter_count = static_cast<uint32_t>(data.emitters.size());
     view.triangle_count = static_cast<uint32_t>(data.triangles.size());
     view.punctual_count = static_cast<uint32_t>(data.punctual.size());
-    if (data.has_environment) view.environment_source = view.emitter_count + view.punctual_count;
+    if (data.environment) view.environment_source = view.emitter_count + view.punctual_count;
     view.first_light = data.first_light.data();
     view.emissions = data.emissions.data();
     view.images = images;
     view.linear_from_srgb = linear_from_srgb;
-    view.environment = view_of(data.environment);
+    if (data.environment) view.environment = view_of(*data.environment);
     return view;
 }
 

@@ -22,6 +22,22 @@ TEST_CASE("every structure and walk of the laboratory has a name of its own, by 
     }
     CHECK(names.size() == 16);
     CHECK(!walk_named(""));
+    for (const Distribution d : {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
+        CHECK(distribution_named(name_of(d)) == d);
+    }
+    CHECK(!distribution_named("persist"));
+}
+
+TEST_CASE("RTA is switched by its names, and by nothing else") {
+    const WalkOptions others = {.near_first = false, .tests = TestKind::Fast};
+    for (const char* name : {"on", "nodes", "off"}) {
+        const auto options = rta_named(name, others);
+        REQUIRE(options.has_value());
+        CHECK(name_of_rta(*options) == std::string(name));
+        CHECK(!options->near_first);
+        CHECK(options->tests == TestKind::Fast);
+    }
+    CHECK(!rta_named("both", others));
 }
 
 TEST_CASE("names of combinations differ wherever their switches do, those refused included") {
@@ -54,6 +70,9 @@ TEST_CASE("each structure has a walk and each walk a structure; kd-trees and oct
     for (const StructureKind structure : all_structures()) {
         const auto walks = std::ranges::count_if(all_walks(), [&](WalkKind walk) { return !why_not(structure, walk); });
         CHECK(walks == (builder_of(structure) ? 14 : 1));
+        const std::optional<WalkKind> only = only_walk_of(structure);
+        CHECK(only.has_value() == (walks == 1));
+        if (only) CHECK(!why_not(structure, *only));
     }
     for (const WalkKind walk : all_walks()) {
         CHECK(std::ranges::any_of(all_structures(), [&](StructureKind s) { return !why_not(s, walk); }));

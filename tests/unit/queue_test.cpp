@@ -23,19 +23,37 @@ TEST_CASE("streams go on after what was given before the fork, and work behind t
     constexpr std::size_t kMany = 1 << 22; // a fill that takes longer than it takes to give the next
     Buffer<unsigned char> sum(queue, kMany * kStreams, "bytes");
     sum.fill(7); // what a stream writes is there in the end, so it came later
-    queue.fork_streams(kStreams);
-    for (int i = 0; i < kStreams; ++i) {
-        const Queue::OnStream on(queue, i);
-        CHECK(queue.stream_index() == i);
-        queue.fill(sum.data() + static_cast<std::size_t>(i) * kMany, static_cast<unsigned char>(i + 1), kMany);
+    {
+        const Queue::Fork fork(queue, kStreams);
+        CHECK(queue.streams() == kStreams);
+        for (int i = 0; i < kStreams; ++i) {
+            const Queue::OnStream on(queue, i);
+            CHECK(queue.stream_index() == i);
+            queue.fill(sum.data() + static_cast<std::size_t>(i) * kMany, static_cast<unsigned char>(i + 1), kMany);
+        }
+        CHECK(queue.stream_index() == 0);
     }
-    CHECK(queue.stream_index() == 0);
-    queue.join_streams();
+    CHECK(queue.streams() == 1);
     const std::vector<unsigned char> there = sum.download();
     for (int i = 0; i < kStreams; ++i) {
         CHECK(there[static_cast<std::size_t>(i) * kMany] == i + 1);
         CHECK(there[static_cast<std::size_t>(i + 1) * kMany - 1] == i + 1);
     }
+}
+
+TEST_CASE("an exception on a stream leaves the queue with one stream again") {
+    Queue queue = test::queue_asked_for();
+    Buffer<unsigned char> bytes(queue, 100, "bytes");
+    const auto fail_on_a_stream = [&] {
+        const Queue::Fork fork(queue, Queue::kMaxStreams);
+        const Queue::OnStream on(queue, 2);
+        bytes.fill(3);
+        throw std::runtime_error("on a stream");
+    };
+    CHECK_THROWS_AS(fail_on_a_stream(), std::runtime_error);
+    CHECK(queue.streams() == 1);
+    CHECK(queue.stream_index() == 0);
+    CHECK(bytes.download()[99] == 3); // after what the stream was given
 }
 
 TEST_CASE("a number is read back as it was when that was asked for, whatever comes later") {

@@ -22,3 +22,14 @@ TEST_CASE("a picture without a size is 720 pixels high, in the shape that the sc
     set_default_size(settings, &camera);
     CHECK(settings.width == 8192);
 }
+
+TEST_CASE("a scene is prepared with the tracers that a session of the settings takes") {
+    RenderSettings settings;
+    for (const bool on_cuda : {false, true}) {
+        CHECK(tracers_of(settings, on_cuda) == default_tracers(on_cuda));
+        CHECK(prepare_options(settings, on_cuda).tracers == default_tracers(on_cuda));
+    }
+    settings.tracers = same_for_all({.structure = StructureKind::Ploc, .walk = WalkKind::Wide4});
+    CHECK(prepare_options(settings, false).tracers == settings.tracers);
+    CHECK(aspect_of(3, 2) == 1.5f);
+}

@@ -11,7 +11,9 @@
 #include "base/limits.h"
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
+#include "render/update_scene.h"
 #include "session/session.h"
+#include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -140,6 +142,75 @@ TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and 
     CHECK(resident > 0);
     CHECK(resident_bytes() < resident + (4u << 20)); // a film of each change would be ten times that
 #endif
+}
+
+TEST_CASE("1000 frames in which instances of a large mesh and a lamp move copy little each and take no memory") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    std::vector<Scene> scenes(1, test::make_mixed_scene());
+    const test::TriangleMesh sphere = test::make_sphere(5, {0, 0, 0}, 1.0f); // 20480 triangles; instances 1 to 3
+    Mesh& large = scenes[0].meshes[0];
+    large.positions = large.normals = sphere.positions;
+    large.indices = sphere.indices;
+    Image& sky = scenes[0].environment->image;
+    sky = {512, 256, 3, std::vector<float>(std::size_t(512) * 256 * 3, 0.5f)};
+    sky.pixels[1000] = 40;
+    // A loop of places, each scene made of the one before.
+    constexpr int kPlaces = 8, kFrames = 1000;
+    SceneUpdate update;
+    update.moved_instances = {1, 5}; // 5: the lamp
+    scenes.reserve(kPlaces);
+    std::vector<PreparedScene> prepared = {prepare_scene(scenes[0], {}, messages)};
+    while (scenes.size() < kPlaces) {
+        Scene& scene = scenes.emplace_back(scenes.back());
+        for (const uint32_t i : update.moved_instances) scene.instances[i].world_from_local.translation.x += 0.1f;
+        prepared.push_back(update_scene(prepared.back(), scene, update, messages));
+        CHECK(prepared.back().lights.environment == prepared[0].lights.environment);
+    }
+    std::vector<Hash128> fresh; // on the CPU, of scenes that are prepared afresh
+    RenderSettings settings = queued_settings();
+    settings.width = 12, settings.height = 8;
+    for (const Scene& scene : scenes) {
+        Queue cpu = Queue::make_cpu();
+        PrepareOptions options;
+        options.centre = prepared[0].centre;
+        Session session(cpu, prepare_scene(scene, options, messages), camera_at(0), settings);
+        session.render(1);
+        fresh.push_back(picture_hash(session.picture()));
+    }
+    CHECK(fresh[0] != fresh[1]);
+
+    Session session(queue, prepared[0], camera_at(0), settings);
+    session.render(1);
+    const uint64_t allocations = queue.allocation_count();
+    for (int frame = 1; frame <= kFrames; ++frame) {
+        const std::size_t place = frame % kPlaces;
+        const uint64_t uploaded = queue.uploaded_bytes();
+        session.update_scene(prepared[place], parts_of(update));
+        session.render(1);
+        CHECK(queue.uploaded_bytes() - uploaded < 65536);
+        CHECK(picture_hash(session.picture()) == fresh[place]);
+    }
+    CHECK(queue.allocation_count() == allocations);
+}
+
+TEST_CASE("a session without a tracer says so and does not look at it") {
+    Queue queue = test::queue_asked_for();
+    Scene scene = test::make_mixed_scene();
+    const test::TriangleMesh sphere = test::make_sphere(7, {0, 0, 0}, 1.0f); // too many for brute force
+    scene.meshes[0].positions = scene.meshes[0].normals = sphere.positions;
+    scene.meshes[0].indices = sphere.indices;
+    const Prepared many(std::move(scene));
+    REQUIRE(many.prepared.triangles > kMaxBruteForceTriangles);
+    RenderSettings settings = queued_settings();
+    Session session(queue, many.prepared, camera_at(0), settings);
+    settings.tracers = same_for_all({.structure = StructureKind::Binned, .walk = WalkKind::BruteForce});
+    CHECK_THROWS_AS(session.set_settings(settings), Error);
+    CHECK_THROWS_AS(session.render(1), std::logic_error);
+    CHECK_THROWS_AS(session.stats(), std::logic_error);
+    settings.tracers.reset();
+    session.set_settings(settings);
+    CHECK(session.render(1) == 1);
 }
 
 TEST_CASE("nothing of a session is left on the device when it ends") {

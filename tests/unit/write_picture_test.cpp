@@ -115,3 +115,39 @@ TEST_CASE("what a camera's metadata says places that camera again") {
     CHECK(text_of(asked_for, "pertev.target") == "1,2,3");
     CHECK(text_of(asked_for, "pertev.projection") == "orthographic");
 }
+
+TEST_CASE("a record says of scene and camera what they were opened and chosen by") {
+    OpenOptions options;
+    options.scene = "mixed";
+    options.environment_radiance = Rgb{0.5f, 1, 0.25f};
+    options.environment_scale = 2;
+    options.environment_rotation_deg = 30;
+    options.show_back_faces = true;
+    Scene scene;
+    SceneSource source = source_of(options, scene);
+    CHECK(source.scene == "mixed");
+    CHECK(source.environment == "0.5,1,0.25");
+    CHECK(source.environment_scale == 2);
+    CHECK(source.environment_rotation_deg == 30);
+    CHECK(!source.has_environment);
+    CHECK(!source.two_sided_lights);
+    CHECK(source.show_back_faces);
+    options.environment_radiance.reset();
+    options.environment = "sky.hdr";
+    scene.environment.emplace();
+    source = source_of(options, scene);
+    CHECK(source.environment == "sky.hdr");
+    CHECK(source.has_environment);
+
+    CameraChoice choice;
+    choice.camera = "1";
+    choice.target = Vec3{1, 2, 3};
+    const CameraSource camera = source_of(choice, test::mixed_scene_camera());
+    CHECK(camera.camera == test::mixed_scene_camera());
+    CHECK(camera.name == "1");
+    CHECK(camera.target == Vec3{1, 2, 3});
+    CHECK(!camera.up);
+    CHECK(camera.fov_deg == 0);
+    choice.fov_deg = 40.0f;
+    CHECK(source_of(choice, {}).fov_deg == 40);
+}

@@ -1,6 +1,7 @@
 #pragma once
 
-// A kernel launched for nothing but to learn whether this binary can run on the GPU that is here.
+// A kernel that is never launched: whether CUDA finds code of it for the GPU that is here says whether this binary can
+// run there.
 
 namespace pertev {
 

@@ -132,7 +132,18 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
         w.path_stream = i;
         w.light_stream = in_turns ? i : going + i;
     }
-    queue_.fork_streams(in_turns ? 1 : 2 * going);
+    {
+        const Queue::Fork fork(queue_, in_turns ? 1 : 2 * going);
+        give_rounds(going, work);
+    }
+    const RenderCounts counts = render_counts_.download().front();
+    rays_.camera += work.samples;
+    rays_.bounce += counts.bounces;
+    rays_.shadow += counts.shadows;
+}
+
+/// To the first `going` wavefronts in turns, until all of them are done.
+void PathIntegrator::give_rounds(int going, const Work& work) {
     for (int done = 0; done < going;) {
         for (int i = 0; i < going; ++i) {
             Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
@@ -146,11 +157,6 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
             }
         }
     }
-    queue_.join_streams();
-    const RenderCounts counts = render_counts_.download().front();
-    rays_.camera += work.samples;
-    rays_.bounce += counts.bounces;
-    rays_.shadow += counts.shadows;
 }
 
 void PathIntegrator::give_round(Wavefront& w, const Work& work) {

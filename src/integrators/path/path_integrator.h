@@ -1,7 +1,8 @@
 #pragma once
 
-// Path tracing: the one file that orders the stages. Its two bodies, a loop per pixel and a wavefront over queues, call
-// the same functions and give the same bytes (tests/consistency/one_picture_test.cpp).
+// Path tracing: the one file that orders the stages. Its two bodies, a loop in which each thread of the CPU takes 128
+// paths side by side to their ends (integrators/path/path_loop.h) and a wavefront over queues, call the same functions
+// and give the same bytes (tests/consistency/one_picture_test.cpp).
 //
 // The wavefront goes round by round (integrators/path/path_queues.h). The host gives rounds to the device without
 // waiting for one: how many paths a round has stays there, and the host reads one round late whether any were left. Two
@@ -21,9 +22,6 @@
 #include "integrators/path/path_settings.h"
 
 namespace pertev {
-
-/// Loop is for the CPU, and for tracers that it can walk by itself (SceneTracer::host_trees); else it is Wavefront.
-enum class PathBody : uint8_t { Loop, Wavefront };
 
 class PathIntegrator final : public Integrator {
 public:
@@ -54,6 +52,7 @@ private:
         FilmView film;
     };
     struct Wavefront;
+    void give_rounds(int going, const Work& work);
     void give_round(Wavefront& wavefront, const Work& work);
 
     Queue& queue_;

@@ -21,6 +21,9 @@ enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 /// error (docs/performance.md).
 enum class Roulette : uint8_t { Throughput, FourthRoot };
 
+/// Loop is for the CPU, and for tracers that it can walk by itself (SceneTracer::host_trees); else it is Wavefront.
+enum class PathBody : uint8_t { Loop, Wavefront };
+
 struct PathSettings {
     uint32_t max_depth = 16; // scattering vertices: 0 emission only, 1 direct light
     Roulette roulette = Roulette::FourthRoot;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,8 @@ constexpr std::array kWalks = {
     WalkKind::BruteForce, WalkKind::RestartTrail, WalkKind::ShortStack,  WalkKind::ParentLinks,
     WalkKind::SkipLinks,  WalkKind::Packet,       WalkKind::Wide4,       WalkKind::Wide8,
     WalkKind::Wide8Simd,  WalkKind::Compressed,   WalkKind::Kd,          WalkKind::Octree};
+
+constexpr std::array kDistributions = {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch};
 
 constexpr std::array kTests = {TestKind::Exact, TestKind::Fast, TestKind::Woop};
 
@@ -142,6 +145,15 @@ const char* name_of_rta(const WalkOptions& options) {
     return !options.rta ? "off" : options.rta_at_pops ? "on" : "nodes";
 }
 
+std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions options) {
+    for (const auto& [rta, rta_at_pops] : {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
+        options.rta = rta;
+        options.rta_at_pops = rta_at_pops;
+        if (name == name_of_rta(options)) return options;
+    }
+    return std::nullopt;
+}
+
 std::string name_of(const Combination& c) {
     std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.walk));
     name += !c.options.rta ? " no-rta" : c.options.rta_at_pops ? " rta" : " rta-at-nodes";
@@ -154,6 +166,13 @@ std::string name_of(const Combination& c) {
 
 std::optional<StructureKind> structure_named(const std::string& name) { return kind_named(kStructures, name); }
 std::optional<WalkKind> walk_named(const std::string& name) { return kind_named(kWalks, name); }
+std::optional<Distribution> distribution_named(const std::string& name) { return kind_named(kDistributions, name); }
+
+std::optional<WalkKind> only_walk_of(StructureKind structure) {
+    if (is_kd(structure)) return WalkKind::Kd;
+    if (structure == StructureKind::Octree) return WalkKind::Octree;
+    return std::nullopt;
+}
 
 std::optional<std::string> why_not(StructureKind structure, WalkKind walk) {
     if ((walk == WalkKind::Kd) != is_kd(structure)) {

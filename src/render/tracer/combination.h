@@ -78,12 +78,18 @@ const char* name_of(Distribution distribution);
 const char* name_of(TestKind kind);
 /// "on", "nodes" (at nodes alone) or "off".
 const char* name_of_rta(const WalkOptions& options);
+/// `options` with RTA as that names it; nothing where nothing is named so.
+std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions options);
 /// "sbvh while-while rta near persistent"
 std::string name_of(const Combination& combination);
 
 /// Nothing when no kind is named so.
 std::optional<StructureKind> structure_named(const std::string& name);
 std::optional<WalkKind> walk_named(const std::string& name);
+std::optional<Distribution> distribution_named(const std::string& name);
+
+/// The walk that goes over structures of this kind; nothing where there are several.
+std::optional<WalkKind> only_walk_of(StructureKind structure);
 
 /// Whether the walk goes over trees of this kind at all; else why not.
 std::optional<std::string> why_not(StructureKind structure, WalkKind walk);

@@ -12,8 +12,9 @@ namespace pertev {
 namespace {
 
 /// Throws Error(OverLimit).
-void check_brute_force(const Combination& c, uint64_t triangles) {
-    if (c.walk != WalkKind::BruteForce || triangles <= kMaxBruteForceTriangles) return;
+std::shared_ptr<const BuiltStructure> structure_for(const Combination& c, SceneStructures& structures) {
+    const uint64_t triangles = structures.triangle_count();
+    if (c.walk != WalkKind::BruteForce || triangles <= kMaxBruteForceTriangles) return structures.get(c);
     throw Error(ErrorCode::OverLimit,
                 fmt::format("{}: each ray would test all {} triangles of the scene; pictures of at most {} are made so",
                             name_of(c), triangles, kMaxBruteForceTriangles));
@@ -24,16 +25,22 @@ void check_brute_force(const Combination& c, uint64_t triangles) {
 SceneTracer::SceneTracer(Queue& queue, SceneStructures& structures, const TracerChoice& choice)
     : queue_(queue), choice_(choice), scene_on_device_(queue, 1, "scene") {
     check_choice(choice, queue.is_cuda());
-    std::map<std::shared_ptr<const BuiltStructure>, std::shared_ptr<const StructureOnDevice>> placed;
+    std::map<std::shared_ptr<const BuiltStructure>, std::shared_ptr<StructureOnDevice>> placed;
     for (const RayKind kind : kRayKinds) {
-        check_brute_force(choice[kind], structures.triangle_count());
-        const auto built = structures.get(choice[kind]);
+        const auto built = structure_for(choice[kind], structures);
         auto& structure = placed[built];
-        if (structure == nullptr) structure = std::make_shared<const StructureOnDevice>(queue, built);
+        if (structure == nullptr) structure = std::make_shared<StructureOnDevice>(queue, built);
+        structures_.push_back(structure);
         tracers_.push_back(std::make_unique<Tracer>(queue, choice[kind], structure));
     }
     if (can_walk_on_host(choice, queue.is_cuda())) {
         host_trees_ = &std::get<HostTrees>(tracers_.front()->structure().trees());
+    }
+}
+
+void SceneTracer::set_structures(SceneStructures& structures) {
+    for (const RayKind kind : kRayKinds) {
+        structures_[static_cast<std::size_t>(kind)]->update(structure_for(choice_[kind], structures));
     }
 }
 

@@ -21,6 +21,10 @@ public:
     /// `queue` outlives it. Throws Error(BadInput) as check_choice does, Error(OutOfMemory), Error(OverLimit).
     SceneTracer(Queue& queue, SceneStructures& structures, const TracerChoice& choice);
 
+    /// The scene after a change, or another: memory of trees that is large enough stays, and only what has become
+    /// another is copied. Throws Error(OutOfMemory), Error(OverLimit); the tracer is then of no more use.
+    void set_structures(SceneStructures& structures);
+
     /// What the rays meet is part of this scene: its surfaces say which candidates count. Its arrays stay where they
     /// are as long as rays are traced.
     void set_surfaces(const SceneView& scene);
@@ -55,7 +59,8 @@ private:
 
     Queue& queue_;
     TracerChoice choice_;
-    std::vector<std::unique_ptr<Tracer>> tracers_; // [RayKind]
+    std::vector<std::shared_ptr<StructureOnDevice>> structures_; // [RayKind], one and the same for kinds that share it
+    std::vector<std::unique_ptr<Tracer>> tracers_;               // [RayKind]
     const HostTrees* host_trees_ = nullptr;
     SceneView scene_{};
     Buffer<SceneView> scene_on_device_;

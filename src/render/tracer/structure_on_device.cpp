@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
+
 namespace pertev {
 
 /// Where an array of the host's lies on the device; null of one without elements.
@@ -15,7 +17,7 @@ const T* StructureOnDevice::moved(const T* on_host) const {
 }
 
 template <class View>
-SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene) {
+SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene, const BuiltStructure* before) {
     const auto move = [&](View& view) {
         if constexpr (requires { view.nodes; }) view.nodes = moved(view.nodes);
         view.triangles = moved(view.triangles);
@@ -25,6 +27,8 @@ SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene) {
     move(scene.baked);
     for (const BuiltStructure::Array& array : structure_->arrays()) {
         std::span<const std::byte> bytes = array.bytes;
+        // Both structures are alive, so one address is one array.
+        if (before != nullptr && before->offset_of(bytes.data()) == array.offset) continue;
         std::vector<View> meshes;
         if (static_cast<const void*>(bytes.data()) == static_cast<const void*>(scene.meshes)) {
             meshes.assign(scene.meshes, scene.meshes + bytes.size() / sizeof(View));
@@ -39,11 +43,34 @@ SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene) {
     return scene;
 }
 
-StructureOnDevice::StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure)
-    : structure_(std::move(structure)), trees_(structure_->trees()) {
-    if (!queue.is_cuda()) return;
-    memory_ = Buffer<std::byte>(queue, structure_->device_bytes(), structure_->figures().name);
-    std::visit([&](const auto& scene) { trees_ = moved_scene(scene); }, structure_->trees());
+void StructureOnDevice::copy(const BuiltStructure* before) {
+    if (memory_.size() < structure_->device_bytes()) {
+        before = nullptr;
+        memory_ = Buffer<std::byte>(); // before the new one, so that both need not fit
+        memory_ = Buffer<std::byte>(queue_, structure_->device_bytes(), structure_->figures().name);
+    }
+    try {
+        std::visit([&](const auto& scene) { trees_ = moved_scene(scene, before); }, structure_->trees());
+    } catch (...) {
+        memory_ = Buffer<std::byte>(); // holds neither structure
+        throw;
+    }
+}
+
+StructureOnDevice::StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure, bool is_copied)
+    : queue_(queue), is_copied_(is_copied), structure_(std::move(structure)), trees_(structure_->trees()) {
+    if (is_copied_) copy(nullptr);
+}
+
+void StructureOnDevice::update(std::shared_ptr<const BuiltStructure> structure) {
+    PERTEV_CHECK(structure->trees().index() == trees_.index());
+    if (structure == structure_ && (memory_.size() > 0 || !is_copied_)) return;
+    const std::shared_ptr<const BuiltStructure> before = std::exchange(structure_, std::move(structure));
+    if (is_copied_) {
+        copy(before.get());
+    } else {
+        trees_ = structure_->trees();
+    }
 }
 
 } // namespace pertev

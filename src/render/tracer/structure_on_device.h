@@ -3,6 +3,7 @@
 // A structure where a walk of it runs. This is the one place that knows how a structure comes to a device.
 
 #include <memory>
+#include <utility>
 
 #include "device/buffer.h"
 #include "render/tracer/built_structure.h"
@@ -13,18 +14,30 @@ namespace pertev {
 class StructureOnDevice {
 public:
     /// `queue` outlives it. Throws Error(OutOfMemory).
-    StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure);
+    StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure)
+        : StructureOnDevice(queue, std::move(structure), queue.is_cuda()) {}
+    /// `is_copied`: also where the host's memory is the device's, as tests want it.
+    StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure, bool is_copied);
+
+    /// Puts `structure`, which is in the same layout, in the place of the one before. The memory stays where it is
+    /// large enough; an array that the one before has too, at the same place, is not copied again. trees() stays where
+    /// it is. Work that was queued before still sees the structure before. Throws Error(OutOfMemory), after which
+    /// nothing may be traced until the next update.
+    void update(std::shared_ptr<const BuiltStructure> structure);
 
     const AnyTrees& trees() const { return trees_; }
     const BuiltStructure& built() const { return *structure_; }
 
 private:
+    void copy(const BuiltStructure* before);
     template <class T>
     const T* moved(const T* on_host) const;
     template <class View>
-    SceneTrees<View> moved_scene(SceneTrees<View> scene);
+    SceneTrees<View> moved_scene(SceneTrees<View> scene, const BuiltStructure* before);
 
-    std::shared_ptr<const BuiltStructure> structure_;
+    Queue& queue_;
+    bool is_copied_;
+    std::shared_ptr<const BuiltStructure> structure_; // kept, so that its arrays' addresses go to no other array
     AnyTrees trees_;
     Buffer<std::byte> memory_;
 };

@@ -41,6 +41,7 @@ std::optional<LaneCounts> Tracer::count_lanes(bool any_hit, const TraceQuery& qu
 
 std::optional<KernelLimits> Tracer::limits() const {
     if (!queue_.is_cuda() || closest_->limits == nullptr) return std::nullopt;
+    const Queue::Scope scope(queue_, "limits of a kernel"); // CUDA tells those of the thread's current device
     return closest_->limits(structure_->built().has_instances());
 }
 

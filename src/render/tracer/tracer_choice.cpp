@@ -7,7 +7,19 @@
 
 namespace pertev {
 
-const Combination& TracerChoice::operator[](RayKind kind) const {
+const char* name_of(RayKind kind) {
+    switch (kind) {
+    case RayKind::Camera:
+        return "camera";
+    case RayKind::Bounce:
+        return "bounce";
+    case RayKind::Shadow:
+        break;
+    }
+    return "shadow";
+}
+
+Combination& TracerChoice::operator[](RayKind kind) {
     switch (kind) {
     case RayKind::Camera:
         return camera;

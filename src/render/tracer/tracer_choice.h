@@ -10,11 +10,14 @@ namespace pertev {
 
 enum class RayKind : uint8_t { Camera, Bounce, Shadow };
 inline constexpr RayKind kRayKinds[] = {RayKind::Camera, RayKind::Bounce, RayKind::Shadow};
+/// As on the command line: "camera".
+const char* name_of(RayKind kind);
 
 struct TracerChoice {
     Combination camera, bounce, shadow;
 
-    const Combination& operator[](RayKind kind) const;
+    Combination& operator[](RayKind kind);
+    const Combination& operator[](RayKind kind) const { return const_cast<TracerChoice&>(*this)[kind]; }
     bool operator==(const TracerChoice&) const = default;
 };
 

@@ -16,7 +16,7 @@ constexpr uint32_t kSkyWidth = 256, kSkyHeight = 128;
 
 bool is_lamp(const Material& material) {
     // What glows by a texture is a display or a badge, not what the rest is to be seen by.
-    return material.is_emissive() && material.kind != MaterialKind::Unlit && !material.emission_texture.has_image();
+    return material.is_lamp() && !material.emission_texture.has_image();
 }
 
 bool needs_light(const Scene& scene) {

@@ -16,9 +16,7 @@ constexpr std::size_t kMostLamps = 16, kMostTriangles = 4; // that are looked at
 constexpr uint64_t kMostSceneTriangles = 2'000'000;        // a tenth of a second for 128 rays on one core
 constexpr float kMuchMore = 20;                            // room behind for each metre before
 
-bool is_one_sided_lamp(const Material& material) {
-    return material.is_emissive() && material.kind != MaterialKind::Unlit && !material.two_sided_emission;
-}
+bool is_one_sided_lamp(const Material& material) { return material.is_lamp() && !material.two_sided_emission; }
 
 /// Two rays from the middle of each triangle that is looked at: straight out of its front, and out of its back.
 std::vector<LookRay> rays_from(const Scene& scene, const Instance& lamp) {

@@ -14,6 +14,7 @@ constexpr int kCodeBits = 63;
 } // namespace
 
 std::size_t sort_scratch_bytes(Queue& queue, uint32_t count) {
+    const Queue::Scope scope(queue, "room for sorting"); // CUB asks the thread's current device
     std::size_t bytes = 0;
 #if defined(__CUDACC__)
     if (queue.is_cuda()) {
@@ -23,7 +24,6 @@ std::size_t sort_scratch_bytes(Queue& queue, uint32_t count) {
                                         static_cast<uint32_t*>(nullptr), count, 0, kCodeBits);
     }
 #endif
-    static_cast<void>(queue);
     static_cast<void>(count);
     return bytes;
 }

@@ -127,8 +127,9 @@ inline constexpr bool kFastAlone = false;
 /// as well, and compiled for one tree of any surfaces. `kLanes`: lanes are counted.
 template <class Walk, bool kAny, bool kFast, bool kLanes>
 void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>& rows) {
+    constexpr bool kOneTreeToo = kFast || kFastAlone<Walk>;
     WalkKernel row = {kind, options, Distribution::OneAThread, kAny, true, kind != WalkKind::Packet};
-    row.trace = trace_one_a_thread < Walk, kAny, kFast || kFastAlone < Walk >> ;
+    row.trace = trace_one_a_thread<Walk, kAny, kOneTreeToo>;
     row.count = count_work<Walk, kAny>;
 #if defined(__CUDACC__)
     if constexpr (kLanes) row.count_lanes = count_lanes<Walk, kAny, Distribution::OneAThread>;

@@ -1,0 +1,23 @@
+// How many layers lie on a BSDF. What they reflect is in tests/statistical/bsdf_test.cpp.
+
+#include "shading/bsdf.h"
+
+#include <doctest/doctest.h>
+
+using namespace pertev;
+
+TEST_CASE("a layer for which there is no room is left out") {
+    Bsdf bsdf{DiffuseLobe{{0.5f, 0.4f, 0.3f}, 1}};
+    for (int i = 0; i < Bsdf::kMaxLayers; ++i) bsdf = make_coated(bsdf, 0.5f, 0.3f, 1.5f);
+    const Bsdf full = bsdf;
+    const Bsdf more[] = {make_coated(full, 1, 0.1f, 2), make_sheen(full, {1, 1, 1}, 0.5f)};
+    const Vec3 wo = normalize(Vec3{0.3f, 0.1f, 0.9f}), wi = normalize(Vec3{-0.5f, 0.2f, 0.7f});
+    for (const Bsdf& one_more : more) {
+        CHECK(one_more.layer_count == Bsdf::kMaxLayers);
+        CHECK(one_more.is_stacked);
+        CHECK(one_more.pdf(wo, wi) == full.pdf(wo, wi));
+        CHECK(one_more.eval(wo, wi).r == full.eval(wo, wi).r);
+    }
+    CHECK(full.eval(wo, wi).r !=
+          make_coated(Bsdf{DiffuseLobe{{0.5f, 0.4f, 0.3f}, 1}}, 0.5f, 0.3f, 1.5f).eval(wo, wi).r);
+}
