@@ -6,6 +6,7 @@
 #include "base/limits.h"
 #include "base/stopwatch.h"
 #include "render/hidden_back_share.h"
+#include "render/camera_work.h"
 #include "session/meter_exposure.h"
 
 namespace pertev {
@@ -130,17 +131,17 @@ Film& Session::current_film() {
     return fit(film_, settings_);
 }
 
-PictureView Session::view_of(const RenderSettings& settings) {
+PictureView Session::view_of(const Camera& camera, const RenderSettings& settings) {
     PERTEV_CHECK(scene_.has_value() && tracer_.has_value()); // the last set_scene or set_settings threw
     const SceneView& scene = scene_->view();
     return {scene,
-            make_camera_rays(camera_, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
+            make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
                              settings.height, scene.centre),
             settings.transparent};
 }
 
-/// Makes the integrator ready to add `samples` samples of the picture of `settings`.
-void Session::begin(const RenderSettings& settings, uint32_t samples) {
+/// Makes the integrator ready to add `samples` samples of the picture of `settings`, never to be abandoned.
+void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples) {
     const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {
@@ -149,7 +150,8 @@ void Session::begin(const RenderSettings& settings, uint32_t samples) {
     }
     integrator_settings_ = wanted;
     tracer_->time_kinds(settings.time_kinds);
-    integrator_->begin(view_of(settings), *tracer_, samples);
+    integrator_->abandon_when(nullptr);
+    integrator_->begin(view_of(camera, settings), *tracer_, samples);
     queue_.wait();
 }
 
@@ -158,13 +160,18 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     if (count == 0) return 0;
     const Stopwatch since_call;
     Film& film = current_film();
-    begin(settings_, count);
+    begin(camera_, settings_, count);
+    integrator_->abandon_when(abandon_);
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
     for (uint32_t done = 0; done < count;) {
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
         integrator_->render(first + done, pass, film);
+        if (abandon_ != nullptr && *abandon_ && !queue_.is_cuda()) { // parts of a sample may be missing
+            begin_film();
+            return 0;
+        }
         done += pass;
         const double seconds = watch.seconds();
         history_.samples = first + done;
@@ -183,7 +190,7 @@ Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
 }
 
 RenderStats Session::stats() {
-    if (!hidden_back_share_) hidden_back_share_ = hidden_back_share(queue_, *tracer_, view_of(settings_));
+    if (!hidden_back_share_) hidden_back_share_ = hidden_back_share(queue_, *tracer_, view_of(camera_, settings_));
     RenderStats stats = stats_;
     stats.samples = history_.samples;
     stats.invalid_samples = current_film().invalid_samples();
@@ -198,10 +205,27 @@ float Session::meter(ToneMap tone_map) {
     return meter_exposure(settings_, tone_map, [this](const RenderSettings& settings) {
         Film& film = fit(meter_film_, settings);
         film.clear();
-        begin(settings, settings.samples);
+        begin(camera_, settings, settings.samples);
         integrator_->render(0, settings.samples, film);
         return film.picture(settings.samples, settings.transparent);
     });
+}
+
+RenderResult Session::look_aside(const Camera& camera, const RenderSettings& settings) {
+    Film film(queue_, settings.width, settings.height, settings.aovs);
+    begin(camera, settings, settings.samples);
+    integrator_->render(0, settings.samples, film);
+    RenderResult result;
+    result.samples = settings.samples;
+    result.rays = integrator_->rays();
+    result.picture = film.picture(settings.samples, settings.transparent);
+    result.layers = film.layers(settings.samples);
+    result.ids = film.ids();
+    return result;
+}
+
+std::vector<RayWork> Session::count_camera_work() {
+    return pertev::count_camera_work(queue_, *tracer_, view_of(camera_, settings_));
 }
 
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
