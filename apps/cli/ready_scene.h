@@ -1,7 +1,7 @@
 #pragma once
 
-// From flags to all that a picture needs before its first sample: the scene read, its camera chosen, its trees built, the
-// device's queue. What render and view begin with alike.
+// From flags to all that a picture needs before its first sample: the scene read, its camera chosen, its trees built,
+// the device's queue. What render and view begin with alike.
 
 #include <memory>
 

@@ -40,9 +40,10 @@ bool is_this_machine_alone(const std::string& host) {
 
 void check_host(const std::string& host) {
     if (host == "0.0.0.0" || host == "::" || host == "[::]" || host == "*") {
-        throw Error(ErrorCode::BadInput, fmt::format("--host {}: say the one name or address that browsers will ask for; "
-                                                     "requests for another one are refused",
-                                                     host));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--host {}: say the one name or address that browsers will ask for; "
+                                "requests for another one are refused",
+                                host));
     }
 }
 
@@ -64,7 +65,8 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
     reporter.event(fmt::format(R"({{"event":"listening","address":{}}})", json_string(address)));
     if (!is_this_machine_alone(flags.host)) {
         reporter.messages().warn(fmt::format(
-            "--host {}: whoever reaches this machine by that name can try to connect, what is sent is not encrypted, and "
+            "--host {}: whoever reaches this machine by that name can try to connect, what is sent is not encrypted, "
+            "and "
             "whoever has the address below can watch and steer; without --host, ssh -L does the same in safety",
             flags.host));
         reporter.say_messages();
@@ -123,9 +125,9 @@ int view(ViewFlags flags) {
     start.pose = start_pose(start.record, source, size);
     reporter.set_work("waiting for somebody to look");
     end_soon();
-    run_viewer({.host = flags.host, .port = static_cast<uint16_t>(flags.port)}, start, source,
-               [&](const std::string& address) { report_address(flags, address, reporter); },
-               [] { return !interrupted(); });
+    run_viewer(
+        {.host = flags.host, .port = static_cast<uint16_t>(flags.port)}, start, source,
+        [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
     reporter.event(R"({"event":"done"})");
     return 0;
 }

@@ -142,9 +142,9 @@ bool Audience::is_anyone_there() const {
 bool Audience::is_behind() const {
     const std::lock_guard lock(mutex_);
     return latest_ != nullptr && std::ranges::any_of(clients_, [&](const auto& entry) {
-        const Client& client = entry.second;
-        return client.has_joined && client.seen < latest_->number && client.pace.may_send();
-    });
+               const Client& client = entry.second;
+               return client.has_joined && client.seen < latest_->number && client.pace.may_send();
+           });
 }
 
 std::string Audience::people_text(uint32_t you) const {
@@ -232,7 +232,7 @@ uint32_t Audience::picture_leaves(const SendJob& job, std::size_t bytes, std::si
         client.offset = job.offset + bytes;
         client.has_png = client.offset >= total_bytes;
     }
-    client.pace.sent(serial_, bytes, now_s);
+    client.pace.sent(serial_, bytes, now_s, job.is_piece);
     return serial_;
 }
 

@@ -32,11 +32,11 @@ struct PublishedFrame {
 /// The next thing to be sent to one client.
 struct SendJob {
     uint32_t client = 0;
-    std::string text;                             // where it is not empty, that
+    std::string text;                              // where it is not empty, that
     std::shared_ptr<const PublishedFrame> picture; // else this: as JPEG,
     int quality = 80;
     float scale = 1;
-    bool is_piece = false;                        // or as a piece of a PNG
+    bool is_piece = false; // or as a piece of a PNG
     std::size_t offset = 0, piece_bytes = 0;
 };
 
@@ -91,7 +91,7 @@ private:
         double opened_s = 0;
         double allowance = 2 * kMessagesPerSecond, counted_s = 0;
         LinkPace pace;
-        uint32_t seen = 0;   // number of the last picture that was sent
+        uint32_t seen = 0; // number of the last picture that was sent
         std::size_t offset = 0;
         bool has_png = false; // all of the last picture's
         bool text_under_way = false, wants_welcome = true, wants_people = true;

@@ -103,10 +103,8 @@ constexpr Key kMoveKeys[] = {kInput,
                              {"pace", read_pace}};
 constexpr Key kDragKeys[] = {kInput, kDx, kDy};
 constexpr Key kStepKeys[] = {kInput, kSteps};
-constexpr Key kPickKeys[] = {kInput,
-                             {"x", read_float<&ClientMessage::x, 0, 1>},
-                             {"y", read_float<&ClientMessage::y, 0, 1>},
-                             {"use", read_use}};
+constexpr Key kPickKeys[] = {
+    kInput, {"x", read_float<&ClientMessage::x, 0, 1>}, {"y", read_float<&ClientMessage::y, 0, 1>}, {"use", read_use}};
 constexpr Key kPlainKeys[] = {kInput};
 constexpr Key kCameraKeys[] = {kInput, {"index", read_whole<&ClientMessage::index>}};
 constexpr Key kSetKeys[] = {kInput, {"name", read_string<&ClientMessage::name, 32>}, {"value", read_value}};

@@ -37,20 +37,20 @@ enum class PickUse : uint8_t { Show, Orbit, Focus };
 
 struct ClientMessage {
     MessageKind kind = MessageKind::Hello;
-    uint32_t input = 0;                    // its number, which comes back with the first picture that shows it
-    float right = 0, up = 0, forward = 0;  // Move: [-1, 1]
-    float seconds = 0;                     // Move: how long, [0, 0.25]
-    Pace pace = Pace::Normal;              // Move
-    float dx = 0, dy = 0;                  // Orbit, Look, Pan: in heights of the picture, [-4, 4]
-    float steps = 0;                       // Zoom, Speed: of the wheel, [-20, 20]
-    float x = 0, y = 0;                    // Pick: of the picture's width and height, [0, 1]
-    PickUse use = PickUse::Show;           // Pick
-    uint32_t index = 0;                    // Camera
-    uint32_t frame = 0;                    // Ack
-    float milliseconds = 0;                // Ack: of decoding and drawing, [0, 1e6]
-    uint32_t client = 0;                   // Hand
-    std::string key;                       // Hello
-    std::string name;                      // Set
+    uint32_t input = 0;                      // its number, which comes back with the first picture that shows it
+    float right = 0, up = 0, forward = 0;    // Move: [-1, 1]
+    float seconds = 0;                       // Move: how long, [0, 0.25]
+    Pace pace = Pace::Normal;                // Move
+    float dx = 0, dy = 0;                    // Orbit, Look, Pan: in heights of the picture, [-4, 4]
+    float steps = 0;                         // Zoom, Speed: of the wheel, [-20, 20]
+    float x = 0, y = 0;                      // Pick: of the picture's width and height, [0, 1]
+    PickUse use = PickUse::Show;             // Pick
+    uint32_t index = 0;                      // Camera
+    uint32_t frame = 0;                      // Ack
+    float milliseconds = 0;                  // Ack: of decoding and drawing, [0, 1e6]
+    uint32_t client = 0;                     // Hand
+    std::string key;                         // Hello
+    std::string name;                        // Set
     std::variant<double, std::string> value; // Set: finite
 };
 

@@ -33,7 +33,8 @@ inline constexpr std::size_t kFrameHeaderBytes = 32;
 inline std::array<uint8_t, kFrameHeaderBytes> bytes_of(const FrameHeader& header) {
     std::array<uint8_t, kFrameHeaderBytes> bytes{};
     const auto put = [&](std::size_t at, uint32_t value, int count) {
-        for (int i = 0; i < count; ++i) bytes[at + static_cast<std::size_t>(i)] = static_cast<uint8_t>(value >> (8 * i));
+        for (int i = 0; i < count; ++i)
+            bytes[at + static_cast<std::size_t>(i)] = static_cast<uint8_t>(value >> (8 * i));
     };
     put(0, 1, 1);
     put(1, static_cast<uint32_t>(header.kind), 1);

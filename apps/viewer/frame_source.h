@@ -1,8 +1,9 @@
 #pragma once
 
 // The seam between the viewer and whatever makes its pictures: camera, settings and time in; after a budget of time a
-// picture that can be shown, and its numbers, out. Reconstruction of real-time frames and scenes that move plug in here:
-// by another FrameSource, or inside SessionFrames. Called by one thread, the one that the device's queue belongs to.
+// picture that can be shown, and its numbers, out. Reconstruction of real-time frames and scenes that move plug in
+// here: by another FrameSource, or inside SessionFrames. Called by one thread, the one that the device's queue belongs
+// to.
 
 #include <atomic>
 #include <optional>

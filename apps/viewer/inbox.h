@@ -1,7 +1,7 @@
 #pragma once
 
-// What the network's thread hands to the render's thread: a plain queue behind a mutex. It cannot grow without bound: the
-// clients' rates are limited, and what does not fit is refused.
+// What the network's thread hands to the render's thread: a plain queue behind a mutex. It cannot grow without bound:
+// the clients' rates are limited, and what does not fit is refused.
 
 #include <atomic>
 #include <chrono>
@@ -24,8 +24,8 @@ struct Steer {
     ClientMessage message;
 };
 
-/// A picture to be saved: "png" or "exr". `reply` is called once, from the render's thread, with the file's bytes; or with
-/// none where that failed.
+/// A picture to be saved: "png" or "exr". `reply` is called once, from the render's thread, with the file's bytes; or
+/// with none where that failed.
 struct Save {
     std::string format;
     std::function<void(std::vector<std::byte>)> reply;

@@ -75,8 +75,7 @@ Rgba8Image show_ids(std::span<const PixelIds> ids, uint32_t width, uint32_t heig
     });
 }
 
-Rgba8Image show_work(std::span<const RayWork> work, uint32_t width, uint32_t height, WorkKind kind,
-                     uint32_t& most) {
+Rgba8Image show_work(std::span<const RayWork> work, uint32_t width, uint32_t height, WorkKind kind, uint32_t& most) {
     std::vector<uint32_t> counts;
     counts.reserve(work.size());
     for (const RayWork& ray : work) counts.push_back(kind == WorkKind::Nodes ? ray.nodes : ray.triangles);

@@ -15,7 +15,8 @@ namespace pertev {
 Rgba8Image show_albedo(const Image& albedo);
 /// x, y, z in [-1, 1] as red, green, blue; black where nothing is.
 Rgba8Image show_normal(const Image& normal);
-/// The nearest is bright; by the logarithm of the distance between the nearest and the farthest. Black: nothing is there.
+/// The nearest is bright; by the logarithm of the distance between the nearest and the farthest. Black: nothing is
+/// there.
 Rgba8Image show_depth(const Image& depth);
 enum class IdKind : uint8_t { Instance, Primitive, Material };
 /// Black where nothing is.

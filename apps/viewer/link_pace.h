@@ -1,7 +1,8 @@
 #pragma once
 
 // What one client's link can take, by its acknowledgements: how many pictures may be under way (two at most, so that no
-// queue grows), how well they are packed and how large they are. Pure arithmetic over the times it is told.
+// queue grows), how well they are packed and how large they are. Pure arithmetic over the times it is told. A far link
+// is not a slow one: seconds a byte are told from the way itself by how times go with sizes (a running linear fit).
 
 #include <cstdint>
 #include <deque>
@@ -16,7 +17,8 @@ public:
     bool may_send() const { return under_way_.size() < kMostInFlight; }
     bool is_idle() const { return under_way_.empty(); }
 
-    void sent(uint32_t frame, std::size_t bytes, double now_s);
+    /// `is_piece`: of a still picture, which takes as long as it takes.
+    void sent(uint32_t frame, std::size_t bytes, double now_s, bool is_piece = false);
     /// The client has drawn this frame. False: no such frame is under way.
     bool acknowledged(uint32_t frame, double now_s);
 
@@ -36,11 +38,16 @@ private:
         uint32_t frame;
         std::size_t bytes;
         double at_s;
+        bool is_piece;
     };
-    void adapt();
+    void learn(double bytes, double seconds);
+    void adapt(double bytes);
 
     std::deque<Sent> under_way_;
-    double round_trip_s_ = 0, least_s_ = 1e9, last_ack_s_ = 0, rate_ = 0;
+    double round_trip_s_ = 0, last_ack_s_ = 0, rate_ = 0;
+    // Running means of the fit: sizes, times, and their products.
+    double bytes_ = 0, seconds_ = 0, bytes_squared_ = 0, bytes_seconds_ = 0;
+    double way_ = 0.03; // seconds that a picture without bytes would take; a guess until sizes have differed
     int quality_ = 80;
     float scale_ = 1;
     int calm_ = 0; // acknowledgements in a row without delay

@@ -23,7 +23,8 @@ Rgba8Image shrunk(const Rgba8Image& picture, uint32_t factor) {
     small.pixels.resize(std::size_t(small.width) * small.height * 4);
     for (uint32_t y = 0; y < small.height; ++y) {
         for (uint32_t x = 0; x < small.width; ++x) {
-            const uint32_t x1 = std::min(picture.width, (x + 1) * factor), y1 = std::min(picture.height, (y + 1) * factor);
+            const uint32_t x1 = std::min(picture.width, (x + 1) * factor),
+                           y1 = std::min(picture.height, (y + 1) * factor);
             uint32_t sums[4] = {}, count = 0;
             for (uint32_t v = y * factor; v < y1; ++v) {
                 for (uint32_t u = x * factor; u < x1; ++u, ++count) {

@@ -50,8 +50,8 @@ private:
     std::thread thread_;
 };
 
-/// The picture at 1/`factor` of its size, each pixel the mean of those it stands for; what is left over at the right and
-/// lower border counts with the last. Factor 1: the picture itself.
+/// The picture at 1/`factor` of its size, each pixel the mean of those it stands for; what is left over at the right
+/// and lower border counts with the last. Factor 1: the picture itself.
 Rgba8Image shrunk(const Rgba8Image& picture, uint32_t factor);
 
 } // namespace pertev

@@ -34,10 +34,11 @@ std::string settings_json() {
     for (const ViewSetting& setting : view_settings()) {
         std::string choices;
         for (const std::string& choice : setting.choices) append(choices, json_string(choice));
-        append(list, fmt::format(R"({{"name":"{}","label":{},"group":{},"kind":"{}","choices":[{}],"low":{},"high":{},"step":{}}})",
-                                 setting.name, json_string(setting.label), json_string(setting.group),
-                                 name_of(setting.kind), choices, json_number(setting.low), json_number(setting.high),
-                                 json_number(setting.step)));
+        append(list,
+               fmt::format(
+                   R"({{"name":"{}","label":{},"group":{},"kind":"{}","choices":[{}],"low":{},"high":{},"step":{}}})",
+                   setting.name, json_string(setting.label), json_string(setting.group), name_of(setting.kind), choices,
+                   json_number(setting.low), json_number(setting.high), json_number(setting.step)));
     }
     return list;
 }
@@ -55,24 +56,23 @@ std::string rays_per_second(uint64_t rays, const ViewNumbers& numbers) {
 }
 
 constexpr NumberRow kRows[] = {
-    {"Picture", "samples",
-     [](const ViewState& v, const ViewNumbers& n) { return fmt::format("{} of {}", n.frame->samples, v.picture.samples); }},
-    {"Picture", "size",
+    {"Now", "samples",
+     [](const ViewState& v, const ViewNumbers& n) {
+         return fmt::format("{} of {}", n.frame->samples, v.picture.samples);
+     }},
+    {"Now", "size",
      [](const ViewState&, const ViewNumbers& n) {
          return fmt::format("{} x {}", n.frame->image.width, n.frame->image.height);
      }},
-    {"Picture", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
-    {"Picture", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
+    {"Now", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
+    {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",
      [](const ViewState&, const ViewNumbers& n) {
          return n.frames_per_second > 0 ? fmt::format("{:.1f} a second", n.frames_per_second) : "";
      }},
-    {"Rays", "camera",
-     [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.camera, n); }},
-    {"Rays", "bounce",
-     [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.bounce, n); }},
-    {"Rays", "shadow",
-     [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.shadow, n); }},
+    {"Rays", "camera", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.camera, n); }},
+    {"Rays", "bounce", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.bounce, n); }},
+    {"Rays", "shadow", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.shadow, n); }},
 };
 
 std::string row_json(const char* group, const std::string& label, const std::string& value) {
@@ -141,7 +141,9 @@ std::string picked_text(const Scene& scene, const PickedPoint* point, float x, f
     };
     const auto text = [](Vec3 v) { return fmt::format("{:.4g}, {:.4g}, {:.4g}", v.x, v.y, v.z); };
     std::string rows;
-    const auto row = [&](const char* label, const std::string& value) { append(rows, row_json("Picked", label, value)); };
+    const auto row = [&](const char* label, const std::string& value) {
+        append(rows, row_json("Picked", label, value));
+    };
     row("instance", named(instance.name, point->instance));
     row("mesh", named(scene.meshes[instance.mesh].name, instance.mesh));
     if (point->material < scene.materials.size()) {

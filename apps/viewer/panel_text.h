@@ -1,7 +1,7 @@
 #pragma once
 
-// What the viewer says to its pages, as JSON: what there is to set (once), what is shown now (often), and answers. The rows
-// of numbers come from one table here; the page shows whatever rows it is given.
+// What the viewer says to its pages, as JSON: what there is to set (once), what is shown now (often), and answers. The
+// rows of numbers come from one table here; the page shows whatever rows it is given.
 
 #include <string>
 

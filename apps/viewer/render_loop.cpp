@@ -12,8 +12,8 @@
 namespace pertev {
 namespace {
 
-constexpr double kStillAfter = 0.15;  // seconds without a step, and the camera is at rest
-constexpr double kTellEvery = 0.2;    // seconds between two states, while nothing else is new
+constexpr double kStillAfter = 0.15; // seconds without a step, and the camera is at rest
+constexpr double kTellEvery = 0.2;   // seconds between two states, while nothing else is new
 constexpr double kFirstBudget = 0.1, kLongestBudget = 1;
 constexpr float kSpeedStep = 1.25f;
 
@@ -45,9 +45,7 @@ FrameRequest RenderLoop::request() const {
     return request;
 }
 
-std::string RenderLoop::flags() const {
-    return camera_flags(pose_, camera(), camera_name_);
-}
+std::string RenderLoop::flags() const { return camera_flags(pose_, camera(), camera_name_); }
 
 void RenderLoop::run(const std::function<bool()>& goes_on) {
     while (goes_on()) {
@@ -79,7 +77,7 @@ void RenderLoop::handle(const Command& command) {
 void RenderLoop::steer(const Steer& asked) {
     const ClientMessage& message = asked.message;
     if (message.input != 0) input_ = message.input;
-    is_done_ = false;
+    is_done_ = is_done_ && message.kind == MessageKind::Pick; // to look at a place changes nothing
     switch (message.kind) {
     case MessageKind::Move:
     case MessageKind::Orbit:
@@ -156,7 +154,8 @@ void RenderLoop::pick(const Steer& asked) {
     const Camera now = camera();
     const std::optional<PickedPoint> point = source_.pick(now, message.x, message.y);
     if (message.use == PickUse::Show) {
-        return audience_.tell(asked.client, picked_text(*start_.scene, point ? &*point : nullptr, message.x, message.y));
+        return audience_.tell(asked.client,
+                              picked_text(*start_.scene, point ? &*point : nullptr, message.x, message.y));
     }
     if (!point) return audience_.tell(asked.client, notice_text("note", "there is nothing but background"));
     if (message.use == PickUse::Orbit) {
@@ -166,6 +165,7 @@ void RenderLoop::pick(const Steer& asked) {
     const Transform& from = now.world_from_camera;
     view_.lens.focus_distance = max(-dot(point->position - from.translation, column(from, 2)), 1e-6f);
     budget_s_ = kFirstBudget;
+    is_done_ = false;
     const bool has_lens = view_.lens.aperture_radius > 0;
     audience_.tell(asked.client,
                    notice_text("note", fmt::format("in focus: {:.4g} m{}", view_.lens.focus_distance,

@@ -52,8 +52,8 @@ private:
     uint32_t input_ = 0;
     double moved_at_s_ = -1e9, told_at_s_ = -1e9, framed_at_s_ = -1e9;
     double frames_per_second_ = 0;
-    double budget_s_ = 0.1; // of the next picture at rest
-    bool is_done_ = false;  // nothing is left to be rendered for this state
+    double budget_s_ = 0.1;          // of the next picture at rest
+    bool is_done_ = false;           // nothing is left to be rendered for this state
     std::optional<ShownFrame> last_; // without its pixels, but for their number
     std::vector<Save> saves_;
 };

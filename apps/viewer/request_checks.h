@@ -22,20 +22,20 @@ struct ServerIdentity {
 struct RequestText {
     std::string_view method, target;
     std::string_view host, origin, cookie;
-    bool is_single = true;    // no header of these stands twice
-    bool is_upgrade = false;  // asks for a WebSocket
+    bool is_single = true;   // no header of these stands twice
+    bool is_upgrade = false; // asks for a WebSocket
 };
 
 struct RequestVerdict {
-    int status = 403;             // 200: answer it; 403, 404, 405 or 400: refuse
-    std::string reason;           // for a refusal, plain words
-    std::string path;             // "/main.js"; without the query
-    std::string query;            // behind the "?", undecoded
-    bool gives_cookie = false;    // the token was right: set the cookie
+    int status = 403;          // 200: answer it; 403, 404, 405 or 400: refuse
+    std::string reason;        // for a refusal, plain words
+    std::string path;          // "/main.js"; without the query
+    std::string query;         // behind the "?", undecoded
+    bool gives_cookie = false; // the token was right: set the cookie
 };
 
-/// The host of "name:port", "1.2.3.4" or "[::1]:80", brackets included; nothing for what is none, for a user's name in it,
-/// and for a port that is no number.
+/// The host of "name:port", "1.2.3.4" or "[::1]:80", brackets included; nothing for what is none, for a user's name in
+/// it, and for a port that is no number.
 std::optional<std::string_view> host_of(std::string_view authority);
 /// Whether a Host header names this server: localhost, 127.0.0.1, [::1] or `own`, in any case, with any port.
 bool is_own_host(std::string_view header, std::string_view own);

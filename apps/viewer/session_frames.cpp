@@ -40,8 +40,7 @@ bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
 } // namespace
 
-SessionFrames::SessionFrames(Session& session, double frame_s)
-    : session_(session), pace_(frame_s) {
+SessionFrames::SessionFrames(Session& session, double frame_s) : session_(session), pace_(frame_s) {
     session_.abandon_when(&abandon_);
 }
 
@@ -54,7 +53,8 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     // Layers and heat maps need no light.
     if (!is_beauty(request.view.layer)) settings.path.max_depth = 0;
     settings.pass_samples = 1;
-    if (sample_s_ > 0 && scale == 1) settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
+    if (sample_s_ > 0 && scale == 1)
+        settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
     return settings;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// The pictures of a Session, as the viewer shows them. While the camera moves: few samples, at the resolution that keeps
-// the frame rate. At rest: samples gather at full size until all that were asked for are there; that film is the one of
-// `pertev render`, to the bit.
+// The pictures of a Session, as the viewer shows them. While the camera moves: few samples, at the resolution that
+// keeps the frame rate. At rest: samples gather at full size until all that were asked for are there; that film is the
+// one of `pertev render`, to the bit.
 
 #include "apps/viewer/frame_pace.h"
 #include "apps/viewer/frame_source.h"

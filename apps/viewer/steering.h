@@ -1,9 +1,9 @@
 #pragma once
 
 // Steps of the camera, the one place for them: pure functions from one pose to the next. A pose is kept in the words of
-// the command line (eye, target, up), of which look_at makes the very camera that `pertev render` makes of its flags: so
-// a view can be taken from the viewer to a render, and the pictures are the same to the bit. Lengths are metres, angles
-// radians; a drag is given in heights of the picture.
+// the command line (eye, target, up), of which look_at makes the very camera that `pertev render` makes of its flags:
+// so a view can be taken from the viewer to a render, and the pictures are the same to the bit. Lengths are metres,
+// angles radians; a drag is given in heights of the picture.
 
 #include <optional>
 #include <string>
@@ -46,8 +46,8 @@ std::string camera_flags(const Pose& pose, const Camera& camera, const std::stri
 /// Degrees that the command line makes this angle of, to the bit where there are such.
 float degrees_for(float radians);
 
-/// A camera of one pixel that looks through the place (x, y) of the picture of `camera`, [0, 1] each from the upper left:
-/// without a lens. Its depth is the distance along that ray.
+/// A camera of one pixel that looks through the place (x, y) of the picture of `camera`, [0, 1] each from the upper
+/// left: without a lens. Its depth is the distance along that ray.
 Camera camera_through(const Camera& camera, float aspect, float x, float y);
 
 } // namespace pertev

@@ -17,7 +17,7 @@ namespace {
 
 using Kind = ViewSetting::Kind;
 
-constexpr const char* kLayers[] = {"picture", "albedo",    "normal",     "depth",         "instances",
+constexpr const char* kLayers[] = {"picture",   "albedo",    "normal",      "depth",          "instances",
                                    "triangles", "materials", "heat: nodes", "heat: triangles"};
 
 constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
@@ -100,7 +100,14 @@ std::vector<ViewSetting> make_settings() {
     };
     const auto numeric = [&](const char* name, const char* label, const char* group, Kind kind, double low, double high,
                              double step, auto get, auto set) {
-        all.push_back({name, label, group, kind, {}, low, high, step,
+        all.push_back({name,
+                       label,
+                       group,
+                       kind,
+                       {},
+                       low,
+                       high,
+                       step,
                        [get](const ViewState& s) { return SettingValue(static_cast<double>(get(s))); },
                        [set](ViewState& s, const SettingValue& v) {
                            set(s, number_of(v));
@@ -108,61 +115,75 @@ std::vector<ViewSetting> make_settings() {
                        }});
     };
 
-    choice("layer", "Show", "Picture", strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
-           [](ViewState& s, const std::string& name) {
-               s.layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
-               return std::string();
-           });
-    numeric("exposure", "Exposure, stops", "Picture", Kind::Number, -60, 60, 0.25,
-            [](const ViewState& s) { return s.display.exposure_stops; },
-            [](ViewState& s, float v) { s.display.exposure_stops = v; });
-    choice("tone_map", "Tone map", "Picture", tone_map_names(),
-           [](const ViewState& s) { return name_of(s.display.tone_map); },
-           [](ViewState& s, const std::string& name) {
-               s.display.tone_map = *tone_map_named(name);
-               return std::string();
-           });
-    choice("integrator", "Light", "Light", integrator_names(),
-           [](const ViewState& s) { return integrator_name(s.picture); },
-           [](ViewState& s, const std::string& name) {
-               set_integrator(s.picture, name);
-               return std::string();
-           });
-    numeric("max_depth", "Scatterings, at most", "Light", Kind::Whole, 0, kMaxPathDepth - 1, 1,
-            [](const ViewState& s) { return s.picture.path.max_depth; },
-            [](ViewState& s, float v) { s.picture.path.max_depth = static_cast<uint32_t>(v); });
-    numeric("spp", "Samples a pixel", "Light", Kind::Whole, 1, kMaxSamplesPerPixel, 1,
-            [](const ViewState& s) { return s.picture.samples; },
-            [](ViewState& s, float v) { s.picture.samples = static_cast<uint32_t>(v); });
-    choice("mode", "At rest", "Frames", {"reference", "real time"},
-           [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
-           [](ViewState& s, const std::string& name) {
-               s.is_real_time = name == "real time";
-               return std::string();
-           });
-    choice("moving_scale", "Size while moving", "Frames", strings(kScales),
-           [](const ViewState& s) {
-               return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
-           },
-           [](ViewState& s, const std::string& name) {
-               s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
-               return std::string();
-           });
-    numeric("fov", "Angle of view, degrees", "Camera", Kind::Number, 0.01, 179, 1,
-            [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
-            [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
-    numeric("aperture", "Radius of the lens, m", "Camera", Kind::Number, 0, 1e6, 0.005,
-            [](const ViewState& s) { return s.lens.aperture_radius; },
-            [](ViewState& s, float v) { s.lens.aperture_radius = v; });
-    numeric("focus", "Distance in focus, m", "Camera", Kind::Number, 1e-6, 1e9, 0.1,
-            [](const ViewState& s) { return s.lens.focus_distance; },
-            [](ViewState& s, float v) { s.lens.focus_distance = v; });
-    choice("structure", "Structure", "Rays (the picture stays the same)", names_of(all_structures()),
-           [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
-    choice("walk", "Walk", "Rays (the picture stays the same)", names_of(all_walks()),
-           [](const ViewState& s) { return name_of(shown_combination(s).walk); }, set_walk);
-    choice("rta", "Redundant traversal avoidance", "Rays (the picture stays the same)", {"on", "nodes", "off"},
-           [](const ViewState& s) { return name_of_rta(shown_combination(s).options); }, set_rta);
+    choice(
+        "layer", "Show", "Picture", strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
+        [](ViewState& s, const std::string& name) {
+            s.layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
+            return std::string();
+        });
+    numeric(
+        "exposure", "Exposure, stops", "Picture", Kind::Number, -60, 60, 0.25,
+        [](const ViewState& s) { return s.display.exposure_stops; },
+        [](ViewState& s, float v) { s.display.exposure_stops = v; });
+    choice(
+        "tone_map", "Tone map", "Picture", tone_map_names(),
+        [](const ViewState& s) { return name_of(s.display.tone_map); },
+        [](ViewState& s, const std::string& name) {
+            s.display.tone_map = *tone_map_named(name);
+            return std::string();
+        });
+    choice(
+        "integrator", "Light", "Light", integrator_names(),
+        [](const ViewState& s) { return integrator_name(s.picture); },
+        [](ViewState& s, const std::string& name) {
+            set_integrator(s.picture, name);
+            return std::string();
+        });
+    numeric(
+        "max_depth", "Scatterings, at most", "Light", Kind::Whole, 0, kMaxPathDepth - 1, 1,
+        [](const ViewState& s) { return s.picture.path.max_depth; },
+        [](ViewState& s, float v) { s.picture.path.max_depth = static_cast<uint32_t>(v); });
+    numeric(
+        "spp", "Samples a pixel", "Light", Kind::Whole, 1, kMaxSamplesPerPixel, 1,
+        [](const ViewState& s) { return s.picture.samples; },
+        [](ViewState& s, float v) { s.picture.samples = static_cast<uint32_t>(v); });
+    choice(
+        "mode", "At rest", "Frames", {"reference", "real time"},
+        [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
+        [](ViewState& s, const std::string& name) {
+            s.is_real_time = name == "real time";
+            return std::string();
+        });
+    choice(
+        "moving_scale", "Size while moving", "Frames", strings(kScales),
+        [](const ViewState& s) {
+            return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
+        },
+        [](ViewState& s, const std::string& name) {
+            s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
+            return std::string();
+        });
+    numeric(
+        "fov", "Angle of view, degrees", "Camera", Kind::Number, 0.01, 179, 1,
+        [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
+        [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
+    numeric(
+        "aperture", "Radius of the lens, m", "Camera", Kind::Number, 0, 1e6, 0.005,
+        [](const ViewState& s) { return s.lens.aperture_radius; },
+        [](ViewState& s, float v) { s.lens.aperture_radius = v; });
+    numeric(
+        "focus", "Distance in focus, m", "Camera", Kind::Number, 1e-6, 1e9, 0.1,
+        [](const ViewState& s) { return s.lens.focus_distance; },
+        [](ViewState& s, float v) { s.lens.focus_distance = v; });
+    choice(
+        "structure", "Structure", "Rays (the picture stays the same)", names_of(all_structures()),
+        [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
+    choice(
+        "walk", "Walk", "Rays (the picture stays the same)", names_of(all_walks()),
+        [](const ViewState& s) { return name_of(shown_combination(s).walk); }, set_walk);
+    choice(
+        "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)", {"on", "nodes", "off"},
+        [](const ViewState& s) { return name_of_rta(shown_combination(s).options); }, set_rta);
     return all;
 }
 

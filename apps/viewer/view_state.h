@@ -1,7 +1,7 @@
 #pragma once
 
-// What the viewer shows besides the camera's pose, and the table of settings that a page may change. A setting is one row
-// of that table: the page builds its panel from it, so a new setting is added here alone.
+// What the viewer shows besides the camera's pose, and the table of settings that a page may change. A setting is one
+// row of that table: the page builds its panel from it, so a new setting is added here alone.
 
 #include <functional>
 #include <string>
@@ -29,7 +29,7 @@ enum class ShownLayer : uint8_t {
 struct ViewState {
     RenderSettings picture; // at rest: size, light, number of samples, tracers
     Display display;
-    Camera lens;              // angle of view, aperture, focus; its place is the pose's
+    Camera lens; // angle of view, aperture, focus; its place is the pose's
     ShownLayer layer = ShownLayer::Beauty;
     bool is_real_time = false; // also at rest, pictures are those of the movement
     float moving_scale = 0;    // of the size while moving; 0: whatever keeps the frame rate
@@ -45,8 +45,8 @@ struct ViewSetting {
     const char* label;
     const char* group;
     Kind kind;
-    std::vector<std::string> choices;        // of a Choice
-    double low = 0, high = 0, step = 1;      // of a number
+    std::vector<std::string> choices;   // of a Choice
+    double low = 0, high = 0, step = 1; // of a number
     std::function<SettingValue(const ViewState&)> get;
     /// Empty where that was done; else why not, in plain words, and nothing was done.
     std::function<std::string(ViewState&, const SettingValue&)> set;

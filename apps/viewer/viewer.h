@@ -31,10 +31,9 @@ struct ViewerStart {
     float speed = 1;         // metres a second of keys
 };
 
-/// Listens, calls `listening` with the address that lets in whoever has it, and goes on as long as `goes_on` says so; it is
-/// asked often. Throws Error(BadInput) where it cannot listen, Error(DeviceFault).
+/// Listens, calls `listening` with the address that lets in whoever has it, and goes on as long as `goes_on` says so;
+/// it is asked often. Throws Error(BadInput) where it cannot listen, Error(DeviceFault).
 void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSource& source,
-                const std::function<void(const std::string& address)>& listening,
-                const std::function<bool()>& goes_on);
+                const std::function<void(const std::string& address)>& listening, const std::function<bool()>& goes_on);
 
 } // namespace pertev

@@ -154,8 +154,8 @@ private:
             const auto data = self->buffer_.cdata();
             const std::string text(static_cast<const char*>(data.data()), data.size());
             self->buffer_.consume(self->buffer_.size());
-            const std::string why = self->stream_.got_text() ? self->server_.events.said(self->client_, text)
-                                                             : "texts alone are read";
+            const std::string why =
+                self->stream_.got_text() ? self->server_.events.said(self->client_, text) : "texts alone are read";
             if (!why.empty()) return self->drop(websocket::close_code::policy_error, why);
             if (self->is_open_) self->read();
         });
@@ -204,7 +204,8 @@ public:
             if (fault == http::error::header_limit || fault == http::error::body_limit) {
                 return self->reply(refusal(413, "That is too large."), false);
             }
-            if (fault == http::error::end_of_stream || fault == beast::error::timeout || fault.category() != http::make_error_code(http::error::bad_method).category()) {
+            if (fault == http::error::end_of_stream || fault == beast::error::timeout ||
+                fault.category() != http::make_error_code(http::error::bad_method).category()) {
                 return self->close();
             }
             self->reply(refusal(400, "That is no HTTP."), false);
@@ -227,9 +228,9 @@ private:
         if (file == server_.files.end()) return reply(refusal(404, "There is nothing of this name."), keeps);
         Response response = answer(200, file->type, std::string(file->text));
         if (verdict.gives_cookie) {
-            response.set(http::field::set_cookie, fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict",
-                                                              server_.identity.cookie_name,
-                                                              server_.identity.cookie_value));
+            response.set(http::field::set_cookie,
+                         fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", server_.identity.cookie_name,
+                                     server_.identity.cookie_value));
         }
         reply(std::move(response), keeps);
     }
@@ -264,9 +265,8 @@ private:
         server_.events.save(format, [self = shared_from_this(), format, keeps](std::vector<std::byte> bytes) {
             asio::post(self->server_.context, [self, format, keeps, bytes = std::move(bytes)] {
                 if (bytes.empty()) return self->reply(refusal(500, "There is no picture to save."), keeps);
-                Response response =
-                    answer(200, format == "png" ? "image/png" : "image/x-exr",
-                           std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+                Response response = answer(200, format == "png" ? "image/png" : "image/x-exr",
+                                           std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
                 response.set(http::field::content_disposition, "attachment; filename=\"pertev." + format + "\"");
                 self->reply(std::move(response), keeps);
             });
@@ -303,8 +303,8 @@ void WebServer::Inside::listen(const std::string& host, uint16_t port) {
     const std::string plain = host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
     const auto places = tcp::resolver(context).resolve(plain, std::to_string(port), tcp::resolver::passive, fault);
     const auto fail = [&] {
-        throw Error(ErrorCode::BadInput, fmt::format("--host {} --port {}: cannot listen there: {}", host, port,
-                                                     fault.message()));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--host {} --port {}: cannot listen there: {}", host, port, fault.message()));
     };
     if (fault || places.empty()) fail();
     const tcp::endpoint place = places.begin()->endpoint();

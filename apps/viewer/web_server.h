@@ -1,8 +1,8 @@
 #pragma once
 
-// One port that speaks HTTP and WebSocket, by Boost.Beast, which web_server.cpp alone sees. It knows requests, sizes and
-// connections, and nothing of pictures: the page's files lie in the program, everything else is asked of `WebEvents`. It
-// has one thread of its own, from which all events come.
+// One port that speaks HTTP and WebSocket, by Boost.Beast, which web_server.cpp alone sees. It knows requests, sizes
+// and connections, and nothing of pictures: the page's files lie in the program, everything else is asked of
+// `WebEvents`. It has one thread of its own, from which all events come.
 
 #include <cstddef>
 #include <cstdint>
@@ -48,8 +48,8 @@ struct WebLimits {
 
 class WebServer {
 public:
-    /// Listens at once; port 0 takes any that is free. `files` and `events` outlive it. Throws Error(BadInput) where that
-    /// host and port cannot be had.
+    /// Listens at once; port 0 takes any that is free. `files` and `events` outlive it. Throws Error(BadInput) where
+    /// that host and port cannot be had.
     WebServer(const std::string& host, uint16_t port, ServerIdentity identity, std::vector<PageFile> files,
               WebEvents& events, const WebLimits& limits = {});
     /// Says goodbye to everybody, and ends.

@@ -13,7 +13,10 @@ void Wheel::give(uint32_t client) {
 }
 
 void Wheel::join(uint32_t client, const std::string& key, double now_s) {
+    const auto holder = std::ranges::find(seats_, holder_, &Seat::client);
+    const bool held_it = holder != seats_.end() && !key.empty() && holder->key == key;
     seats_.push_back({client, key, false});
+    if (held_it) return give(client);
     look(now_s);
     if (holder_ != 0) return;
     if (kept_for_.empty() || (!key.empty() && key == kept_for_)) give(client);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Who steers: one client at a time. The first that comes has the wheel. It may hand it over; when it goes away the wheel
-// waits a while for it to come back, known by its key, and then goes to the client that has waited longest.
+// Who steers: one client at a time. The first that comes has the wheel. It may hand it over; when it goes away the
+// wheel waits a while for it to come back, known by its key, and then goes to the client that has waited longest.
 
 #include <cstdint>
 #include <optional>

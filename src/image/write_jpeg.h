@@ -19,8 +19,8 @@ void check_jpeg_size(const std::string& name, uint32_t width, uint32_t height);
 std::vector<std::byte> encode_jpeg(const Rgba8Image& picture, int quality = 95);
 
 /// The same picture, packed by all threads: strips of rows side by side, joined by restart markers to one file. Decodes
-/// to the very pixels of encode_jpeg. `half_chroma`: colour at half the resolution, which is smaller and faster. Throws as
-/// check_jpeg_size.
+/// to the very pixels of encode_jpeg. `half_chroma`: colour at half the resolution, which is smaller and faster. Throws
+/// as check_jpeg_size.
 std::vector<std::byte> encode_jpeg_strips(const Rgba8Image& picture, int quality, bool half_chroma);
 
 /// Replaces `path` atomically. Throws Error(FileWrite).

@@ -33,7 +33,8 @@ public:
     /// way. Throws Error(DeviceFault).
     virtual void render(uint32_t first, uint32_t count, Film& film) = 0;
 
-    /// Where it can, render() returns at once when `*flag` is true, and the film is then to be thrown away. Null: never.
+    /// Where it can, render() returns at once when `*flag` is true, and the film is then to be thrown away. Null:
+    /// never.
     virtual void abandon_when(const std::atomic<bool>*) {}
 
     /// Since begin().

@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
-#include "render/hidden_back_share.h"
 #include "render/camera_work.h"
+#include "render/hidden_back_share.h"
 #include "session/meter_exposure.h"
 
 namespace pertev {

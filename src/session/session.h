@@ -83,11 +83,11 @@ public:
     /// is uploaded. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
     float meter(ToneMap tone_map);
 
-    /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this depth,
-    /// and `settings.samples` samples. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
+    /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this
+    /// depth, and `settings.samples` samples. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
     RenderResult look_aside(const Camera& camera, const RenderSettings& settings);
-    /// Nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera rays; empty where
-    /// that cannot be told (packets). Throws as look_aside.
+    /// Nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera rays; empty
+    /// where that cannot be told (packets). Throws as look_aside.
     std::vector<RayWork> count_camera_work();
     /// From now on render() breaks off in the middle of a sample when `*flag` is true, on the CPU alone; the film then
     /// begins anew. Null: never. `flag` outlives the session.

@@ -10,6 +10,7 @@ import socket
 import struct
 import subprocess
 import tempfile
+import threading
 import time
 import urllib.parse
 
@@ -109,24 +110,68 @@ def read_all(made):
     return data
 
 
+class Tunnel:
+    """What stands between a page and the viewer, as ssh -L does, on a port of its own; it can be cut."""
+
+    def __init__(self, viewer):
+        self.viewer, self.ends, self.is_cut = viewer, [], False
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.port = self.server.getsockname()[1]
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def accept(self):
+        try:
+            while True:
+                near, _ = self.server.accept()
+                if self.is_cut:
+                    near.close()
+                    continue
+                far = self.viewer.connect()
+                self.ends += [near, far]
+                for here, there in [(near, far), (far, near)]:
+                    threading.Thread(target=self.pass_on, args=(here, there), daemon=True).start()
+        except OSError:
+            pass  # it was closed
+
+    def pass_on(self, here, there):
+        try:
+            here.settimeout(None)
+            while chunk := here.recv(65536):
+                there.sendall(chunk)
+        except OSError:
+            pass
+        for end in (here, there):
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
+
+    def cut(self):
+        self.is_cut = True
+        for end in self.ends:
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
+
+    def mend(self):
+        self.is_cut = False
+
+
 class Closed(Exception):
     """The other side closed the WebSocket; holds code and reason."""
 
 
-class Client:
-    """A WebSocket of the viewer. Acknowledges pictures as a page does, unless it is told not to."""
+class WebSocket:
+    """The side of a WebSocket that asks for it."""
 
-    def __init__(self, viewer, key="test", says_hello=True, headers=None, acknowledges=True):
-        self.acknowledges, self.input = acknowledges, 0
-        self.texts, self.pictures = [], []
-        self.socket = viewer.connect()
-        given = dict(viewer.own_headers(), Origin=f"http://{viewer.host}:{viewer.port}") if headers is None else headers
+    def __init__(self, made, path, headers):
+        self.socket, self.buffer = made, b""
         secret = base64.b64encode(os.urandom(16)).decode()
-        lines = ["GET /socket HTTP/1.1", "Upgrade: websocket", "Connection: Upgrade", "Sec-WebSocket-Version: 13",
+        lines = [f"GET {path} HTTP/1.1", "Upgrade: websocket", "Connection: Upgrade", "Sec-WebSocket-Version: 13",
                  f"Sec-WebSocket-Key: {secret}"]
-        lines += [f"{name}: {value}" for name, value in given.items()] + ["", ""]
+        lines += [f"{name}: {value}" for name, value in headers.items()] + ["", ""]
         self.socket.sendall("\r\n".join(lines).encode())
-        self.buffer = b""
         while b"\r\n\r\n" not in self.buffer:
             chunk = self.socket.recv(65536)
             if not chunk:
@@ -134,12 +179,8 @@ class Client:
             self.buffer += chunk
         head, _, self.buffer = self.buffer.partition(b"\r\n\r\n")
         self.status = int(head.split()[1]) if head else 0
-        if self.status != 101:
-            return
         proof = base64.b64encode(hashlib.sha1((secret + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode()).digest())
-        assert proof in head, head
-        if says_hello:
-            self.say(type="hello", key=key)
+        assert self.status != 101 or proof in head, head
 
     def __enter__(self):
         return self
@@ -157,7 +198,7 @@ class Client:
             head += bytes([0x80 | 127]) + struct.pack(">Q", len(data))
         mask = os.urandom(4)
         stretched = (mask * (len(data) // 4 + 1))[: len(data)]
-        masked = (int.from_bytes(data, "big") ^ int.from_bytes(stretched, "big")).to_bytes(len(data), "big") if data else b""
+        masked = (int.from_bytes(data, "big") ^ int.from_bytes(stretched, "big")).to_bytes(len(data), "big")
         self.socket.sendall(head + mask + masked)
 
     def say_text(self, text):
@@ -165,15 +206,6 @@ class Client:
 
     def say(self, **message):
         self.say_text(json.dumps(message))
-
-    def steer(self, **message):
-        """Sends an input; gives its number."""
-        self.input += 1
-        self.say(n=self.input, **message)
-        return self.input
-
-    def set(self, name, value):
-        return self.steer(type="set", name=name, value=value)
 
     def take(self, count):
         while len(self.buffer) < count:
@@ -184,8 +216,8 @@ class Client:
         data, self.buffer = self.buffer[:count], self.buffer[count:]
         return data
 
-    def receive(self, timeout=PATIENCE_S):
-        """The next message: a dictionary, or (header, bytes)."""
+    def receive_data(self, timeout=PATIENCE_S):
+        """Kind and bytes of the next message: 1 is text, 2 is not."""
         self.socket.settimeout(timeout)
         while True:
             first, size = self.take(2)
@@ -199,15 +231,40 @@ class Client:
                 raise Closed(struct.unpack(">H", data[:2])[0] if data else 0, data[2:].decode())
             if opcode == 9:
                 self.send_frame(10, data)
-            elif opcode == 1:
-                return json.loads(data)
-            elif opcode == 2:
-                names = ["version", "kind", "flags", "frame", "input", "samples", "width", "height", "full_width",
-                         "full_height", "offset", "total"]
-                header = dict(zip(names, HEADER.unpack(data[:32])))
-                if self.acknowledges:
-                    self.say(type="ack", frame=header["frame"], ms=1)
-                return header, data[32:]
+            elif opcode in (1, 2):
+                return opcode, data
+
+
+class Client(WebSocket):
+    """A client of the viewer. Acknowledges pictures as a page does, unless it is told not to."""
+
+    def __init__(self, viewer, key="test", says_hello=True, headers=None, acknowledges=True):
+        self.acknowledges, self.input = acknowledges, 0
+        given = dict(viewer.own_headers(), Origin=f"http://{viewer.host}:{viewer.port}") if headers is None else headers
+        super().__init__(viewer.connect(), "/socket", given)
+        if self.status == 101 and says_hello:
+            self.say(type="hello", key=key)
+
+    def steer(self, **message):
+        """Sends an input; gives its number."""
+        self.input += 1
+        self.say(n=self.input, **message)
+        return self.input
+
+    def set(self, name, value):
+        return self.steer(type="set", name=name, value=value)
+
+    def receive(self, timeout=PATIENCE_S):
+        """The next message: a dictionary, or (header, bytes)."""
+        kind, data = self.receive_data(timeout)
+        if kind == 1:
+            return json.loads(data)
+        names = ["version", "kind", "flags", "frame", "input", "samples", "width", "height", "full_width",
+                 "full_height", "offset", "total"]
+        header = dict(zip(names, HEADER.unpack(data[:32])))
+        if self.acknowledges:
+            self.say(type="ack", frame=header["frame"], ms=1)
+        return header, data[32:]
 
     def until(self, wanted, timeout=PATIENCE_S):
         """The first message that `wanted` accepts."""

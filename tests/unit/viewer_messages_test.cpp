@@ -1,8 +1,13 @@
 // What pages may say to the viewer (apps/viewer/client_message.h): strict, bounded, and without a crash for any bytes.
 
+#include <cmath>
+#include <iterator>
+#include <string>
+
 #include <doctest/doctest.h>
 
 #include "apps/viewer/client_message.h"
+#include "tests/support/options.h"
 #include "tests/support/random.h"
 
 using namespace pertev;
@@ -57,10 +62,10 @@ TEST_CASE("what is not exactly a message is none") {
              "1",
              "null",
              R"("hello")",
-             R"({"type":"hello"})",                                       // a key is missing
-             R"({"type":"hello","key":"a","key":"b"})",                   // one stands twice
+             R"({"type":"hello"})",                     // a key is missing
+             R"({"type":"hello","key":"a","key":"b"})", // one stands twice
              R"({"type":"ask","type":"ask"})",
-             R"({"type":"hello","key":"a","more":1})",                    // one too many
+             R"({"type":"hello","key":"a","more":1})", // one too many
              R"({"type":"hello","key":7})",
              R"({"type":"hello","key":"\u0000"})",
              R"({"type":"Hello","key":"a"})",
@@ -90,7 +95,7 @@ TEST_CASE("what is not exactly a message is none") {
 
 TEST_CASE("spoiled messages and random bytes are read or refused, and values that are read are in range") {
     test::Random random(5);
-    const int rounds = test::effort(10'000, 1'000'000);
+    const int rounds = static_cast<int>(test::effort(10'000, 1'000'000));
     int read = 0;
     for (int i = 0; i < rounds; ++i) {
         std::string text = kGood[random.below(std::size(kGood))];

@@ -4,6 +4,7 @@
 
 #include "apps/viewer/access_token.h"
 #include "apps/viewer/request_checks.h"
+#include "tests/support/options.h"
 #include "tests/support/random.h"
 
 using namespace pertev;
@@ -39,8 +40,8 @@ TEST_CASE("the server's own names are known in any case and with any port; other
         CHECK_MESSAGE(is_own_host(host, "render1.lan"), host);
     }
     for (const char* host : {"", "evil.com", "localhost.evil.com", "localhost:", "localhost:80a", "127.0.0.1.evil.com",
-                             "user@localhost", "localhost/", "::1", "[::1", "[::1]x", "[]", "127.0.0.2", "localhost:123456",
-                             "local host", "localhost:80:80"}) {
+                             "user@localhost", "localhost/", "::1", "[::1", "[::1]x", "[]", "127.0.0.2",
+                             "localhost:123456", "local host", "localhost:80:80"}) {
         CHECK_MESSAGE(!is_own_host(host, "render1.lan"), host);
     }
     CHECK(is_own_host("[fe80::1]:80", "fe80::1"));
@@ -120,7 +121,7 @@ TEST_CASE("no text of a request breaks the checks or gets in by chance") {
         for (uint32_t i = random.below(8); i > 0; --i) made += pieces[random.below(std::size(pieces))];
         return made;
     };
-    const int rounds = test::effort(10'000, 1'000'000);
+    const int rounds = static_cast<int>(test::effort(10'000, 1'000'000));
     for (int i = 0; i < rounds; ++i) {
         const std::string method = text(), target = text(), host = text(), origin = text(), cookie = text();
         RequestText request = good_request();

@@ -95,6 +95,10 @@ function receive(message) {
       break;
     case "state":
       state = message;
+      if (message.phase === "moving" && mark) {
+        mark = null; // what was picked lies elsewhere now
+        draw();
+      }
       settings.show(message.values);
       showReadings();
       break;
@@ -113,7 +117,7 @@ function receive(message) {
 /** Of its group; rows of one group stay as they are.
  * @param {string[]} row */
 function order(row) {
-  return ["Picture", "Frames", "Rays", "Stages"].indexOf(row[0]);
+  return ["Now", "Frames", "Rays", "Stages"].indexOf(row[0]);
 }
 
 function showReadings() {
@@ -229,6 +233,7 @@ function save(format) {
 
 /** @param {string} name @param {string | number} value */
 function set(name, value) {
+  if (state) state.values[name] = value; // so that a key pressed twice counts twice before the viewer answers
   link.sendInput({ type: "set", name, value });
 }
 

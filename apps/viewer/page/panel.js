@@ -31,7 +31,7 @@ export function showRows(place, rows) {
       if (name !== group) place.append(make("h2", name));
       group = name;
       const row = make("div", "", "row reading");
-      row.append(make("span", label), make("span", "", label.includes("hash") ? "value hash" : "value"));
+      row.append(make("span", label), make("span", "", label === "film hash" ? "value hash" : "value"));
       place.append(row);
     }
   }
