@@ -55,10 +55,11 @@ class FrameSource {
 public:
     virtual ~FrameSource() = default;
 
-    /// The next picture: at rest more samples gather in the one before. Nothing where `abandon` broke it off. Throws
+    /// The next picture: at rest more samples gather in the one before. Nothing where `abandon` broke it off, which is for
+    /// pictures at rest alone: the movement's are short. Throws
     /// Error(OutOfMemory, OverLimit, DeviceFault).
     virtual std::optional<ShownFrame> next(const FrameRequest& request) = 0;
-    /// Until its flag falls, what is under way is not wanted any more.
+    /// While it is true, the picture at rest that is under way is not wanted any more.
     virtual std::atomic<bool>& abandon() = 0;
 
     /// What lies at (x, y) of the picture, [0, 1] each from the upper left; nothing for the background.

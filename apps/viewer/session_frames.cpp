@@ -116,18 +116,20 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
     const uint32_t before = session_.history().samples;
     const bool was_begun = before > 0;
+    // A picture of the movement is finished whatever comes: input comes faster than pictures, and would break off each.
+    session_.abandon_when(is_small ? nullptr : &abandon_);
     const Stopwatch render;
     ShownFrame frame;
     uint32_t added = 0;
     if (before < wanted) {
         added = session_.render(is_small ? 1 : wanted - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
-            return !abandon_ && now.seconds < request.budget_s;
+            return (is_small || !abandon_) && now.seconds < request.budget_s;
         });
     }
     frame.render_s = render.seconds();
     if (added > 0 && !is_small) sample_s_ = frame.render_s / added;
-    if (abandon_) return std::nullopt;
+    if (abandon_ && !is_small) return std::nullopt;
     frame.samples = session_.history().samples;
     if (frame.samples == 0) return std::nullopt;
     const Stopwatch display;

@@ -2,6 +2,7 @@
 """The page of `pertev view` in a real headless Chromium: it loads without a complaint, shows the picture, and every key
 does what its help says. Skipped where there is no Chromium."""
 
+import json
 import os
 import re
 import sys
@@ -9,7 +10,7 @@ import time
 import unittest
 
 from chromium import Chromium, find_chromium
-from cli_run import main
+from cli_run import SANITIZED, main
 from viewer_client import Client, Tunnel, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
@@ -29,6 +30,7 @@ class Page(unittest.TestCase):
         cls.browser.__enter__()
         cls.browser.go(cls.viewer.address)
         cls.browser.until("document.body.dataset.kind == 'png' && document.body.dataset.phase == 'done'")
+        cls.home = cls.browser.value("document.body.dataset.flags")
 
     @classmethod
     def tearDownClass(cls):
@@ -43,6 +45,7 @@ class Page(unittest.TestCase):
     def tearDown(self):
         self.eye.socket.close()
         self.browser.key("KeyR", "r")
+        self.browser.until(f"document.body.dataset.flags == {json.dumps(self.home)} && document.body.dataset.phase == 'done'")
         self.assertEqual(self.browser.errors, [])
 
     def moved(self, do):
@@ -188,10 +191,9 @@ class Page(unittest.TestCase):
             if resident == 0 and time.monotonic() > end - 0.7 * STEERING_S:
                 resident = self.viewer.resident_bytes()
         page.key("KeyA", "a", down=False)
-        self.assertLess(self.viewer.resident_bytes() - resident, 32 << 20)
+        if not SANITIZED:  # which keeps freed memory
+            self.assertLess(self.viewer.resident_bytes() - resident, 32 << 20)
         print(f"input to picture: median {sorted(waits)[len(waits) // 2]} ms of {len(waits)}", file=sys.stderr)
-        page.key("KeyR", "r")
-        page.until("document.body.dataset.phase == 'done'")
 
 
 class Comings(unittest.TestCase):

@@ -31,12 +31,13 @@ function pageKey() {
 
 export class Link {
   /** @param {{onText: (message: any) => void, onPicture: (header: Header, picture: ImageBitmap) => void,
-   *   onState: (state: "open" | "lost" | "refused", reason: string) => void}} events */
+   *   onState: (state: "open" | "lost", reason: string) => void}} events */
   constructor(events) {
     this.events = events;
     /** @type {WebSocket | null} */
     this.socket = null;
     this.tries = 0;
+    this.reason = ""; // why the connection went, as far as it was said
     this.newest = 0; // number of the newest message with a picture
     /** @type {{frame: number, parts: Uint8Array[], bytes: number} | null} */
     this.pieces = null;
@@ -52,6 +53,7 @@ export class Link {
     this.socket = socket;
     socket.onopen = () => {
       this.tries = 0;
+      this.reason = "";
       this.pieces = null;
       this.send({ type: "hello", key: pageKey() });
       this.events.onState("open", "");
@@ -65,7 +67,8 @@ export class Link {
     this.socket = null;
     this.sentAt.clear();
     this.tries += 1;
-    this.events.onState("lost", reason);
+    this.reason = reason || this.reason;
+    this.events.onState("lost", this.reason);
     setTimeout(() => this.open(), Math.min(3000, 200 * 1.6 ** this.tries));
   }
 

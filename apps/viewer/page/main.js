@@ -136,6 +136,7 @@ function showReadings() {
   element("done").style.width = `${Math.min(100, (100 * state.samples) / Math.max(state.spp, 1))}%`;
   document.body.dataset.phase = state.phase;
   document.body.dataset.hash = state.hash;
+  document.body.dataset.flags = state.flags;
 }
 
 function showPeople() {
@@ -201,7 +202,7 @@ function notify(text, kind = "note") {
   noticeTimer = setTimeout(() => { place.hidden = true; }, kind === "error" ? 8000 : 2500);
 }
 
-/** @param {"open" | "lost" | "refused"} now @param {string} reason */
+/** @param {"open" | "lost"} now @param {string} reason */
 function showLink(now, reason) {
   const gone = element("gone");
   gone.hidden = now === "open";
