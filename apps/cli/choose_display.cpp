@@ -8,7 +8,10 @@
 namespace pertev {
 
 std::optional<Display> choose_display(const RenderFlags& flags, Session& session, Reporter& reporter) {
-    if (!writes_tone_mapped(flags)) return std::nullopt;
+    return writes_tone_mapped(flags) ? std::optional(choose_shown_display(flags, session, reporter)) : std::nullopt;
+}
+
+Display choose_shown_display(const RenderFlags& flags, Session& session, Reporter& reporter) {
     const ToneMap tone_map = flags.tone_map.empty() ? Display{}.tone_map : *tone_map_named(flags.tone_map);
     const std::string_view name = name_of(tone_map);
     const bool is_given = !flags.exposure.empty() && flags.exposure != "auto";

@@ -12,5 +12,7 @@ namespace pertev {
 /// None where no PNG or JPEG is among the outputs. Where the exposure is not given, the meter looks at the scene; a
 /// notice then tells the flags that fix what was found. With --json, an object of the exposure. Throws Error.
 std::optional<Display> choose_display(const RenderFlags& flags, Session& session, Reporter& reporter);
+/// The same for a picture that is shown on a screen.
+Display choose_shown_display(const RenderFlags& flags, Session& session, Reporter& reporter);
 
 } // namespace pertev

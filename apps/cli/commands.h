@@ -10,6 +10,7 @@ class App;
 namespace pertev {
 
 void add_render_command(CLI::App& app, int& status);
+void add_view_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);

@@ -71,6 +71,7 @@ int run(int argc, char** argv, bool json) {
     app.get_formatter()->column_width(34);
     int status = 0;
     add_render_command(app, status);
+    add_view_command(app, status);
     add_compare_command(app, status);
     add_info_command(app, status);
     add_bench_command(app, status);

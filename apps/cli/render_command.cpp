@@ -5,11 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "accel/bvh/bvh_cache.h"
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/render_flags.h"
+#include "apps/cli/ready_scene.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
 #include "base/error.h"
@@ -43,17 +42,6 @@ void say_hidden_backs(double share, Messages& messages) {
                               100 * share));
 }
 
-/// --strict: throws Error(BadInput) that repeats the first warning of a texture or a file of materials that is missing.
-void refuse_missing(const Messages& messages) {
-    const std::vector<Message>& all = messages.all();
-    const auto missing = static_cast<uint64_t>(std::ranges::count_if(all, &Message::is_missing));
-    if (missing == 0) return;
-    throw Error(ErrorCode::BadInput,
-                fmt::format("--strict: {}{}; nothing is rendered",
-                            std::ranges::find_if(all, &Message::is_missing)->text,
-                            missing > 1 ? fmt::format(" (and {} like it)", counted(missing - 1, "warning")) : ""));
-}
-
 /// What is about to be rendered, and on what.
 void report_start(const RenderFlags& flags, const Scene& scene, const PreparedScene& prepared,
                   const RenderSettings& settings, const Queue& queue, double load_s, Reporter& reporter) {
@@ -77,35 +65,13 @@ int render(RenderFlags flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     check_render_flags(flags, messages);
-    ComingMachine machine(flags.machine, messages);
-    std::optional<TracerChoice> tracers; // what does not fit the device is refused before the scene is read
-    if (!flags.tracer.are_empty()) tracers = tracer_choice(flags.tracer, machine.is_cuda());
-    reporter.say_messages();
-    reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const Stopwatch watch;
-    const Scene scene = load_scene(flags.scene, messages);
-    if (flags.strict) refuse_missing(messages);
-    RenderSettings settings = render_settings(flags, scene);
-    settings.tracers = tracers;
-    aim_eye(flags.scene, scene, messages);
-    const Camera camera = choose_camera(flags.scene, scene, aspect_of(settings.width, settings.height), messages);
-    const double load_s = watch.seconds();
-    PrepareOptions prepare = prepare_options(settings, machine.is_cuda());
-    prepare.may_be_better = may_be_better(flags.tracer);
-    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
-    reporter.set_work("building trees");
-    const PreparedScene prepared = prepare_scene(scene, prepare, messages);
-    const std::unique_ptr<Queue> queue = machine.take();
+    const std::unique_ptr<ReadyScene> ready = make_ready(flags, reporter);
+    const auto& [scene, settings, camera, prepared, load_s, queue] = *ready;
     reporter.say_messages();
     listen_for_interrupt();
     report_start(flags, scene, prepared, settings, *queue, load_s, reporter);
-    PictureRecord record = {.scene = source_of(open_options(flags.scene), scene),
-                            .camera = source_of(camera_choice(flags.scene), camera),
-                            .settings = settings,
-                            .device = queue->device_name(),
-                            .display = {}};
-    record.scene.load_seconds = load_s;
-    record.scene.build_seconds = prepared.build_seconds;
+    PictureRecord record = picture_record(flags.scene, *ready);
     report_camera(record.camera, reporter);
     reporter.set_work("metering");
     std::optional<Session> session(std::in_place, *queue, prepared, camera, settings);

@@ -83,13 +83,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->group(group);
 }
 
-void add_render_flags(CLI::App& verb, RenderFlags& flags) {
-    add_scene_options(verb, flags.scene);
-    verb.add_option("-o,--output", flags.outputs, "picture to write: .exr .png .jpg .hdr; may be given again")
-        ->type_name("FILE")
-        ->allow_extra_args(false)
-        ->check(file_name())
-        ->required();
+void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags) {
     const char* group = "Picture";
     verb.add_option("--size", flags.size, "in pixels (1280x720, or the shape that the scene's camera\nasks for)")
         ->type_name("WIDTHxHEIGHT")
@@ -102,19 +96,8 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
                     "of PNG and JPEG: stops, or auto, which looks at a small\npicture of its own (auto)")
         ->type_name("STOPS|auto")
         ->group(group);
-    verb.add_flag("--transparent", flags.transparent, "keep how much of a pixel is covered as alpha")->group(group);
-    verb.add_option("--aov", flags.aovs, fmt::format("layers of an EXR, of {}", fmt::join(aov_names(), ",")))
-        ->type_name("NAME,...")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(one_of(aov_names()))
-        ->group(group);
     group = "Quality";
     add_light_path_flags(verb, flags, group);
-    verb.add_option("--time", flags.time_s, "stop after this time, at a whole sample")
-        ->type_name("SECONDS")
-        ->check(number_above_zero())
-        ->group(group);
     verb.add_option("--sampler", flags.sampler, "sobol or independent")
         ->type_name("NAME")
         ->check(one_of(sampler_names()))
@@ -129,6 +112,27 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     group = "Machine";
     add_machine_flags(verb, flags.machine, group);
     verb.add_flag("--no-bvh-cache", flags.no_cache, "build the tree even if it was built before")->group(group);
+}
+
+void add_render_flags(CLI::App& verb, RenderFlags& flags) {
+    add_scene_options(verb, flags.scene);
+    verb.add_option("-o,--output", flags.outputs, "picture to write: .exr .png .jpg .hdr; may be given again")
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->check(file_name())
+        ->required();
+    add_shown_picture_flags(verb, flags);
+    verb.add_flag("--transparent", flags.transparent, "keep how much of a pixel is covered as alpha")->group("Picture");
+    verb.add_option("--aov", flags.aovs, fmt::format("layers of an EXR, of {}", fmt::join(aov_names(), ",")))
+        ->type_name("NAME,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(one_of(aov_names()))
+        ->group("Picture");
+    verb.add_option("--time", flags.time_s, "stop after this time, at a whole sample")
+        ->type_name("SECONDS")
+        ->check(number_above_zero())
+        ->group("Quality");
     verb.add_flag("--strict", flags.strict,
                   "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
                   "where a sample is "
@@ -138,12 +142,18 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
 
 bool writes_tone_mapped(const RenderFlags& flags) { return writes_any(flags, {ImageFormat::Png, ImageFormat::Jpeg}); }
 
-void check_render_flags(const RenderFlags& flags, Messages& messages) {
+void check_shown_picture_flags(const RenderFlags& flags) {
     if (!flags.exposure.empty() && flags.exposure != "auto" && !number_in(flags.exposure)) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--exposure {}: expected auto, or stops: a number of size {} at most", flags.exposure,
                                 std::numeric_limits<float>::max()));
     }
+    if (!flags.size.empty()) parse_size("--size", flags.size);
+    check_scene_options(flags.scene);
+}
+
+void check_render_flags(const RenderFlags& flags, Messages& messages) {
+    check_shown_picture_flags(flags);
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
     for (const std::string& output : flags.outputs) {
@@ -166,7 +176,6 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
                                                      "NAME.png or .jpg",
                                                      flags.exposure.empty() ? "tone-map" : "exposure"));
     }
-    check_scene_options(flags.scene);
 }
 
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {

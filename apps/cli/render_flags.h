@@ -33,6 +33,8 @@ struct RenderFlags {
 };
 
 void add_render_flags(CLI::App& verb, RenderFlags& flags);
+/// Of these, but for the scene, the ones that a picture on a screen has too: size, display, quality, tracing, machine.
+void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
 /// --seed, --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
@@ -42,6 +44,9 @@ bool writes_tone_mapped(const RenderFlags& flags);
 
 /// What can be told before the scene is read. Throws Error, above all for an output that could not be written.
 void check_render_flags(const RenderFlags& flags, Messages& messages);
+
+/// The same of add_shown_picture_flags and the scene's options.
+void check_shown_picture_flags(const RenderFlags& flags);
 
 /// The settings for a scene. Throws Error.
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene);

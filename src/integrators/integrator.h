@@ -3,6 +3,7 @@
 // The seam between an algorithm of light transport and what lives around it: sessions, the command line, viewers. Each
 // algorithm has a folder of its own and includes no other; integrators/make_integrator.h knows them all.
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 
@@ -31,6 +32,10 @@ public:
     /// that is done. A film view of a noisy frame (render/noisy_frame.h) takes one sample alone. A sample is a function of the picture, the settings and its number alone, so work may be split any
     /// way. Throws Error(DeviceFault).
     virtual void render(uint32_t first, uint32_t count, const FilmView& film) = 0;
+
+    /// Where it can, render() returns at once when `*flag` is true, and the film is then to be thrown away. Null:
+    /// never.
+    virtual void abandon_when(const std::atomic<bool>*) {}
 
     /// Since begin().
     virtual RayCounts rays() const = 0;

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
+#include "render/camera_work.h"
 #include "render/hidden_back_share.h"
 #include "session/meter_exposure.h"
 
@@ -138,18 +139,18 @@ Film& Session::current_film() {
     return fit(film_, settings_);
 }
 
-PictureView Session::view_of(const RenderSettings& settings) {
+PictureView Session::view_of(const Camera& camera, const RenderSettings& settings) {
     PERTEV_CHECK(scene_.has_value() && tracer_.has_value()); // the last set_scene or set_settings threw
     const SceneView& scene = scene_->view();
     return {scene,
-            make_camera_rays(camera_, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
+            make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
                              settings.height, scene.centre),
             settings.transparent};
 }
 
-/// Makes the integrator ready to add `samples` samples of the picture of `settings`.
-void Session::begin(const RenderSettings& settings, uint32_t samples) {
-    const PictureView picture = view_of(settings); // first: it checks that there is a scene
+/// Makes the integrator ready to add `samples` samples of the picture of `settings`, never to be abandoned.
+void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples) {
+    const PictureView picture = view_of(camera, settings); // first: it checks that there is a scene
     const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {
@@ -158,6 +159,7 @@ void Session::begin(const RenderSettings& settings, uint32_t samples) {
     }
     integrator_settings_ = wanted;
     tracer_->time_kinds(settings.time_kinds);
+    integrator_->abandon_when(nullptr);
     integrator_->begin(picture, *tracer_, samples);
     queue_.wait();
 }
@@ -167,13 +169,18 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     if (count == 0) return 0;
     const Stopwatch since_call;
     Film& film = current_film();
-    begin(settings_, count);
+    begin(camera_, settings_, count);
+    integrator_->abandon_when(abandon_);
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
     for (uint32_t done = 0; done < count;) {
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
         integrator_->render(first + done, pass, film.view());
+        if (abandon_ != nullptr && *abandon_ && !queue_.is_cuda()) { // parts of a sample may be missing
+            begin_film();
+            return 0;
+        }
         done += pass;
         const double seconds = watch.seconds();
         history_.samples = first + done;
@@ -197,11 +204,11 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         noisy_frame_.emplace(queue_, width, height, splits_light);
         reconstruction_.emplace(queue_, width, height);
     }
-    begin(settings_, 1);
+    begin(camera_, settings_, 1);
     noisy_frame_->begin();
     integrator_->render(number, 1, noisy_frame_->film_view());
     frame_rays_ = integrator_->rays();
-    const PictureView picture = view_of(settings_);
+    const PictureView picture = view_of(camera_, settings_);
     const SceneView& scene = picture.scene;
     reconstruction_->add(*noisy_frame_, picture.camera.view, scene,
                          {has_moved_ ? places_before_.data() : scene.instances, scene.meshes}, settings);
@@ -219,7 +226,7 @@ Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
 
 RenderStats Session::stats() {
     if (!hidden_back_share_) {
-        const PictureView picture = view_of(settings_); // first: it checks that there is a scene
+        const PictureView picture = view_of(camera_, settings_); // first: it checks that there is a scene
         hidden_back_share_ = hidden_back_share(queue_, *tracer_, picture);
     }
     RenderStats stats = stats_;
@@ -236,10 +243,27 @@ float Session::meter(ToneMap tone_map) {
     return meter_exposure(settings_, tone_map, [this](const RenderSettings& settings) {
         Film& film = fit(meter_film_, settings);
         film.clear();
-        begin(settings, settings.samples);
+        begin(camera_, settings, settings.samples);
         integrator_->render(0, settings.samples, film.view());
         return film.picture(settings.samples, settings.transparent);
     });
+}
+
+RenderResult Session::look_aside(const Camera& camera, const RenderSettings& settings) {
+    Film film(queue_, settings.width, settings.height, settings.aovs);
+    begin(camera, settings, settings.samples);
+    integrator_->render(0, settings.samples, film.view());
+    RenderResult result;
+    result.samples = settings.samples;
+    result.rays = integrator_->rays();
+    result.picture = film.picture(settings.samples, settings.transparent);
+    result.layers = film.layers(settings.samples);
+    result.ids = film.ids();
+    return result;
+}
+
+std::vector<RayWork> Session::count_camera_work() {
+    return pertev::count_camera_work(queue_, *tracer_, view_of(camera_, settings_));
 }
 
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {

@@ -16,6 +16,7 @@
 // Whatever came before, the picture of n samples is what a fresh session gives, to the byte; so is one of a samples
 // with b added. One thread at a time.
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -63,7 +64,8 @@ public:
 
     /// Adds `samples` samples to each pixel, or fewer: it ends where the time of the settings is over, where
     /// `keep_going`, called after each pass, returns false, and at kMaxSamplesPerPixel in the film; always at a whole
-    /// sample of all pixels. Returns how many were added: at least one where one was asked for and fits. Throws
+    /// sample of all pixels. Returns how many were added: at least one where one was asked for and fits, but none where
+    /// it was abandoned. Throws
     /// Error(OutOfMemory, DeviceFault), and what `keep_going` throws; the film then holds all passes done before.
     uint32_t render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going = {});
 
@@ -92,6 +94,15 @@ public:
     const Reconstruction& frame() const;
     /// Rays of the last render_frame.
     RayCounts frame_rays() const { return frame_rays_; }
+    /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this
+    /// depth, and `settings.samples` samples. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
+    RenderResult look_aside(const Camera& camera, const RenderSettings& settings);
+    /// Nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera rays; empty
+    /// where that cannot be told (packets). Throws as look_aside.
+    std::vector<RayWork> count_camera_work();
+    /// From now on render() breaks off in the middle of a sample when `*flag` is true, on the CPU alone; the film then
+    /// begins anew. Null: never. `flag` outlives the session.
+    void abandon_when(const std::atomic<bool>* flag) { abandon_ = flag; }
 
     const History& history() const { return history_; }
     const Camera& camera() const { return camera_; }
@@ -104,8 +115,8 @@ private:
     void keep_places();
     void take_tracer();
     void upload(const PreparedScene& scene, uint32_t parts);
-    PictureView view_of(const RenderSettings& settings);
-    void begin(const RenderSettings& settings, uint32_t samples);
+    PictureView view_of(const Camera& camera, const RenderSettings& settings);
+    void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
 
     Queue& queue_;
     Camera camera_;
@@ -128,6 +139,7 @@ private:
     bool film_is_old_ = false; // holds samples of a picture that is no more asked for
     std::unique_ptr<Integrator> integrator_;
     IntegratorSettings integrator_settings_; // that it has
+    const std::atomic<bool>* abandon_ = nullptr;
 };
 
 /// Bytes of the device's memory that a session asks for by the time it has rendered `settings.samples` in one call.

@@ -2,7 +2,9 @@
 
 #include "base/error.h"
 #include "image/picture_hash.h"
+#include "image/tone_map_image.h"
 #include "image/write_image.h"
+#include "image/write_png.h"
 
 namespace pertev {
 namespace {
@@ -22,6 +24,18 @@ std::vector<ExrLayer> take_layers(RenderResult& result) {
 }
 
 } // namespace
+
+std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result) {
+    const Display display = record.display.value_or(Display{});
+    if (format == ImageFormat::Png) {
+        const bool with_alpha = record.settings.transparent;
+        return encode_png(tone_map_image(result.picture, display.tone_map, display.exposure_stops, with_alpha),
+                          with_alpha);
+    }
+    PERTEV_CHECK(format == ImageFormat::Exr);
+    return encode_exr(result.picture, take_layers(result),
+                      picture_metadata(record, result, picture_hash(result.picture).hex()));
+}
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
     WrittenPicture written = {picture_hash(result.picture).hex(), {}};

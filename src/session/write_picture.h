@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "image/image_format.h"
 #include "session/picture_metadata.h"
 
 namespace pertev {
@@ -19,6 +20,9 @@ struct WrittenPicture {
     std::string hash; // of the picture (image/picture_hash.h)
     std::vector<WrittenFile> files;
 };
+
+/// The bytes of such a file, PNG or EXR. Takes the layers out of `result`.
+std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result);
 
 /// Writes `result` to each of `paths`, whose extensions say the format (image/write_image.h), each all or nothing; one
 /// that fails does not keep the others from being written. Takes the layers out of `result`.

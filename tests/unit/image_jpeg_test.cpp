@@ -144,3 +144,26 @@ TEST_CASE("a JPEG wider than the format allows is refused by the writer") {
     Rgba8Image image{65535, 1, std::vector<uint8_t>(65535 * 4)};
     CHECK_THROWS_AS(encode_jpeg(image), Error);
 }
+
+TEST_CASE("strips packed side by side decode to the very pixels of the picture packed in one piece") {
+    // Sides that end inside a block, one strip alone, more strips than restart numbers.
+    for (const auto& [width, height] :
+         {std::pair{1u, 1u}, {7u, 9u}, {64u, 8u}, {61u, 250u}, {333u, 517u}, {9000u, 70u}}) {
+        CAPTURE(width);
+        CAPTURE(height);
+        Rgba8Image picture = {width, height, std::vector<uint8_t>(std::size_t(width) * height * 4)};
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            picture.pixels[i] = static_cast<uint8_t>((i * 7 + i / 97 * 31 + i / (4 * width) * 3) & 0xff);
+        }
+        for (const int quality : {35, 90}) {
+            const Rgba8Image strips =
+                std::get<Rgba8Image>(decode_image(encode_jpeg_strips(picture, quality, false), "strips.jpg"));
+            const Rgba8Image whole = std::get<Rgba8Image>(decode_image(encode_jpeg(picture, quality), "whole.jpg"));
+            CHECK(strips.width == width);
+            CHECK(strips.height == height);
+            CHECK(strips.pixels == whole.pixels);
+            const std::vector<std::byte> half = encode_jpeg_strips(picture, quality, true);
+            CHECK(std::get<Rgba8Image>(decode_image(half, "half.jpg")).height == height);
+        }
+    }
+}

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -450,4 +451,54 @@ TEST_CASE("the share of hidden backs follows scene, camera and size") {
     CHECK(session.stats().hidden_back_share != narrow);
     session.set_scene(furnace.prepared);
     CHECK(session.stats().hidden_back_share == fresh(furnace, camera_at(-3)));
+}
+
+TEST_CASE("a look aside gives what a session of its own gives, and leaves the samples as they are") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings aside = queued_settings();
+    aside.width = 5, aside.height = 4, aside.samples = 2, aside.aovs = kAovDepth | kAovIds, aside.path.max_depth = 0;
+    Session fresh(queue, mixed.prepared, camera_at(1), aside);
+    fresh.render(2);
+    Session session(queue, mixed.prepared, camera_at(0), queued_settings());
+    session.render(3);
+    const auto hash = picture_hash(session.picture());
+    const RenderResult seen = session.look_aside(camera_at(1), aside);
+    CHECK(picture_hash(seen.picture) == picture_hash(fresh.picture()));
+    CHECK(seen.ids.size() == 20);
+    CHECK(seen.layers.size() == 1);
+    CHECK(session.history().samples == 3);
+    CHECK(picture_hash(session.picture()) == hash);
+    session.render(2); // and samples go on as if nothing had been
+    Session whole(queue, mixed.prepared, camera_at(0), queued_settings());
+    whole.render(5);
+    CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
+}
+
+TEST_CASE("camera rays' nodes and triangles are counted for each pixel") {
+    Queue queue = test::queue_asked_for();
+    const Prepared mixed(test::make_mixed_scene());
+    Session session(queue, mixed.prepared, camera_at(0), queued_settings());
+    const std::vector<RayWork> work = session.count_camera_work();
+    REQUIRE(work.size() == 24 * 16);
+    CHECK(std::ranges::any_of(work, [](const RayWork& ray) { return ray.nodes > 0 && ray.triangles > 0; }));
+}
+
+TEST_CASE("an abandoned render adds nothing, and the picture after it is that of a fresh session") {
+    Queue queue = Queue::make_cpu(); // a GPU's samples are not broken off
+    const Prepared mixed(test::make_mixed_scene());
+    RenderSettings settings = queued_settings();
+    settings.body = PathBody::Loop;
+    Session session(queue, mixed.prepared, camera_at(0), settings);
+    std::atomic<bool> abandon{false};
+    session.abandon_when(&abandon);
+    session.render(2);
+    abandon = true;
+    CHECK(session.render(3) == 0);
+    CHECK(session.history().samples == 0);
+    abandon = false;
+    CHECK(session.render(2) == 2);
+    Session fresh(queue, mixed.prepared, camera_at(0), settings);
+    fresh.render(2);
+    CHECK(picture_hash(session.picture()) == picture_hash(fresh.picture()));
 }

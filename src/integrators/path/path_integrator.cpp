@@ -106,6 +106,7 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
     std::atomic<uint64_t> bounces{0}, shadows{0};
     parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
+        if (abandon_ != nullptr && *abandon_) return;
         RayCounts counts;
         render_pixels(picture_, settings_, trees, film, {begin, end, first, count}, counts);
         bounces += counts.bounce;

@@ -34,6 +34,8 @@ public:
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
+    /// The loop alone does.
+    void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
     RayCounts rays() const override { return rays_; }
     std::size_t bytes() const override;
 
@@ -62,6 +64,7 @@ private:
     PictureView picture_{};
     RayCounts rays_;
     SceneTracer* tracer_ = nullptr;
+    const std::atomic<bool>* abandon_ = nullptr;
 
     // The queues of one wavefront, one element a path in flight.
     struct Wavefront {

@@ -1,0 +1,158 @@
+// pertev view SCENE
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/choose_display.h"
+#include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/ready_scene.h"
+#include "apps/viewer/session_frames.h"
+#include "apps/viewer/viewer.h"
+#include "base/error.h"
+
+extern char** environ;
+
+namespace pertev {
+namespace {
+
+constexpr double kFrameOnCpu = 0.12, kFrameOnGpu = 1.0 / 60; // seconds that a frame may take while the camera moves
+constexpr auto kLongestEnd = std::chrono::milliseconds(800); // from Ctrl-C to the end
+
+struct ViewFlags {
+    RenderFlags render;
+    std::string host = "127.0.0.1";
+    uint32_t port = 8080;
+    bool no_browser = false;
+};
+
+bool is_this_machine_alone(const std::string& host) {
+    return host == "localhost" || host == "127.0.0.1" || host == "::1" || host == "[::1]";
+}
+
+void check_host(const std::string& host) {
+    if (host == "0.0.0.0" || host == "::" || host == "[::]" || host == "*") {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--host {}: say the one name or address that browsers will ask for; "
+                                "requests for another one are refused",
+                                host));
+    }
+}
+
+/// Where a desktop is, its browser opens the address.
+void open_browser(const std::string& address) {
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+    const char* arguments[] = {"xdg-open", address.c_str(), nullptr};
+    posix_spawn_file_actions_t files;
+    ::posix_spawn_file_actions_init(&files);
+    for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        ::posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_RDWR, 0);
+    }
+    pid_t child = 0; // where it cannot be started, the address that was printed does as well
+    ::posix_spawnp(&child, arguments[0], &files, nullptr, const_cast<char**>(arguments), environ);
+    ::posix_spawn_file_actions_destroy(&files);
+}
+
+void report_address(const ViewFlags& flags, const std::string& address, Reporter& reporter) {
+    reporter.event(fmt::format(R"({{"event":"listening","address":{}}})", json_string(address)));
+    if (!is_this_machine_alone(flags.host)) {
+        reporter.messages().warn(fmt::format(
+            "--host {}: whoever reaches this machine by that name can try to connect, what is sent is not encrypted, "
+            "and "
+            "whoever has the address below can watch and steer; without --host, ssh -L does the same in safety",
+            flags.host));
+        reporter.say_messages();
+    }
+    if (!reporter.json()) reporter.answer(fmt::format("Open {}\nCtrl-C ends the viewer.", address));
+    if (!flags.no_browser) open_browser(address);
+}
+
+/// The text of a scene's camera for --camera; empty where there is none.
+std::string camera_name(const SceneOptions& options, const Scene& scene) {
+    if (!options.camera.empty()) return options.camera;
+    return scene.cameras.empty() ? "" : "0";
+}
+
+/// Where the view turns about what is in the middle of the picture, unless a target was given.
+Pose start_pose(const PictureRecord& record, FrameSource& source, float scene_size) {
+    const Camera& camera = record.camera.camera;
+    float distance = 0.5f * scene_size;
+    if (!record.camera.target) {
+        if (const auto point = source.pick(camera, 0.5f, 0.5f)) distance = max(point->distance, 1e-3f * scene_size);
+    }
+    return pose_of(camera, record.camera.target, record.camera.up, distance);
+}
+
+/// Once it is asked to end, the program ends in any case: nothing would be lost.
+void end_soon() {
+    std::thread([] {
+        while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        std::this_thread::sleep_for(kLongestEnd);
+        std::_Exit(0);
+    }).detach();
+}
+
+int view(ViewFlags flags) {
+    Reporter reporter(flags.render.report);
+    check_host(flags.host);
+    check_shown_picture_flags(flags.render);
+    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
+    reporter.say_messages();
+    listen_for_interrupt();
+    reporter.set_work("metering");
+    Session session(*ready->queue, ready->prepared, ready->camera, ready->settings);
+    const bool on_cuda = ready->queue->is_cuda();
+    SessionFrames source(session, on_cuda ? kFrameOnGpu : kFrameOnCpu);
+    ViewerStart start;
+    start.scene = &ready->scene;
+    start.camera = ready->camera;
+    start.record = picture_record(flags.render.scene, *ready);
+    start.view.picture = ready->settings;
+    start.view.display = choose_shown_display(flags.render, session, reporter);
+    start.view.lens = ready->camera;
+    start.view.on_cuda = on_cuda;
+    start.camera_name = camera_name(flags.render.scene, ready->scene);
+    const float size = length(bounds_of(ready->scene).size());
+    start.speed = 0.12f * size;
+    start.pose = start_pose(start.record, source, size);
+    reporter.set_work("waiting for somebody to look");
+    end_soon();
+    run_viewer(
+        {.host = flags.host, .port = static_cast<uint16_t>(flags.port)}, start, source,
+        [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
+    reporter.event(R"({"event":"done"})");
+    return 0;
+}
+
+} // namespace
+
+void add_view_command(CLI::App& app, int& status) {
+    CLI::App& verb = *app.add_subcommand("view", "Look at a scene in a browser, through one port");
+    const auto flags = std::make_shared<ViewFlags>();
+    add_scene_options(verb, flags->render.scene);
+    const char* group = "Server";
+    verb.add_option("--port", flags->port, "to listen on; 0: any that is free")
+        ->type_name("N")
+        ->check(whole_between(0, 65535))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--host", flags->host, "name or address to listen on, which browsers ask for")
+        ->type_name("NAME")
+        ->check(file_name())
+        ->capture_default_str()
+        ->group(group);
+    verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
+    add_shown_picture_flags(verb, flags->render);
+    add_report_flags(verb, flags->render.report);
+    verb.callback([flags, &status] { status = view(*flags); });
+}
+
+} // namespace pertev

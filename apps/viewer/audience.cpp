@@ -1,0 +1,249 @@
+#include "apps/viewer/audience.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/json_text.h"
+
+namespace pertev {
+namespace {
+
+constexpr std::size_t kMostTold = 8; // texts that wait for one client; the oldest goes
+constexpr double kGreeting = 10;     // seconds within which a client must say hello
+constexpr double kPiece = 0.2;       // seconds of the link that a piece of a PNG takes
+
+} // namespace
+
+bool Audience::open(uint32_t client, double now_s) {
+    const std::lock_guard lock(mutex_);
+    if (clients_.size() >= kMostClients) return false;
+    Client& entry = clients_[client];
+    entry.opened_s = entry.counted_s = now_s;
+    return true;
+}
+
+bool Audience::may_speak(Client& client, double now_s) {
+    client.allowance = std::min(2 * kMessagesPerSecond,
+                                client.allowance + kMessagesPerSecond * std::max(now_s - client.counted_s, 0.0));
+    client.counted_s = now_s;
+    client.allowance -= 1;
+    return client.allowance >= 0;
+}
+
+std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) return "unknown";
+    Client& client = found->second;
+    if (!may_speak(client, now_s)) return "too many messages";
+    std::optional<ClientMessage> message = parse_client_message(text);
+    if (!message) return "not a message";
+    if (!client.has_joined) {
+        if (message->kind != MessageKind::Hello) return "no hello";
+        client.has_joined = true;
+        wheel_.join(id, message->key, now_s);
+        people_changed();
+        inbox_.put(Joined{});
+        return {};
+    }
+    switch (message->kind) {
+    case MessageKind::Hello:
+        return "a second hello";
+    case MessageKind::Ack:
+        client.pace.acknowledged(message->frame, now_s); // of one that a later one has overtaken: nothing to do
+        changed_.notify_one();
+        return {};
+    case MessageKind::Ask:
+        wheel_.ask(id);
+        people_changed();
+        return {};
+    case MessageKind::Hand:
+        if (wheel_.hand(id, message->client)) people_changed();
+        return {};
+    case MessageKind::Move:
+    case MessageKind::Orbit:
+    case MessageKind::Look:
+    case MessageKind::Pan:
+    case MessageKind::Zoom:
+    case MessageKind::Speed:
+    case MessageKind::Pick:
+    case MessageKind::Home:
+    case MessageKind::Camera:
+    case MessageKind::Set:
+    case MessageKind::Meter:
+        break;
+    }
+    // Whoever has just lost the wheel may not know it yet: no reason to drop it. Looking at a place is free.
+    const bool may = wheel_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
+    if (may && !inbox_.put(Steer{id, *std::move(message)})) return "too many messages wait";
+    return {};
+}
+
+void Audience::text_was_sent(uint32_t client) {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(client);
+    if (found != clients_.end()) found->second.text_under_way = false;
+    changed_.notify_one();
+}
+
+void Audience::close(uint32_t client, double now_s) {
+    const std::lock_guard lock(mutex_);
+    clients_.erase(client);
+    wheel_.leave(client, now_s);
+    people_changed();
+}
+
+std::vector<uint32_t> Audience::look(double now_s) {
+    const std::lock_guard lock(mutex_);
+    const uint32_t before = wheel_.holder();
+    wheel_.look(now_s);
+    if (wheel_.holder() != before) people_changed();
+    std::vector<uint32_t> mute;
+    for (const auto& [id, client] : clients_) {
+        if (!client.has_joined && now_s - client.opened_s > kGreeting) mute.push_back(id);
+    }
+    return mute;
+}
+
+void Audience::people_changed() {
+    for (auto& [id, client] : clients_) client.wants_people = true;
+    changed_.notify_one();
+}
+
+void Audience::publish(ShownFrame frame, uint32_t input) {
+    const std::lock_guard lock(mutex_);
+    latest_ = std::make_shared<const PublishedFrame>(PublishedFrame{std::move(frame), ++published_, input});
+    changed_.notify_one();
+}
+
+void Audience::tell_state(std::string text) {
+    const std::lock_guard lock(mutex_);
+    state_ = std::move(text);
+    ++state_number_;
+    changed_.notify_one();
+}
+
+void Audience::tell(uint32_t to, const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, client] : clients_) {
+        if (to != 0 && id != to) continue;
+        if (client.told.size() >= kMostTold) client.told.pop_front();
+        client.told.push_back(text);
+    }
+    changed_.notify_one();
+}
+
+bool Audience::is_anyone_there() const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(clients_, [](const auto& entry) { return entry.second.has_joined; });
+}
+
+bool Audience::is_behind() const {
+    const std::lock_guard lock(mutex_);
+    return latest_ != nullptr && std::ranges::any_of(clients_, [&](const auto& entry) {
+               const Client& client = entry.second;
+               return client.has_joined && client.seen < latest_->number && client.pace.may_send();
+           });
+}
+
+std::string Audience::people_text(uint32_t you) const {
+    std::string people;
+    for (const Wheel::Seat& seat : wheel_.seats()) {
+        people += fmt::format(R"({}{{"id":{},"asks":{}}})", people.empty() ? "" : ",", seat.client, seat.asks);
+    }
+    return fmt::format(R"({{"type":"people","you":{},"steers":{},"people":[{}]}})", you, wheel_.holder(), people);
+}
+
+std::optional<SendJob> Audience::text_job(uint32_t id, Client& client) {
+    if (client.text_under_way) return std::nullopt;
+    SendJob job;
+    job.client = id;
+    if (client.wants_welcome) {
+        client.wants_welcome = false;
+        job.text = welcome_;
+    } else if (client.wants_people) {
+        client.wants_people = false;
+        job.text = people_text(id);
+    } else if (!client.told.empty()) {
+        job.text = std::move(client.told.front());
+        client.told.pop_front();
+    } else if (client.state_seen != state_number_) {
+        client.state_seen = state_number_;
+        job.text = state_;
+    } else {
+        return std::nullopt;
+    }
+    client.text_under_way = true;
+    return job;
+}
+
+std::optional<SendJob> Audience::picture_job(uint32_t id, Client& client) {
+    if (latest_ == nullptr || !client.pace.may_send()) return std::nullopt;
+    SendJob job;
+    job.client = id;
+    job.picture = latest_;
+    job.quality = client.pace.quality();
+    job.scale = client.pace.scale();
+    if (client.seen < latest_->number) {
+        client.has_png = false;
+        client.offset = 0;
+        return job;
+    }
+    // The last picture, without loss, once what was before it has come through.
+    if (!latest_->frame.is_final || client.has_png || !client.pace.is_idle()) return std::nullopt;
+    job.is_piece = true;
+    job.offset = client.offset;
+    job.piece_bytes = client.pace.piece_bytes(kPiece);
+    return job;
+}
+
+std::optional<SendJob> Audience::next_job(std::chrono::milliseconds timeout) {
+    std::unique_lock lock(mutex_);
+    std::optional<SendJob> job;
+    changed_.wait_for(lock, timeout, [&] {
+        // From the one behind the last served, round to it.
+        std::vector<uint32_t> order;
+        for (const auto& [id, client] : clients_) order.push_back(id);
+        std::ranges::rotate(order, std::ranges::upper_bound(order, last_served_));
+        for (const uint32_t id : order) {
+            Client& client = clients_[id];
+            if (!client.has_joined) continue;
+            job = text_job(id, client);
+            if (!job) job = picture_job(id, client);
+            if (job) {
+                last_served_ = id;
+                return true;
+            }
+        }
+        return false;
+    });
+    return job;
+}
+
+uint32_t Audience::picture_leaves(const SendJob& job, std::size_t bytes, std::size_t total_bytes, double now_s) {
+    const std::lock_guard lock(mutex_);
+    ++serial_;
+    const auto found = clients_.find(job.client);
+    if (found == clients_.end()) return serial_;
+    Client& client = found->second;
+    client.seen = job.picture->number;
+    if (job.is_piece) {
+        client.offset = job.offset + bytes;
+        client.has_png = client.offset >= total_bytes;
+    }
+    client.pace.sent(serial_, bytes, now_s, job.is_piece);
+    return serial_;
+}
+
+std::vector<Audience::LinkNumbers> Audience::links() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<LinkNumbers> links;
+    for (const auto& [id, client] : clients_) {
+        links.push_back({id, client.pace.quality(), client.pace.scale(), client.pace.round_trip_s(),
+                         client.pace.bytes_per_second()});
+    }
+    return links;
+}
+
+} // namespace pertev

@@ -1,0 +1,120 @@
+#pragma once
+
+// The clients: who is there, who steers, what each still has to be sent and what its link takes. Safe for any thread.
+// Nothing here grows with a client that does not listen: at most two pictures and one text are under way to each, and
+// only the newest picture and state wait.
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/viewer/frame_header.h"
+#include "apps/viewer/frame_source.h"
+#include "apps/viewer/inbox.h"
+#include "apps/viewer/link_pace.h"
+#include "apps/viewer/wheel.h"
+
+namespace pertev {
+
+/// A picture that was published.
+struct PublishedFrame {
+    ShownFrame frame;
+    uint32_t number = 0; // counts up from 1
+    uint32_t input = 0;
+};
+
+/// The next thing to be sent to one client.
+struct SendJob {
+    uint32_t client = 0;
+    std::string text;                              // where it is not empty, that
+    std::shared_ptr<const PublishedFrame> picture; // else this: as JPEG,
+    int quality = 80;
+    float scale = 1;
+    bool is_piece = false; // or as a piece of a PNG
+    std::size_t offset = 0, piece_bytes = 0;
+};
+
+class Audience {
+public:
+    static constexpr std::size_t kMostClients = 16;
+    static constexpr double kMessagesPerSecond = 400; // of one client, on average; a burst may be twice as many
+
+    /// `inbox` outlives it. `welcome`: the text that each client is sent first.
+    Audience(Inbox& inbox, std::string welcome) : inbox_(inbox), welcome_(std::move(welcome)) {}
+
+    // For the network's thread. Times are seconds of a steady clock.
+
+    /// False: there are too many.
+    bool open(uint32_t client, double now_s);
+    /// Empty where that was taken; else why the client is to be dropped.
+    std::string said(uint32_t client, std::string_view text, double now_s);
+    void text_was_sent(uint32_t client);
+    void close(uint32_t client, double now_s);
+    /// To be called now and then. Gives the clients that have not said hello in time.
+    std::vector<uint32_t> look(double now_s);
+
+    // For the render's thread.
+
+    void publish(ShownFrame frame, uint32_t input);
+    /// What the panel shows, for all; a text that waits is replaced.
+    void tell_state(std::string text);
+    /// Something that was asked for, to one client; 0: to all.
+    void tell(uint32_t client, const std::string& text);
+    bool is_anyone_there() const;
+    /// Whether the last picture has gone to nobody yet who would take it.
+    bool is_behind() const;
+
+    // For the thread that packs pictures.
+
+    /// Waits for something to be sent until the timeout is over. What it gives counts as under way.
+    std::optional<SendJob> next_job(std::chrono::milliseconds timeout);
+    /// A picture, packed, leaves now. `total_bytes` of the whole file of a piece. Gives the number of the message.
+    uint32_t picture_leaves(const SendJob& job, std::size_t bytes, std::size_t total_bytes, double now_s);
+    /// Of the picture sent last: how long its client's link took, and how it was packed; for the panel.
+    struct LinkNumbers {
+        uint32_t client;
+        int quality;
+        float scale;
+        double round_trip_s, bytes_per_second;
+    };
+    std::vector<LinkNumbers> links() const;
+
+private:
+    struct Client {
+        bool has_joined = false;
+        double opened_s = 0;
+        double allowance = 2 * kMessagesPerSecond, counted_s = 0;
+        LinkPace pace;
+        uint32_t seen = 0; // number of the last picture that was sent
+        std::size_t offset = 0;
+        bool has_png = false; // all of the last picture's
+        bool text_under_way = false, wants_welcome = true, wants_people = true;
+        uint64_t state_seen = 0;
+        std::deque<std::string> told;
+    };
+    std::string people_text(uint32_t you) const;
+    std::optional<SendJob> text_job(uint32_t id, Client& client);
+    std::optional<SendJob> picture_job(uint32_t id, Client& client);
+    void people_changed();
+    bool may_speak(Client& client, double now_s);
+
+    Inbox& inbox_;
+    const std::string welcome_;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::map<uint32_t, Client> clients_;
+    uint32_t last_served_ = 0; // clients are served in turns
+    Wheel wheel_;
+    std::shared_ptr<const PublishedFrame> latest_;
+    uint32_t published_ = 0, serial_ = 0;
+    std::string state_;
+    uint64_t state_number_ = 0;
+};
+
+} // namespace pertev

@@ -1,0 +1,30 @@
+#pragma once
+
+// Which part of the full resolution a moving picture has, so that frames keep a rate: pure arithmetic over measured
+// times. Few steps, and no step back at once: each change of size is a new film and a jump to the eye.
+
+#include <cstdint>
+
+namespace pertev {
+
+class FramePace {
+public:
+    /// Seconds that a whole frame may take.
+    explicit FramePace(double frame_s) : frame_s_(frame_s) {}
+
+    /// A frame of `scale` took so long, all its stages together.
+    void took(float scale, double seconds);
+    /// Of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32 or 1/16.
+    float scale() const;
+    double frame_s() const { return frame_s_; }
+
+private:
+    double frame_s_;
+    double full_s_ = 0; // of a frame at full size, by those before; 0: nothing is known
+    int step_ = 4;
+};
+
+/// A side of the picture at this scale, pixels; at least 1.
+uint32_t scaled_side(uint32_t side, float scale);
+
+} // namespace pertev

@@ -1,0 +1,73 @@
+#pragma once
+
+// The seam between the viewer and whatever makes its pictures: camera, settings and time in; after a budget of time a
+// picture that can be shown, and its numbers, out. Reconstruction of real-time frames and scenes that move plug in
+// here: by another FrameSource, or inside SessionFrames. Called by one thread, the one that the device's queue belongs
+// to.
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/viewer/view_state.h"
+#include "image/image.h"
+#include "integrators/integrator.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+struct FrameRequest {
+    Camera camera;
+    ViewState view;
+    double time_s = 0;      // of the scene; it stands still today
+    bool is_moving = false; // camera or time changes now: a frame that comes soon, at a resolution that can
+    double budget_s = 0.1;  // roughly how long next() may take; a sample of all pixels is the least
+};
+
+/// Milliseconds by name, in the order of the stages.
+using StageTimes = std::vector<std::pair<std::string, double>>;
+
+struct ShownFrame {
+    Rgba8Image image;
+    uint32_t full_width = 0, full_height = 0; // of the picture at rest
+    uint32_t samples = 0;                     // a pixel, in this image
+    bool is_final = false;                    // all that were asked for are there, at full size: nothing more will come
+    bool is_reference = false;                // of the picture that pertev render makes
+    std::string hash;                         // of the film where that is known; empty otherwise
+    std::string caption;                      // of a layer: what its colours mean
+    RayCounts rays;                           // traced for it
+    double render_s = 0;                      // of these rays
+    float scale = 1;                          // of the full size
+    StageTimes stages;
+};
+
+/// What is at a place of the picture.
+struct PickedPoint {
+    uint32_t instance = 0, primitive = 0, material = 0;
+    float distance = 0; // from the eye, metres
+    Vec3 position, normal;
+    Rgb albedo;
+};
+
+class FrameSource {
+public:
+    virtual ~FrameSource() = default;
+
+    /// The next picture: at rest more samples gather in the one before. Nothing where `abandon` broke it off, which is for
+    /// pictures at rest alone: the movement's are short. Throws
+    /// Error(OutOfMemory, OverLimit, DeviceFault).
+    virtual std::optional<ShownFrame> next(const FrameRequest& request) = 0;
+    /// While it is true, the picture at rest that is under way is not wanted any more.
+    virtual std::atomic<bool>& abandon() = 0;
+
+    /// What lies at (x, y) of the picture, [0, 1] each from the upper left; nothing for the background.
+    virtual std::optional<PickedPoint> pick(const Camera& camera, float x, float y) = 0;
+    /// Stops that the light meter finds for this view.
+    virtual float meter(const FrameRequest& request) = 0;
+    /// The picture in linear light as it is at rest, with all that a file of it holds.
+    virtual RenderResult result() = 0;
+};
+
+} // namespace pertev

@@ -1,0 +1,28 @@
+#pragma once
+
+// Layers of a picture in colours to look at: reflectance as it is, directions by their axes, distances and counts from
+// dark to bright, ids each in a colour of its own.
+
+#include <span>
+
+#include "image/image.h"
+#include "render/film_view.h"
+#include "trace/walk_counter.h"
+
+namespace pertev {
+
+/// Linear reflectance, encoded as sRGB.
+Rgba8Image show_albedo(const Image& albedo);
+/// x, y, z in [-1, 1] as red, green, blue; black where nothing is.
+Rgba8Image show_normal(const Image& normal);
+/// The nearest is bright; by the logarithm of the distance between the nearest and the farthest. Black: nothing is
+/// there.
+Rgba8Image show_depth(const Image& depth);
+enum class IdKind : uint8_t { Instance, Primitive, Material };
+/// Black where nothing is.
+Rgba8Image show_ids(std::span<const PixelIds> ids, uint32_t width, uint32_t height, IdKind kind);
+enum class WorkKind : uint8_t { Nodes, Triangles };
+/// Pale yellow at `most` and above, dark at none (lab/heat_map.h); `most` is what one pixel in two hundred exceeds.
+Rgba8Image show_work(std::span<const RayWork> work, uint32_t width, uint32_t height, WorkKind kind, uint32_t& most);
+
+} // namespace pertev

@@ -1,0 +1,75 @@
+#include "apps/viewer/link_pace.h"
+
+#include <algorithm>
+
+namespace pertev {
+namespace {
+
+constexpr double kLate = 0.1, kEarly = 0.04; // seconds that a picture's bytes take, beyond the way itself
+constexpr double kMemory = 0.15;             // share of the newest in the running means
+constexpr int kLowest = 30, kHighest = 92;
+
+} // namespace
+
+void LinkPace::sent(uint32_t frame, std::size_t bytes, double now_s, bool is_piece) {
+    under_way_.push_back({frame, bytes, now_s, is_piece});
+}
+
+bool LinkPace::acknowledged(uint32_t frame, double now_s) {
+    const auto found = std::ranges::find(under_way_, frame, &Sent::frame);
+    if (found == under_way_.end()) return false;
+    const bool is_piece = found->is_piece;
+    if (!is_piece) {
+        round_trip_s_ = std::max(now_s - found->at_s, 1e-6);
+        learn(static_cast<double>(found->bytes), round_trip_s_);
+    }
+    // While two are under way, the second arrives a transfer's time after the first.
+    const double transfer_s = std::max(now_s - std::max(found->at_s, last_ack_s_), 1e-4);
+    const double rate = static_cast<double>(found->bytes) / transfer_s;
+    rate_ = rate_ == 0 ? rate : rate_ + 0.25 * (rate - rate_);
+    last_ack_s_ = now_s;
+    const double bytes = static_cast<double>(found->bytes);
+    under_way_.erase(under_way_.begin(), found + 1); // one before it that was not acknowledged never will be
+    if (!is_piece) adapt(bytes);
+    return true;
+}
+
+void LinkPace::learn(double bytes, double seconds) {
+    const double share = bytes_ == 0 ? 1 : kMemory;
+    bytes_ += share * (bytes - bytes_);
+    seconds_ += share * (seconds - seconds_);
+    bytes_squared_ += share * (bytes * bytes - bytes_squared_);
+    bytes_seconds_ += share * (bytes * seconds - bytes_seconds_);
+}
+
+void LinkPace::adapt(double bytes) {
+    // What the way takes, known from a time when sizes differed, stays known while they do not.
+    const double spread = bytes_squared_ - bytes_ * bytes_;
+    if (spread > 0.01 * bytes_ * bytes_) {
+        const double a_byte = std::max(0.0, (bytes_seconds_ - bytes_ * seconds_) / spread);
+        way_ = std::clamp(seconds_ - a_byte * bytes_, 0.0, seconds_);
+    }
+    const double transfer_s = bytes * (seconds_ - way_) / bytes_;
+    if (transfer_s > kLate) {
+        calm_ = 0;
+        if (quality_ > kLowest) {
+            quality_ = std::max(kLowest, quality_ - 10);
+        } else {
+            scale_ = std::max(0.25f, scale_ / 2);
+        }
+    } else if (transfer_s < kEarly && ++calm_ >= 8) {
+        calm_ = 0;
+        if (scale_ < 1) {
+            scale_ *= 2;
+        } else {
+            quality_ = std::min(kHighest, quality_ + 4);
+        }
+    }
+}
+
+std::size_t LinkPace::piece_bytes(double seconds) const {
+    constexpr double kLeast = 16384, kMost = 1 << 20;
+    return static_cast<std::size_t>(std::clamp(rate_ * seconds, kLeast, kMost));
+}
+
+} // namespace pertev

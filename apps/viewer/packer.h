@@ -1,0 +1,57 @@
+#pragma once
+
+// The thread that packs pictures for each client's link and gives them to the server: JPEG while something moves or
+// gathers, PNG of the last picture. What two clients want alike is packed once.
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "apps/viewer/audience.h"
+#include "apps/viewer/web_server.h"
+
+namespace pertev {
+
+class Packer {
+public:
+    /// Both outlive it. `now_s`: seconds of the clock that the audience is told.
+    Packer(Audience& audience, WebServer& server, std::function<double()> now_s);
+    /// Ends the thread.
+    ~Packer();
+    Packer(const Packer&) = delete;
+    Packer& operator=(const Packer&) = delete;
+
+    /// Of the last JPEG.
+    double milliseconds() const { return milliseconds_; }
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    void run();
+    void send_picture(const SendJob& job);
+    std::shared_ptr<const std::vector<std::byte>> jpeg_of(const SendJob& job);
+    std::shared_ptr<const std::vector<std::byte>> png_of(const SendJob& job);
+
+    Audience& audience_;
+    WebServer& server_;
+    std::function<double()> now_s_;
+    struct Packed {
+        uint32_t number = 0;
+        int quality = 0;
+        float scale = 0;
+        std::shared_ptr<const std::vector<std::byte>> bytes;
+    };
+    std::vector<Packed> jpegs_; // of one picture
+    Packed png_;
+    std::atomic<double> milliseconds_{0};
+    std::atomic<std::size_t> bytes_{0};
+    std::atomic<bool> is_ending_{false};
+    std::thread thread_;
+};
+
+/// The picture at 1/`factor` of its size, each pixel the mean of those it stands for; what is left over at the right
+/// and lower border counts with the last. Factor 1: the picture itself.
+Rgba8Image shrunk(const Rgba8Image& picture, uint32_t factor);
+
+} // namespace pertev

@@ -1,0 +1,278 @@
+// The page of pertev view: draws the pictures that come, sends what keys and mouse ask for, shows the panel.
+
+import { Controls, kKeys } from "./keys.js";
+import { Link } from "./link.js";
+import { Settings, element, make, showRows } from "./panel.js";
+
+// The key is in a cookie now: it need not stand in the address, where others may read it.
+history.replaceState(null, "", location.pathname);
+
+const canvas = /** @type {HTMLCanvasElement} */ (element("picture"));
+const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
+const help = /** @type {HTMLDialogElement} */ (element("help"));
+
+/** @type {ImageBitmap | null} */
+let picture = null;
+let fullWidth = 16, fullHeight = 9;
+/** @type {any} */
+let state = null;
+/** @type {{you: number, steers: number, people: {id: number, asks: boolean}[]}} */
+let people = { you: 0, steers: 0, people: [] };
+/** @type {{x: number, y: number} | null} */
+let mark = null;
+const shown = { times: /** @type {number[]} */ ([]), latency: 0, lastInput: 0, final: false, samples: 0 };
+
+const link = new Link({ onText: receive, onPicture: receivePicture, onState: showLink });
+const settings = new Settings(element("settings"), (name, value) => link.sendInput({ type: "set", name, value }));
+
+/** Where the picture lies in the window, in CSS pixels. */
+function place() {
+  const scale = Math.min(innerWidth / fullWidth, innerHeight / fullHeight);
+  const width = fullWidth * scale, height = fullHeight * scale;
+  return { x: (innerWidth - width) / 2, y: (innerHeight - height) / 2, width, height };
+}
+
+function draw() {
+  const ratio = devicePixelRatio, at = place();
+  const width = Math.round(innerWidth * ratio), height = Math.round(innerHeight * ratio);
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width;
+    canvas.height = height;
+  }
+  context.fillStyle = "#0d0e11";
+  context.fillRect(0, 0, width, height);
+  if (picture) {
+    context.imageSmoothingQuality = "high";
+    context.drawImage(picture, at.x * ratio, at.y * ratio, at.width * ratio, at.height * ratio);
+  }
+  const ring = element("mark");
+  ring.hidden = !mark;
+  if (mark) {
+    ring.style.left = `${at.x + mark.x * at.width}px`;
+    ring.style.top = `${at.y + mark.y * at.height}px`;
+  }
+}
+
+/** @param {import("./link.js").Header} header @param {ImageBitmap} next */
+function receivePicture(header, next) {
+  picture?.close();
+  picture = next;
+  fullWidth = header.fullWidth;
+  fullHeight = header.fullHeight;
+  draw();
+  const now = performance.now();
+  shown.times = [...shown.times.filter((time) => now - time < 2000), now];
+  shown.final = header.isFinal;
+  shown.samples = header.samples;
+  if (header.input > shown.lastInput || header.input < shown.lastInput - 1000) shown.lastInput = header.input;
+  const latency = link.latencyOf(header.input);
+  if (latency !== undefined) shown.latency = latency;
+  document.body.dataset.frame = String(header.frame);
+  document.body.dataset.samples = String(header.samples);
+  document.body.dataset.kind = header.kind === 2 ? "png" : "jpeg";
+}
+
+/** Pictures a second that came here in the last two seconds. */
+function pictureRate() {
+  const times = shown.times;
+  if (times.length < 3 || performance.now() - times[times.length - 1] > 1500) return 0;
+  return (1000 * (times.length - 1)) / (times[times.length - 1] - times[0]);
+}
+
+/** @param {any} message */
+function receive(message) {
+  switch (message.type) {
+    case "welcome":
+      element("scene").textContent = message.scene;
+      document.title = `${message.scene} – Pertev`;
+      settings.build(message.settings);
+      buildButtons(message.cameras);
+      if (state) receive(state);
+      break;
+    case "people":
+      people = message;
+      showPeople();
+      break;
+    case "state":
+      state = message;
+      if (message.phase === "moving" && mark) {
+        mark = null; // what was picked lies elsewhere now
+        draw();
+      }
+      settings.show(message.values);
+      showReadings();
+      break;
+    case "notice":
+      notify(message.text, message.kind);
+      break;
+    case "picked":
+      mark = message.rows.length ? { x: message.x, y: message.y } : null;
+      element("picked").hidden = message.rows.length === 0;
+      showRows(element("picked"), message.rows);
+      draw();
+      break;
+  }
+}
+
+/** Of its group; rows of one group stay as they are.
+ * @param {string[]} row */
+function order(row) {
+  return ["Now", "Frames", "Rays", "Stages"].indexOf(row[0]);
+}
+
+function showReadings() {
+  if (!state) return;
+  /** @type {[string, string, string][]} */
+  const own = [];
+  const rate = pictureRate();
+  if (rate) own.push(["Frames", "shown here", `${rate.toFixed(1)} a second`]);
+  if (shown.latency) own.push(["Frames", "input to picture", `${shown.latency.toFixed(0)} ms`]);
+  const rows = [...state.rows];
+  rows.push(...own);
+  rows.sort((a, b) => order(a) - order(b));
+  showRows(element("readings"), rows);
+  const words = /** @type {Record<string, string>} */ ({ moving: "moving", gathering: "gathering samples", done: "done" });
+  element("phase").textContent = `${words[state.phase] ?? state.phase} · ${state.samples} of ${state.spp}`;
+  element("done").style.width = `${Math.min(100, (100 * state.samples) / Math.max(state.spp, 1))}%`;
+  document.body.dataset.phase = state.phase;
+  document.body.dataset.hash = state.hash;
+  document.body.dataset.flags = state.flags;
+}
+
+function showPeople() {
+  const place = element("people"), steers = people.steers === people.you;
+  settings.allow(steers);
+  document.body.dataset.steers = String(steers);
+  place.hidden = people.people.length < 2 && steers;
+  place.replaceChildren(make("h2", "Who is here"));
+  for (const person of people.people) {
+    const row = make("div", "", "row");
+    row.append(make("b", `viewer ${person.id}${person.id === people.you ? " (you)" : ""}`));
+    if (person.id === people.steers) {
+      row.append(make("span", "steers", "value"));
+    } else if (steers) {
+      row.append(button(person.asks ? "asks: hand over" : "hand over", () => link.send({ type: "hand", to: person.id })));
+    } else if (person.id === people.you) {
+      row.append(person.asks ? make("span", "asked", "value") : button("ask to steer", () => link.send({ type: "ask" })));
+    }
+    place.append(row);
+  }
+}
+
+/** @param {string} text @param {() => void} onClick */
+function button(text, onClick) {
+  const made = /** @type {HTMLButtonElement} */ (make("button", text));
+  made.addEventListener("click", () => {
+    onClick();
+    made.blur();
+  });
+  return made;
+}
+
+/** @param {string[]} cameras */
+function buildButtons(cameras) {
+  const place = element("buttons");
+  place.replaceChildren(
+    button("Home", () => link.sendInput({ type: "home" })), button("Meter", () => link.sendInput({ type: "meter" })),
+    button("Copy flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
+    button("Keys", () => help.showModal()));
+  if (cameras.length > 0) {
+    const list = document.createElement("select");
+    list.id = "cameras";
+    list.append(new Option("Camera …", ""), ...cameras.map((name, i) => new Option(name, String(i))));
+    list.addEventListener("change", () => {
+      if (list.value) link.sendInput({ type: "camera", index: Number(list.value) });
+      list.value = "";
+      list.blur();
+    });
+    list.style.gridColumn = "1 / -1";
+    list.style.width = "100%";
+    place.prepend(list);
+  }
+}
+
+let noticeTimer = 0;
+/** @param {string} text @param {string} [kind] */
+function notify(text, kind = "note") {
+  const place = element("notice");
+  place.textContent = text;
+  place.className = kind;
+  place.hidden = false;
+  clearTimeout(noticeTimer);
+  noticeTimer = setTimeout(() => { place.hidden = true; }, kind === "error" ? 8000 : 2500);
+}
+
+/** @param {"open" | "lost"} now @param {string} reason */
+function showLink(now, reason) {
+  const gone = element("gone");
+  gone.hidden = now === "open";
+  if (now === "open") return;
+  element("gone-text").textContent = reason
+    ? `It said: ${reason}. This page comes back by itself when the same viewer is there again.`
+    : "It has ended, or cannot be reached. This page comes back by itself when the same viewer is there again; a new one prints a new address.";
+}
+
+async function copyFlags() {
+  if (!state) return;
+  try {
+    await navigator.clipboard.writeText(state.flags);
+    notify("copied: " + state.flags);
+  } catch {
+    notify(state.flags); // where the browser keeps its clipboard, they can be read at least
+  }
+}
+
+/** @param {string} format */
+function save(format) {
+  const anchor = document.createElement("a");
+  anchor.href = `save?format=${format}`;
+  anchor.download = `pertev.${format}`;
+  document.body.append(anchor);
+  anchor.click();
+  anchor.remove();
+}
+
+/** @param {string} name @param {string | number} value */
+function set(name, value) {
+  if (state) state.values[name] = value; // so that a key pressed twice counts twice before the viewer answers
+  link.sendInput({ type: "set", name, value });
+}
+
+function toggleHelp() {
+  if (help.open) help.close();
+  else help.showModal();
+}
+
+function buildHelp() {
+  const table = document.createElement("table");
+  for (const { keys, text } of kKeys) {
+    const row = table.insertRow();
+    const cell = row.insertCell();
+    for (const key of keys) cell.append(make("kbd", key), " ");
+    row.insertCell().textContent = text;
+  }
+  help.replaceChildren(make("h1", "Keys and mouse"), table);
+  help.addEventListener("click", () => help.close());
+}
+
+/** @type {Record<string, (event: KeyboardEvent) => void>} */
+const actions = {
+  KeyR: () => link.sendInput({ type: "home" }),
+  KeyT: () => state && set("mode", state.values.mode === "reference" ? "real time" : "reference"),
+  BracketLeft: () => state && set("exposure", state.values.exposure - 0.25),
+  BracketRight: () => state && set("exposure", state.values.exposure + 0.25),
+  KeyC: () => void copyFlags(),
+  KeyH: toggleHelp,
+  Tab: () => { element("panel").hidden = !element("panel").hidden; },
+  F12: () => { // some browsers take one download at a time
+    save("png");
+    setTimeout(() => save("exr"), 300);
+  },
+};
+for (let depth = 0; depth <= 9; ++depth) actions[`Digit${depth}`] = () => set("max_depth", depth);
+
+new Controls(canvas, link, place, actions);
+buildHelp();
+addEventListener("resize", draw);
+setInterval(showReadings, 500);
+canvas.focus();

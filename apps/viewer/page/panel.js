@@ -1,0 +1,107 @@
+// The panel: rows of numbers and settings as the viewer describes them. Nothing here knows a single setting: a new one is
+// a row of the program's own table (apps/viewer/view_state.cpp).
+
+/** @typedef {{name: string, label: string, group: string, kind: "choice" | "number" | "whole", choices: string[],
+ *   low: number, high: number, step: number}} Setting */
+
+/** @param {string} id @returns {HTMLElement} */
+export function element(id) {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page lacks #${id}`);
+  return found;
+}
+
+/** @param {string} tag @param {string} text @param {string} [name] */
+export function make(tag, text, name = "") {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  if (name) made.className = name;
+  return made;
+}
+
+/** Rows of [group, label, value] under headings. Elements stay while the rows are the same, so that text can be marked.
+ * @param {HTMLElement} place @param {[string, string, string][]} rows */
+export function showRows(place, rows) {
+  const shape = rows.map((row) => row[0] + "\n" + row[1]).join("\n\n");
+  if (place.dataset.shape !== shape) {
+    place.dataset.shape = shape;
+    place.replaceChildren();
+    let group = "";
+    for (const [name, label] of rows) {
+      if (name !== group) place.append(make("h2", name));
+      group = name;
+      const row = make("div", "", "row reading");
+      row.append(make("span", label), make("span", "", label === "film hash" ? "value hash" : "value"));
+      place.append(row);
+    }
+  }
+  const values = place.querySelectorAll(".value");
+  rows.forEach((row, i) => {
+    if (values[i].textContent !== row[2]) values[i].textContent = row[2];
+  });
+}
+
+export class Settings {
+  /** @param {HTMLElement} place @param {(name: string, value: string | number) => void} onChange */
+  constructor(place, onChange) {
+    this.place = place;
+    this.onChange = onChange;
+    /** @type {Map<string, HTMLInputElement | HTMLSelectElement>} */
+    this.fields = new Map();
+    /** @type {Map<string, Setting>} */
+    this.known = new Map();
+  }
+
+  /** @param {Setting[]} settings */
+  build(settings) {
+    this.place.replaceChildren();
+    this.fields.clear();
+    let group = "";
+    for (const setting of settings) {
+      if (setting.group !== group) this.place.append(make("h2", setting.group));
+      group = setting.group;
+      const field = setting.kind === "choice" ? choiceField(setting) : numberField(setting);
+      field.id = `setting-${setting.name}`;
+      field.addEventListener("change", () => {
+        this.onChange(setting.name, setting.kind === "choice" ? field.value : Number(field.value));
+        if (setting.kind === "choice") field.blur(); // keys steer again
+      });
+      const row = make("label", "", "row");
+      row.append(make("span", setting.label), field);
+      this.place.append(row);
+      this.fields.set(setting.name, field);
+      this.known.set(setting.name, setting);
+    }
+  }
+
+  /** @param {Record<string, string | number>} values */
+  show(values) {
+    for (const [name, value] of Object.entries(values)) {
+      const field = this.fields.get(name);
+      if (!field || field === document.activeElement) continue;
+      field.value = typeof value === "number" ? String(Number(value.toPrecision(6))) : value;
+    }
+  }
+
+  /** @param {boolean} may */
+  allow(may) {
+    for (const field of this.fields.values()) field.disabled = !may;
+  }
+}
+
+/** @param {Setting} setting */
+function choiceField(setting) {
+  const field = document.createElement("select");
+  for (const choice of setting.choices) field.append(new Option(choice, choice));
+  return field;
+}
+
+/** @param {Setting} setting */
+function numberField(setting) {
+  const field = document.createElement("input");
+  field.type = "number";
+  field.min = String(setting.low);
+  field.max = String(setting.high);
+  field.step = setting.kind === "whole" ? "1" : "any";
+  return field;
+}

@@ -1,0 +1,13 @@
+#pragma once
+
+// The page's files, which embed_page.cmake has put into the program.
+
+#include <vector>
+
+#include "apps/viewer/web_server.h"
+
+namespace pertev {
+
+std::vector<PageFile> page_files();
+
+} // namespace pertev

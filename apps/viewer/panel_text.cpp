@@ -1,0 +1,160 @@
+#include "apps/viewer/panel_text.h"
+
+#include <fmt/format.h>
+
+#include "base/json_text.h"
+
+namespace pertev {
+namespace {
+
+std::string json_of(const SettingValue& value) {
+    if (const double* number = std::get_if<double>(&value)) return json_number(*number);
+    return json_string(std::get<std::string>(value));
+}
+
+const char* name_of(ViewSetting::Kind kind) {
+    switch (kind) {
+    case ViewSetting::Kind::Choice:
+        return "choice";
+    case ViewSetting::Kind::Number:
+        return "number";
+    case ViewSetting::Kind::Whole:
+        return "whole";
+    }
+    return "";
+}
+
+void append(std::string& list, const std::string& item) {
+    if (!list.empty()) list += ',';
+    list += item;
+}
+
+std::string settings_json() {
+    std::string list;
+    for (const ViewSetting& setting : view_settings()) {
+        std::string choices;
+        for (const std::string& choice : setting.choices) append(choices, json_string(choice));
+        append(list,
+               fmt::format(
+                   R"({{"name":"{}","label":{},"group":{},"kind":"{}","choices":[{}],"low":{},"high":{},"step":{}}})",
+                   setting.name, json_string(setting.label), json_string(setting.group), name_of(setting.kind), choices,
+                   json_number(setting.low), json_number(setting.high), json_number(setting.step)));
+    }
+    return list;
+}
+
+/// One row of the panel's numbers: its group, its label and how it is told. Empty: not now.
+struct NumberRow {
+    const char* group;
+    const char* label;
+    std::string (*tell)(const ViewState&, const ViewNumbers&);
+};
+
+std::string rays_per_second(uint64_t rays, const ViewNumbers& numbers) {
+    const double seconds = numbers.frame->render_s;
+    return rays > 0 && seconds > 0 ? fmt::format("{:.1f} M/s", static_cast<double>(rays) / seconds * 1e-6) : "";
+}
+
+constexpr NumberRow kRows[] = {
+    {"Now", "samples",
+     [](const ViewState& v, const ViewNumbers& n) {
+         return fmt::format("{} of {}", n.frame->samples, v.picture.samples);
+     }},
+    {"Now", "size",
+     [](const ViewState&, const ViewNumbers& n) {
+         return fmt::format("{} x {}", n.frame->image.width, n.frame->image.height);
+     }},
+    {"Now", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
+    {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
+    {"Frames", "rendered",
+     [](const ViewState&, const ViewNumbers& n) {
+         return n.frames_per_second > 0 ? fmt::format("{:.1f} a second", n.frames_per_second) : "";
+     }},
+    {"Rays", "camera", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.camera, n); }},
+    {"Rays", "bounce", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.bounce, n); }},
+    {"Rays", "shadow", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.shadow, n); }},
+};
+
+std::string row_json(const char* group, const std::string& label, const std::string& value) {
+    return fmt::format("[{},{},{}]", json_string(group), json_string(label), json_string(value));
+}
+
+std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
+    std::string rows;
+    if (numbers.frame == nullptr) return rows;
+    for (const NumberRow& row : kRows) {
+        const std::string value = row.tell(view, numbers);
+        if (!value.empty()) append(rows, row_json(row.group, row.label, value));
+    }
+    for (const auto& [stage, milliseconds] : numbers.frame->stages) {
+        append(rows, row_json("Stages", stage, fmt::format("{:.1f} ms", milliseconds)));
+    }
+    append(rows, row_json("Stages", "pack",
+                          fmt::format("{:.1f} ms, {} KiB", numbers.pack_ms, (numbers.packed_bytes + 1023) / 1024)));
+    return rows;
+}
+
+std::string json_of(Vec3 v) {
+    return fmt::format("[{},{},{}]", json_number(static_cast<double>(v.x)), json_number(static_cast<double>(v.y)),
+                       json_number(static_cast<double>(v.z)));
+}
+
+} // namespace
+
+std::string welcome_text(const ViewerStart& start) {
+    std::string cameras;
+    for (std::size_t i = 0; i < start.scene->cameras.size(); ++i) {
+        const std::string& name = start.scene->cameras[i].name;
+        append(cameras, json_string(name.empty() ? fmt::format("camera {}", i) : name));
+    }
+    return fmt::format(
+        R"({{"type":"welcome","scene":{},"device":{},"width":{},"height":{},"cameras":[{}],"settings":[{}]}})",
+        json_string(start.record.scene.scene), json_string(start.record.device), start.view.picture.width,
+        start.view.picture.height, cameras, settings_json());
+}
+
+std::string state_text(const ViewState& view, const ViewNumbers& numbers, const std::string& flags) {
+    std::string values;
+    for (const ViewSetting& setting : view_settings()) {
+        append(values, fmt::format(R"("{}":{})", setting.name, json_of(setting.get(view))));
+    }
+    const uint32_t samples = numbers.frame != nullptr ? numbers.frame->samples : 0;
+    return fmt::format(
+        R"({{"type":"state","phase":"{}","samples":{},"spp":{},"hash":"{}","reference":{},"flags":{},"values":{{{}}},"rows":[{}]}})",
+        numbers.phase, samples, view.picture.samples, numbers.frame != nullptr ? numbers.frame->hash : "",
+        numbers.frame != nullptr && numbers.frame->is_reference, json_string(flags), values, rows_json(view, numbers));
+}
+
+std::string notice_text(const char* kind, const std::string& text) {
+    return fmt::format(R"({{"type":"notice","kind":"{}","text":{}}})", kind, json_string(text));
+}
+
+std::string picked_text(const Scene& scene, const PickedPoint* point, float x, float y) {
+    const std::string place =
+        fmt::format(R"("x":{},"y":{})", json_number(static_cast<double>(x)), json_number(static_cast<double>(y)));
+    if (point == nullptr || point->instance >= scene.instances.size()) {
+        return fmt::format(R"({{"type":"picked",{},"rows":[]}})", place);
+    }
+    const Instance& instance = scene.instances[point->instance];
+    const auto named = [](const std::string& name, uint32_t number) {
+        return name.empty() ? fmt::format("number {}", number) : fmt::format("{} (number {})", name, number);
+    };
+    const auto text = [](Vec3 v) { return fmt::format("{:.4g}, {:.4g}, {:.4g}", v.x, v.y, v.z); };
+    std::string rows;
+    const auto row = [&](const char* label, const std::string& value) {
+        append(rows, row_json("Picked", label, value));
+    };
+    row("instance", named(instance.name, point->instance));
+    row("mesh", named(scene.meshes[instance.mesh].name, instance.mesh));
+    if (point->material < scene.materials.size()) {
+        row("material", named(scene.materials[point->material].name, point->material));
+    }
+    row("triangle", fmt::format("{}", point->primitive));
+    row("distance", fmt::format("{:.4g} m", point->distance));
+    row("position", text(point->position));
+    row("normal", text(point->normal));
+    row("albedo", fmt::format("{:.3g}, {:.3g}, {:.3g}", point->albedo.r, point->albedo.g, point->albedo.b));
+    return fmt::format(R"({{"type":"picked",{},"position":{},"rows":[{}]}})", place, json_of(point->position), rows);
+}
+
+} // namespace pertev

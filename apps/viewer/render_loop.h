@@ -1,0 +1,61 @@
+#pragma once
+
+// The render's thread: takes what clients ask for, steps the camera, asks the frame source for pictures and publishes
+// them. It renders only while somebody looks and there is something left to do.
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "apps/viewer/packer.h"
+#include "apps/viewer/viewer.h"
+
+namespace pertev {
+
+class RenderLoop {
+public:
+    /// All outlive it.
+    RenderLoop(const ViewerStart& start, FrameSource& source, Inbox& inbox, Audience& audience, const Packer& packer,
+               std::function<double()> now_s);
+
+    /// Until `goes_on` says no. Throws Error(DeviceFault).
+    void run(const std::function<bool()>& goes_on);
+
+private:
+    void handle(const Command& command);
+    void steer(const Steer& steer);
+    void step_camera(const ClientMessage& message);
+    void pick(const Steer& steer);
+    void set(const Steer& steer);
+    void show_next();
+    void save_pictures();
+    void tell_state();
+    Camera camera() const;
+    bool is_moving() const;
+    FrameRequest request() const;
+    std::string flags() const;
+
+    const ViewerStart& start_;
+    FrameSource& source_;
+    Inbox& inbox_;
+    Audience& audience_;
+    const Packer& packer_;
+    std::function<double()> now_s_;
+
+    ViewState view_;
+    ViewState shown_; // of the last picture: what to go back to where a setting cannot be had
+    Camera base_;     // the camera that the pose was taken from, as it is until a step is made
+    Pose pose_;
+    std::string camera_name_;
+    bool has_moved_ = false;
+    float speed_;
+    uint32_t input_ = 0;
+    double moved_at_s_ = -1e9, told_at_s_ = -1e9, framed_at_s_ = -1e9;
+    double frames_per_second_ = 0;
+    double budget_s_ = 0.1;          // of the next picture at rest
+    bool is_done_ = false;           // nothing is left to be rendered for this state
+    std::optional<ShownFrame> last_; // without its pixels, but for their number
+    std::vector<Save> saves_;
+};
+
+} // namespace pertev

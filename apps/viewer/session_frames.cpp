@@ -1,0 +1,185 @@
+#include "apps/viewer/session_frames.h"
+
+#include <algorithm>
+
+#include "apps/viewer/layer_colors.h"
+#include "apps/viewer/steering.h"
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "image/picture_hash.h"
+#include "render/film_channels.h"
+#include "render/ray_queue.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kPass = 0.03; // seconds after which a render looks whether it is still wanted
+
+/// What the film must hold beside the picture for this layer.
+uint32_t aovs_of(ShownLayer layer) {
+    switch (layer) {
+    case ShownLayer::Beauty:
+    case ShownLayer::NodeHeat:
+    case ShownLayer::TriangleHeat:
+        return 0;
+    case ShownLayer::Albedo:
+        return kAovAlbedo;
+    case ShownLayer::Normal:
+        return kAovNormal;
+    case ShownLayer::Depth:
+        return kAovDepth;
+    case ShownLayer::Instances:
+    case ShownLayer::Triangles:
+    case ShownLayer::Materials:
+        return kAovIds;
+    }
+    return 0;
+}
+
+bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
+
+} // namespace
+
+SessionFrames::SessionFrames(Session& session, double frame_s) : session_(session), pace_(frame_s) {
+    session_.abandon_when(&abandon_);
+}
+
+RenderSettings SessionFrames::settings_for(const FrameRequest& request, float scale) {
+    RenderSettings settings = request.view.picture;
+    settings.time_limit_s = 0;
+    settings.width = scaled_side(settings.width, scale);
+    settings.height = scaled_side(settings.height, scale);
+    settings.aovs |= aovs_of(request.view.layer);
+    // Layers and heat maps need no light.
+    if (!is_beauty(request.view.layer)) settings.path.max_depth = 0;
+    settings.pass_samples = 1;
+    if (sample_s_ > 0 && scale == 1)
+        settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
+    return settings;
+}
+
+/// Tracers that the device has no room for are given up, for those before.
+void SessionFrames::use(const RenderSettings& settings) {
+    const RenderSettings before = session_.settings();
+    try {
+        session_.set_settings(settings);
+    } catch (const Error&) {
+        RenderSettings as_before = settings;
+        as_before.tracers = before.tracers;
+        session_.set_settings(as_before);
+        throw;
+    }
+}
+
+Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
+    const uint32_t width = session_.settings().width, height = session_.settings().height;
+    switch (request.view.layer) {
+    case ShownLayer::Beauty:
+        return session_.display(request.view.display.exposure_stops, request.view.display.tone_map);
+    case ShownLayer::Albedo:
+        return show_albedo(session_.layers().front().image);
+    case ShownLayer::Normal:
+        frame.caption = "x, y, z of the normal as red, green, blue";
+        return show_normal(session_.layers().front().image);
+    case ShownLayer::Depth:
+        frame.caption = "near is bright";
+        return show_depth(session_.layers().front().image);
+    case ShownLayer::Instances:
+        return show_ids(session_.film().ids(), width, height, IdKind::Instance);
+    case ShownLayer::Triangles:
+        return show_ids(session_.film().ids(), width, height, IdKind::Primitive);
+    case ShownLayer::Materials:
+        return show_ids(session_.film().ids(), width, height, IdKind::Material);
+    case ShownLayer::NodeHeat:
+    case ShownLayer::TriangleHeat:
+        break;
+    }
+    const bool nodes = request.view.layer == ShownLayer::NodeHeat;
+    const std::vector<RayWork> work = session_.count_camera_work();
+    if (work.empty()) {
+        frame.caption = "this walk cannot count what one ray tests: its rays go together";
+        return session_.display(request.view.display.exposure_stops, request.view.display.tone_map);
+    }
+    uint32_t most = 0;
+    Rgba8Image image = show_work(work, width, height, nodes ? WorkKind::Nodes : WorkKind::Triangles, most);
+    frame.caption = std::string("black: none; pale yellow: ") + std::to_string(most) +
+                    (nodes ? " nodes a camera ray" : " triangles a camera ray");
+    return image;
+}
+
+std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
+    const Stopwatch whole;
+    const bool is_small = request.is_moving || request.view.is_real_time;
+    const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
+    use(settings_for(request, scale));
+    session_.set_camera(request.camera);
+    const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
+    const uint32_t before = session_.history().samples;
+    const bool was_begun = before > 0;
+    // A picture of the movement is finished whatever comes: input comes faster than pictures, and would break off each.
+    session_.abandon_when(is_small ? nullptr : &abandon_);
+    const Stopwatch render;
+    ShownFrame frame;
+    uint32_t added = 0;
+    if (before < wanted) {
+        added = session_.render(is_small ? 1 : wanted - before, [&](const RenderProgress& now) {
+            frame.rays = now.rays;
+            return (is_small || !abandon_) && now.seconds < request.budget_s;
+        });
+    }
+    frame.render_s = render.seconds();
+    if (added > 0 && !is_small) sample_s_ = frame.render_s / added;
+    if (abandon_ && !is_small) return std::nullopt;
+    frame.samples = session_.history().samples;
+    if (frame.samples == 0) return std::nullopt;
+    const Stopwatch display;
+    frame.image = show(request, frame);
+    const double display_s = display.seconds();
+    frame.full_width = request.view.picture.width;
+    frame.full_height = request.view.picture.height;
+    frame.scale = scale;
+    frame.is_reference = !is_small && is_beauty(request.view.layer);
+    frame.is_final = !is_small && frame.samples >= wanted;
+    frame.stages = {{"render", 1e3 * frame.render_s}, {"tone map", 1e3 * display_s}};
+    if (frame.is_reference) {
+        const Stopwatch hash;
+        frame.hash = picture_hash(session_.picture()).hex();
+        frame.stages.emplace_back("hash", 1e3 * hash.seconds());
+    }
+    if (is_small && !was_begun) pace_.took(scale, whole.seconds());
+    return frame;
+}
+
+std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, float y) {
+    const RenderSettings& now = session_.settings();
+    const float aspect = static_cast<float>(now.width) / static_cast<float>(now.height);
+    RenderSettings settings = now;
+    settings.width = settings.height = 1;
+    settings.samples = 1;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    settings.filter = PixelFilter::Box;
+    settings.filter_radius = 0;
+    settings.path.max_depth = 0;
+    const RenderResult seen = session_.look_aside(camera_through(camera, aspect, x, y), settings);
+    if (seen.ids.empty() || seen.ids.front().instance == kNoHit) return std::nullopt;
+    PickedPoint picked = {.instance = seen.ids.front().instance,
+                          .primitive = seen.ids.front().primitive,
+                          .material = seen.ids.front().material};
+    const auto values = [&](const char* name) -> const float* {
+        const auto layer = std::ranges::find(seen.layers, name, &FilmLayer::name);
+        return layer->image.pixels.data();
+    };
+    const float *albedo = values("albedo"), *normal = values("normal"), *position = values("position");
+    picked.albedo = {albedo[0], albedo[1], albedo[2]};
+    picked.normal = {normal[0], normal[1], normal[2]};
+    picked.position = {position[0], position[1], position[2]};
+    picked.distance = values("depth")[0];
+    return picked;
+}
+
+float SessionFrames::meter(const FrameRequest& request) {
+    session_.set_camera(request.camera);
+    return session_.meter(request.view.display.tone_map);
+}
+
+} // namespace pertev

@@ -1,0 +1,35 @@
+#pragma once
+
+// The pictures of a Session, as the viewer shows them. While the camera moves: few samples, at the resolution that
+// keeps the frame rate. At rest: samples gather at full size until all that were asked for are there; that film is the
+// one of `pertev render`, to the bit.
+
+#include "apps/viewer/frame_pace.h"
+#include "apps/viewer/frame_source.h"
+#include "session/session.h"
+
+namespace pertev {
+
+class SessionFrames final : public FrameSource {
+public:
+    /// `frame_s`: seconds that a frame may take while the camera moves. The session outlives it.
+    SessionFrames(Session& session, double frame_s);
+
+    std::optional<ShownFrame> next(const FrameRequest& request) override;
+    std::atomic<bool>& abandon() override { return abandon_; }
+    std::optional<PickedPoint> pick(const Camera& camera, float x, float y) override;
+    float meter(const FrameRequest& request) override;
+    RenderResult result() override { return session_.result(); }
+
+private:
+    RenderSettings settings_for(const FrameRequest& request, float scale);
+    void use(const RenderSettings& settings);
+    Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
+
+    Session& session_;
+    FramePace pace_;
+    std::atomic<bool> abandon_{false};
+    double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known
+};
+
+} // namespace pertev

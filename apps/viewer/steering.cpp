@@ -1,0 +1,162 @@
+#include "apps/viewer/steering.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "math/portable_math.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kRadiansPerDegree = kPi / 180.0f;
+constexpr float kSteepest = 1.55334f; // radians above the horizon: 89 degrees
+constexpr float kPixelFov = 1e-3f;    // radians; of the camera that looks through one place
+
+/// `v` turned about the unit `axis`, counter-clockwise seen from its tip.
+Vec3 turned(Vec3 v, Vec3 axis, float angle) {
+    float s = 0, c = 0;
+    sin_cos(angle, s, c);
+    return c * v + s * cross(axis, v) + (dot(axis, v) * (1 - c)) * axis;
+}
+
+struct Axes {
+    Vec3 right, above, back; // of the view, unit
+};
+
+Axes axes_of(const Pose& pose) {
+    const Transform placed = look_at(pose.eye, pose.target, pose.up);
+    return {column(placed, 0), column(placed, 1), column(placed, 2)};
+}
+
+/// How far above the horizon the view looks.
+float elevation(Vec3 back, Vec3 up) { return -asin(clamp(dot(back, normalize(up)), -1.0f, 1.0f)); }
+
+/// Pitch that keeps the view off the poles.
+float allowed_pitch(Vec3 back, Vec3 up, float pitch) {
+    const float now = elevation(back, up);
+    return clamp(now + pitch, min(-kSteepest, now), max(kSteepest, now)) - now;
+}
+
+std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+} // namespace
+
+Pose pose_of(const Camera& camera, std::optional<Vec3> target, std::optional<Vec3> up, float distance) {
+    const Transform& from = camera.world_from_camera;
+    Pose pose;
+    pose.eye = from.translation;
+    pose.target = target.value_or(pose.eye - distance * column(from, 2));
+    const Vec3 world_up = {0, 1, 0}, own_up = column(from, 1);
+    const bool leans = abs(dot(column(from, 0), world_up)) > 1e-3f || dot(own_up, world_up) < 0.017f;
+    pose.up = up.value_or(leans ? own_up : world_up);
+    pose.centre = pose.target;
+    return pose;
+}
+
+Camera camera_at(const Pose& pose, const Camera& lens) {
+    Camera camera = lens;
+    camera.world_from_camera = look_at(pose.eye, pose.target, pose.up);
+    if (camera.aperture_radius == 0) camera.focus_distance = length(pose.target - pose.eye);
+    return camera;
+}
+
+Pose fly(const Pose& pose, float right, float up, float forward) {
+    const Axes axes = axes_of(pose);
+    const Vec3 step = right * axes.right + up * normalize(pose.up) - forward * axes.back;
+    return {pose.eye + step, pose.target + step, pose.up, pose.centre + step};
+}
+
+Pose orbit(const Pose& pose, float dx, float dy) {
+    const Axes axes = axes_of(pose);
+    const float yaw = -dx * kPi, pitch = allowed_pitch(axes.back, pose.up, -dy * kPi);
+    const auto about = [&](Vec3 point) {
+        const Vec3 pitched = turned(point - pose.centre, axes.right, pitch);
+        return pose.centre + turned(pitched, normalize(pose.up), yaw);
+    };
+    return {about(pose.eye), about(pose.target), pose.up, pose.centre};
+}
+
+Pose look(const Pose& pose, float dx, float dy, float fov_y) {
+    const Axes axes = axes_of(pose);
+    const float pitch = allowed_pitch(axes.back, pose.up, -dy * fov_y);
+    const Vec3 ahead = turned(turned(pose.target - pose.eye, axes.right, pitch), normalize(pose.up), -dx * fov_y);
+    return {pose.eye, pose.eye + ahead, pose.up, pose.eye + ahead};
+}
+
+Pose pan(const Pose& pose, float dx, float dy, float view_height, bool is_orthographic) {
+    const Axes axes = axes_of(pose);
+    const float away = is_orthographic ? 1.0f : max(length(pose.centre - pose.eye), 1e-6f);
+    const Vec3 step = (-dx * view_height * away) * axes.right + (dy * view_height * away) * axes.above;
+    return {pose.eye + step, pose.target + step, pose.up, pose.centre + step};
+}
+
+Pose zoom(const Pose& pose, float steps) {
+    const float away = length(pose.centre - pose.eye);
+    const float closer = away * (1 - pow(6.0f / 7.0f, steps));
+    const Vec3 step = (closer / max(away, 1e-20f)) * (pose.centre - pose.eye);
+    return {pose.eye + step, pose.target + step, pose.up, pose.centre};
+}
+
+float metres_of(const ClientMessage& message, float speed) {
+    switch (message.pace) {
+    case Pace::Normal:
+        return speed * message.seconds;
+    case Pace::Fast:
+        return 4 * speed * message.seconds;
+    case Pace::Slow:
+        return 0.2f * speed * message.seconds;
+    }
+    return 0;
+}
+
+float degrees_for(float radians) {
+    const float near = radians * (180 / kPi);
+    float below = near, above = near;
+    for (int i = 0; i < 16; ++i) {
+        if (below * kRadiansPerDegree == radians) return below;
+        if (above * kRadiansPerDegree == radians) return above;
+        below = std::nextafter(below, 0.0f);
+        above = std::nextafter(above, 360.0f);
+    }
+    return near;
+}
+
+std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name) {
+    std::string flags;
+    if (!name.empty()) flags += fmt::format("--camera '{}' ", name);
+    flags += fmt::format("--eye {} --target {}", text_of(pose.eye), text_of(pose.target));
+    if (pose.up != Vec3{0, 1, 0}) flags += fmt::format(" --up {}", text_of(pose.up));
+    switch (camera.projection) {
+    case Projection::Perspective:
+        flags += fmt::format(" --fov {}", degrees_for(camera.fov_y));
+        break;
+    case Projection::Orthographic:
+        flags += fmt::format(" --projection orthographic --view-height {}", camera.ortho_height);
+        break;
+    }
+    if (camera.aperture_radius > 0) {
+        flags += fmt::format(" --aperture {} --focus {}", camera.aperture_radius, camera.focus_distance);
+    }
+    return flags;
+}
+
+Camera camera_through(const Camera& camera, float aspect, float x, float y) {
+    const Transform& from = camera.world_from_camera;
+    Camera through = camera;
+    through.aperture_radius = 0;
+    const bool is_flat = camera.projection == Projection::Orthographic;
+    const float half_height = is_flat ? 0.5f * camera.ortho_height : tan(0.5f * camera.fov_y);
+    const float right = (2 * x - 1) * half_height * aspect, above = (1 - 2 * y) * half_height;
+    if (is_flat) {
+        through.world_from_camera.translation = from.translation + right * column(from, 0) + above * column(from, 1);
+        through.ortho_height = max(camera.ortho_height * 1e-3f, 1e-20f);
+        return through;
+    }
+    const Vec3 ahead = transform_vector(from, {right, above, -1});
+    through.world_from_camera = look_at(from.translation, from.translation + ahead, column(from, 1));
+    through.fov_y = kPixelFov;
+    return through;
+}
+
+} // namespace pertev

@@ -1,0 +1,225 @@
+#include "apps/viewer/view_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "apps/viewer/steering.h"
+#include "base/error.h"
+#include "base/limits.h"
+#include "image/tone_map_image.h"
+#include "session/settings_text.h"
+
+namespace pertev {
+namespace {
+
+using Kind = ViewSetting::Kind;
+
+constexpr const char* kLayers[] = {"picture",   "albedo",    "normal",      "depth",          "instances",
+                                   "triangles", "materials", "heat: nodes", "heat: triangles"};
+
+constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
+constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
+
+float number_of(const SettingValue& value) { return static_cast<float>(std::get<double>(value)); }
+const std::string& text_of(const SettingValue& value) { return std::get<std::string>(value); }
+
+template <class Names>
+std::vector<std::string> strings(const Names& names) {
+    return {std::begin(names), std::end(names)};
+}
+
+template <class Kinds>
+std::vector<std::string> names_of(const Kinds& kinds) {
+    std::vector<std::string> names;
+    for (const auto kind : kinds) names.emplace_back(name_of(kind));
+    return names;
+}
+
+/// What the panel shows of the tracers: those of camera rays. A change is one of all kinds of ray.
+Combination shown_combination(const ViewState& state) {
+    return state.picture.tracers.value_or(default_tracers(state.on_cuda)).camera;
+}
+
+std::string set_combination(ViewState& state, const Combination& combination) {
+    const TracerChoice choice = same_for_all(combination);
+    try {
+        check_choice(choice, state.on_cuda);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    state.picture.tracers = choice;
+    return {};
+}
+
+bool is_cells(WalkKind walk) { return walk == WalkKind::Kd || walk == WalkKind::Octree; }
+
+/// A structure brings a walk that goes over it where the present one does not.
+std::string set_structure(ViewState& state, const std::string& name) {
+    Combination wanted = shown_combination(state);
+    wanted.structure = *structure_named(name);
+    if (why_not(wanted.structure, wanted.walk)) {
+        const bool is_tree = builder_of(wanted.structure).has_value();
+        wanted = {.structure = wanted.structure,
+                  .walk = is_tree                                     ? WalkKind::WhileWhile
+                          : wanted.structure == StructureKind::Octree ? WalkKind::Octree
+                                                                      : WalkKind::Kd};
+    }
+    return set_combination(state, wanted);
+}
+
+/// And the other way round.
+std::string set_walk(ViewState& state, const std::string& name) {
+    const Combination now = shown_combination(state);
+    Combination wanted = {.structure = now.structure, .walk = *walk_named(name)};
+    if (why_not(wanted.structure, wanted.walk)) {
+        wanted.structure = wanted.walk == WalkKind::Kd       ? StructureKind::KdSah
+                           : wanted.walk == WalkKind::Octree ? StructureKind::Octree
+                                                             : StructureKind::Binned;
+    }
+    if (!is_cells(wanted.walk)) wanted.options = {};
+    return set_combination(state, wanted);
+}
+
+std::string set_rta(ViewState& state, const std::string& name) {
+    Combination wanted = shown_combination(state);
+    wanted.options.rta = name != "off";
+    wanted.options.rta_at_pops = name != "nodes";
+    return set_combination(state, wanted);
+}
+
+std::vector<ViewSetting> make_settings() {
+    std::vector<ViewSetting> all;
+    const auto choice = [&](const char* name, const char* label, const char* group, std::vector<std::string> choices,
+                            auto get, auto set) {
+        all.push_back({name, label, group, Kind::Choice, std::move(choices), 0, 0, 1,
+                       [get](const ViewState& s) { return SettingValue(std::string(get(s))); },
+                       [set](ViewState& s, const SettingValue& v) { return set(s, text_of(v)); }});
+    };
+    const auto numeric = [&](const char* name, const char* label, const char* group, Kind kind, double low, double high,
+                             double step, auto get, auto set) {
+        all.push_back({name,
+                       label,
+                       group,
+                       kind,
+                       {},
+                       low,
+                       high,
+                       step,
+                       [get](const ViewState& s) { return SettingValue(static_cast<double>(get(s))); },
+                       [set](ViewState& s, const SettingValue& v) {
+                           set(s, number_of(v));
+                           return std::string();
+                       }});
+    };
+
+    choice(
+        "layer", "Show", "Picture", strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
+        [](ViewState& s, const std::string& name) {
+            s.layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
+            return std::string();
+        });
+    numeric(
+        "exposure", "Exposure, stops", "Picture", Kind::Number, -60, 60, 0.25,
+        [](const ViewState& s) { return s.display.exposure_stops; },
+        [](ViewState& s, float v) { s.display.exposure_stops = v; });
+    choice(
+        "tone_map", "Tone map", "Picture", tone_map_names(),
+        [](const ViewState& s) { return name_of(s.display.tone_map); },
+        [](ViewState& s, const std::string& name) {
+            s.display.tone_map = *tone_map_named(name);
+            return std::string();
+        });
+    choice(
+        "integrator", "Light", "Light", integrator_names(),
+        [](const ViewState& s) { return integrator_name(s.picture); },
+        [](ViewState& s, const std::string& name) {
+            set_integrator(s.picture, name);
+            return std::string();
+        });
+    numeric(
+        "max_depth", "Scatterings, at most", "Light", Kind::Whole, 0, kMaxPathDepth - 1, 1,
+        [](const ViewState& s) { return s.picture.path.max_depth; },
+        [](ViewState& s, float v) { s.picture.path.max_depth = static_cast<uint32_t>(v); });
+    numeric(
+        "spp", "Samples a pixel", "Light", Kind::Whole, 1, kMaxSamplesPerPixel, 1,
+        [](const ViewState& s) { return s.picture.samples; },
+        [](ViewState& s, float v) { s.picture.samples = static_cast<uint32_t>(v); });
+    choice(
+        "mode", "At rest", "Frames", {"reference", "real time"},
+        [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
+        [](ViewState& s, const std::string& name) {
+            s.is_real_time = name == "real time";
+            return std::string();
+        });
+    choice(
+        "moving_scale", "Size while moving", "Frames", strings(kScales),
+        [](const ViewState& s) {
+            return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
+        },
+        [](ViewState& s, const std::string& name) {
+            s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
+            return std::string();
+        });
+    numeric(
+        "fov", "Angle of view, degrees", "Camera", Kind::Number, 0.01, 179, 1,
+        [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
+        [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
+    numeric(
+        "aperture", "Radius of the lens, m", "Camera", Kind::Number, 0, 1e6, 0.005,
+        [](const ViewState& s) { return s.lens.aperture_radius; },
+        [](ViewState& s, float v) { s.lens.aperture_radius = v; });
+    numeric(
+        "focus", "Distance in focus, m", "Camera", Kind::Number, 1e-6, 1e9, 0.1,
+        [](const ViewState& s) { return s.lens.focus_distance; },
+        [](ViewState& s, float v) { s.lens.focus_distance = v; });
+    choice(
+        "structure", "Structure", "Rays (the picture stays the same)", names_of(all_structures()),
+        [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
+    choice(
+        "walk", "Walk", "Rays (the picture stays the same)", names_of(all_walks()),
+        [](const ViewState& s) { return name_of(shown_combination(s).walk); }, set_walk);
+    choice(
+        "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)", {"on", "nodes", "off"},
+        [](const ViewState& s) { return name_of_rta(shown_combination(s).options); }, set_rta);
+    return all;
+}
+
+/// Why the value is none for the setting; empty where it is one.
+std::string why_no_value(const ViewSetting& setting, const SettingValue& value) {
+    if (setting.kind == Kind::Choice) {
+        const std::string* text = std::get_if<std::string>(&value);
+        const bool is_known = text != nullptr && std::ranges::find(setting.choices, *text) != setting.choices.end();
+        return is_known ? "" : fmt::format("{}: no such choice", setting.label);
+    }
+    const double* given = std::get_if<double>(&value);
+    const bool is_whole = setting.kind == Kind::Whole;
+    if (given != nullptr && *given >= setting.low && *given <= setting.high &&
+        (!is_whole || *given == std::floor(*given))) {
+        return {};
+    }
+    return fmt::format("{}: a {}number from {} to {}", setting.label, is_whole ? "whole " : "", setting.low,
+                       setting.high);
+}
+
+} // namespace
+
+const char* name_of(ShownLayer layer) { return kLayers[static_cast<std::size_t>(layer)]; }
+
+const std::vector<ViewSetting>& view_settings() {
+    static const std::vector<ViewSetting> all = make_settings();
+    return all;
+}
+
+std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value) {
+    for (const ViewSetting& setting : view_settings()) {
+        if (setting.name != name) continue;
+        const std::string why_not = why_no_value(setting, value);
+        return why_not.empty() ? setting.set(state, value) : why_not;
+    }
+    return "no setting is named so";
+}
+
+} // namespace pertev

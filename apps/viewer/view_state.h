@@ -1,0 +1,63 @@
+#pragma once
+
+// What the viewer shows besides the camera's pose, and the table of settings that a page may change. A setting is one
+// row of that table: the page builds its panel from it, so a new setting is added here alone.
+
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "session/picture_metadata.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// What of the picture is shown. Beauty is the picture itself; the layers are false colours of one sample or more.
+enum class ShownLayer : uint8_t {
+    Beauty,
+    Albedo,
+    Normal,
+    Depth,
+    Instances,
+    Triangles,
+    Materials,
+    NodeHeat,
+    TriangleHeat,
+};
+
+struct ViewState {
+    RenderSettings picture; // at rest: size, light, number of samples, tracers
+    Display display;
+    Camera lens; // angle of view, aperture, focus; its place is the pose's
+    ShownLayer layer = ShownLayer::Beauty;
+    bool is_real_time = false; // also at rest, pictures are those of the movement
+    float moving_scale = 0;    // of the size while moving; 0: whatever keeps the frame rate
+    bool on_cuda = false;
+};
+
+/// The value of a setting: text for choices, a number for the others.
+using SettingValue = std::variant<double, std::string>;
+
+struct ViewSetting {
+    enum class Kind : uint8_t { Choice, Number, Whole };
+    const char* name;
+    const char* label;
+    const char* group;
+    Kind kind;
+    std::vector<std::string> choices;   // of a Choice
+    double low = 0, high = 0, step = 1; // of a number
+    std::function<SettingValue(const ViewState&)> get;
+    /// Empty where that was done; else why not, in plain words, and nothing was done.
+    std::function<std::string(ViewState&, const SettingValue&)> set;
+};
+
+/// All settings, in the panel's order.
+const std::vector<ViewSetting>& view_settings();
+
+/// Sets one by its name. Empty where that was done; else why not, and nothing was done.
+std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);
+
+const char* name_of(ShownLayer layer);
+
+} // namespace pertev

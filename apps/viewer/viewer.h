@@ -1,0 +1,39 @@
+#pragma once
+
+// pertev view without its flags: pictures of a scene in browsers, until it is told to end. Three threads besides those
+// that render: the caller's steers and renders, one speaks with the network, one packs pictures.
+
+#include <functional>
+#include <string>
+
+#include "apps/viewer/frame_source.h"
+#include "apps/viewer/steering.h"
+#include "apps/viewer/web_server.h"
+#include "scene/scene.h"
+#include "session/picture_metadata.h"
+
+namespace pertev {
+
+struct ViewerOptions {
+    std::string host = "127.0.0.1";
+    uint16_t port = 8080; // 0: any that is free
+    WebLimits limits;
+};
+
+/// What is looked at, and how it begins.
+struct ViewerStart {
+    const Scene* scene = nullptr; // outlives the viewer
+    ViewState view;
+    Camera camera;
+    Pose pose;
+    std::string camera_name; // of the scene's, for flags; empty for none
+    PictureRecord record;    // for pictures that are saved
+    float speed = 1;         // metres a second of keys
+};
+
+/// Listens, calls `listening` with the address that lets in whoever has it, and goes on as long as `goes_on` says so;
+/// it is asked often. Throws Error(BadInput) where it cannot listen, Error(DeviceFault).
+void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSource& source,
+                const std::function<void(const std::string& address)>& listening, const std::function<bool()>& goes_on);
+
+} // namespace pertev

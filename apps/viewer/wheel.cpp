@@ -1,0 +1,56 @@
+#include "apps/viewer/wheel.h"
+
+#include <algorithm>
+
+namespace pertev {
+
+void Wheel::give(uint32_t client) {
+    holder_ = client;
+    kept_for_.clear();
+    for (Seat& seat : seats_) {
+        if (seat.client == client) seat.asks = false;
+    }
+}
+
+void Wheel::join(uint32_t client, const std::string& key, double now_s) {
+    const auto holder = std::ranges::find(seats_, holder_, &Seat::client);
+    const bool held_it = holder != seats_.end() && !key.empty() && holder->key == key;
+    seats_.push_back({client, key, false});
+    if (held_it) return give(client);
+    look(now_s);
+    if (holder_ != 0) return;
+    if (kept_for_.empty() || (!key.empty() && key == kept_for_)) give(client);
+}
+
+void Wheel::leave(uint32_t client, double now_s) {
+    const auto seat = std::ranges::find(seats_, client, &Seat::client);
+    if (seat == seats_.end()) return;
+    if (holder_ == client) {
+        holder_ = 0;
+        kept_for_ = seat->key;
+        gone_s_ = now_s;
+    }
+    seats_.erase(seat);
+    look(now_s);
+}
+
+void Wheel::ask(uint32_t client) {
+    const auto seat = std::ranges::find(seats_, client, &Seat::client);
+    if (seat == seats_.end() || holder_ == client) return;
+    seat->asks = true;
+    if (holder_ == 0) give(client);
+}
+
+bool Wheel::hand(uint32_t from, uint32_t to) {
+    if (!steers(from) || std::ranges::find(seats_, to, &Seat::client) == seats_.end()) return false;
+    give(to);
+    return true;
+}
+
+void Wheel::look(double now_s) {
+    if (holder_ != 0 || seats_.empty()) return;
+    const bool waits = !kept_for_.empty() && now_s - gone_s_ < kPatience;
+    if (!waits) give(seats_.front().client);
+}
+
+} // namespace pertev

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+"""The page of `pertev view` in a real headless Chromium: it loads without a complaint, shows the picture, and every key
+does what its help says. Skipped where there is no Chromium."""
+
+import json
+import os
+import re
+import sys
+import time
+import unittest
+
+from chromium import Chromium, find_chromium
+from cli_run import SANITIZED, main
+from viewer_client import Client, Tunnel, Viewer
+
+LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
+STEERING_S = 600 if LONG else 20
+
+if find_chromium() is None:
+    print("skipped: no Chromium is here")
+    sys.exit(77)
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.viewer = Viewer(size="160x120", spp=2)
+        cls.viewer.__enter__()
+        cls.browser = Chromium()
+        cls.browser.__enter__()
+        cls.browser.go(cls.viewer.address)
+        cls.browser.until("document.body.dataset.kind == 'png' && document.body.dataset.phase == 'done'")
+        cls.home = cls.browser.value("document.body.dataset.flags")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+        cls.viewer.__exit__()
+
+    def setUp(self):
+        # What the page knows of the view; its module keeps it to itself, so it is looked at from a second client.
+        self.eye = Client(self.viewer, key="eye")
+        self.flags = self.eye.text("state", lambda s: s["phase"] == "done")["flags"]
+
+    def tearDown(self):
+        self.eye.socket.close()
+        self.browser.key("KeyR", "r")
+        self.browser.until(f"document.body.dataset.flags == {json.dumps(self.home)} && document.body.dataset.phase == 'done'")
+        self.assertEqual(self.browser.errors, [])
+
+    def moved(self, do):
+        """The view's flags before and after `do`, as numbers by flag."""
+        before = self.flags
+        do()
+        self.flags = self.eye.text("state", lambda s: s["flags"] != before, 20)["flags"]
+        self.flags = self.eye.done(timeout=30)["flags"]
+        return numbers(before), numbers(self.flags)
+
+    def set_to(self, name, value, timeout=20):
+        self.eye.text("state", lambda s: s["values"][name] == value, timeout)
+
+    def test_it_shows_the_picture_and_keeps_the_key_out_of_the_address(self):
+        page = self.browser
+        self.assertNotIn("token", page.value("location.href"))
+        self.assertEqual(page.value("document.cookie"), "")  # scripts do not see it
+        # The floor is lit, and the wall is red. Waited for: the state may come before the picture.
+        page.until("(() => { const copy = new OffscreenCanvas(1280, 720).getContext('2d', {willReadFrequently: true}); "
+                   "copy.drawImage(document.querySelector('#picture'), 0, 0); "
+                   "const all = copy.getImageData(0, 0, 1280, 720).data; const at = (x, y) => all.slice(4 * (1280 * y + x), 4 * (1280 * y + x) + 3); "
+                   "const floor = at(640, 690), wall = at(360, 300); "
+                   "return floor[0] + floor[1] + floor[2] > 150 && wall[0] > 2 * wall[1]; })()")
+        self.assertIn("film hash", page.value("document.querySelector('#readings').innerText"))
+        rendered = self.eye.done()["hash"]
+        self.assertEqual(page.value("document.body.dataset.hash"), rendered)
+
+    def test_keys_of_movement_go_by_their_place(self):
+        for code, sign in [("KeyW", 1), ("KeyS", -1)]:
+            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
+            self.assertGreater(sign * (after["eye"][2] - before["eye"][2]), 0.002, code)
+        # The scene's camera looks along +z with +y up: its right is -x.
+        for code, sign in [("KeyD", -1), ("KeyA", 1)]:
+            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
+            self.assertGreater(sign * (after["eye"][0] - before["eye"][0]), 0.002, code)
+        for code, sign in [("KeyE", 1), ("KeyQ", -1)]:
+            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
+            self.assertGreater(sign * (after["eye"][1] - before["eye"][1]), 0.002, code)
+
+    def test_shift_is_fast_and_z_is_slow(self):
+        ways = {}
+        for held in ["ShiftLeft", "", "KeyZ"]:
+            if held:
+                self.browser.key(held, "x", up=False)
+            before, after = self.moved(lambda: self.browser.key("KeyE", "e", 0.3))
+            if held:
+                self.browser.key(held, "x", down=False)
+            ways[held] = after["eye"][1] - before["eye"][1]
+        self.assertGreater(ways["ShiftLeft"], 1.8 * ways[""])
+        self.assertLess(ways["KeyZ"], 0.6 * ways[""])
+
+    def test_mouse_drags_and_the_wheel_steer(self):
+        before, after = self.moved(lambda: self.browser.drag("left", 100, 0))
+        self.assertAlmostEqual(far(before), far(after), 3)  # turned about the centre
+        self.assertNotAlmostEqual(before["eye"][0], after["eye"][0], 2)
+        before, after = self.moved(lambda: self.browser.drag("right", 60, 20))
+        self.assertEqual(before["eye"], after["eye"])  # looked around
+        before, after = self.moved(lambda: self.browser.drag("middle", 60, 0))
+        change = [[b - a for a, b in zip(before[k], after[k])] for k in ["eye", "target"]]
+        for along_eye, along_target in zip(*change):
+            self.assertAlmostEqual(along_eye, along_target, 3)  # panned
+        before, after = self.moved(lambda: self.browser.mouse("mouseWheel", 500, 300, deltaX=0, deltaY=-200))
+        self.assertLess(far_from(before, after), far(before))
+
+    def test_clicks_pick_turn_about_and_focus(self):
+        page = self.browser
+        page.click(640, 690)
+        page.until("document.querySelector('#picked').innerText.includes('floor')")
+        page.click(640, 690, count=2)
+        page.until("document.querySelector('#notice').innerText.includes('turns about')")
+        page.click(640, 690, modifiers=1)
+        page.until("document.querySelector('#notice').innerText.includes('in focus')")
+        page.click(5, 5)
+
+    def test_fingers_turn_and_zoom(self):
+        def touch(kind, *points):
+            self.browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y)
+                                                                                   in enumerate(points)])
+
+        def swipe():
+            touch("touchStart", (400, 300))
+            for step in range(1, 6):
+                touch("touchMove", (400 + 20 * step, 300))
+                time.sleep(0.03)
+            touch("touchEnd")
+
+        def spread():
+            touch("touchStart", (400, 300), (500, 300))
+            for step in range(1, 6):
+                touch("touchMove", (400 - 10 * step, 300), (500 + 10 * step, 300))
+                time.sleep(0.03)
+            touch("touchEnd")
+
+        before, after = self.moved(swipe)
+        self.assertAlmostEqual(far(before), far(after), 3)
+        before, after = self.moved(spread)
+        self.assertLess(far_from(before, after), far(before))
+
+    def test_keys_of_settings(self):
+        page = self.browser
+        exposure = page.value("Number(document.querySelector('#setting-exposure').value)")
+        page.key("BracketRight", "]")
+        page.until(f"Math.abs(document.querySelector('#setting-exposure').value - {exposure} - 0.25) < 1e-6")
+        page.key("BracketLeft", "[")
+        page.until(f"Math.abs(document.querySelector('#setting-exposure').value - {exposure}) < 1e-6")
+        page.key("Digit3", "3")
+        self.set_to("max_depth", 3)
+        page.key("KeyT", "t")
+        self.set_to("mode", "real time")
+        page.key("KeyT", "t")
+        self.set_to("mode", "reference")
+        page.value("const f = document.querySelector('#setting-walk'); f.value = 'while-while';"
+                   "f.dispatchEvent(new Event('change'))")
+        self.set_to("walk", "while-while")
+
+    def test_panel_help_and_flags(self):
+        page = self.browser
+        page.key("Tab", "Tab")
+        page.until("document.querySelector('#panel').hidden")
+        page.key("Tab", "Tab")
+        page.until("!document.querySelector('#panel').hidden")
+        page.key("KeyH", "h")
+        page.until("document.querySelector('#help').open && document.querySelector('#help').innerText.includes('exposure')")
+        page.key("KeyH", "h")
+        page.until("!document.querySelector('#help').open")
+        page.key("KeyC", "c")
+        page.until("document.querySelector('#notice').innerText.includes('--eye')")
+
+    def test_f12_saves_two_pictures(self):
+        page = self.browser
+        page.key("F12", "F12")
+        page.wait(lambda: {"pertev.png", "pertev.exr"} <= set(os.listdir(page.downloads)))
+        with open(os.path.join(page.downloads, "pertev.png"), "rb") as file:
+            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+
+    def test_steering_for_long_grows_nothing_and_answers_soon(self):
+        page = self.browser
+        end, resident, waits = time.monotonic() + STEERING_S, 0, []
+        page.key("KeyA", "a", up=False)
+        while time.monotonic() < end:
+            time.sleep(0.5)
+            latency = re.search(r"input to picture\s+(\d+) ms", page.value("document.querySelector('#readings').innerText"))
+            waits += [int(latency.group(1))] if latency else []
+            if resident == 0 and time.monotonic() > end - 0.7 * STEERING_S:
+                resident = self.viewer.resident_bytes()
+        page.key("KeyA", "a", down=False)
+        if not SANITIZED:  # which keeps freed memory
+            self.assertLess(self.viewer.resident_bytes() - resident, 32 << 20)
+        print(f"input to picture: median {sorted(waits)[len(waits) // 2]} ms of {len(waits)}", file=sys.stderr)
+
+
+class Comings(unittest.TestCase):
+    def test_a_wrong_token_is_refused_and_the_page_comes_back_after_the_connection_was_lost(self):
+        with Viewer(size="64x48", spp=2) as viewer, Chromium() as page:
+            page.go(viewer.address[:-1] + ("0" if viewer.address[-1] != "0" else "1"))
+            page.until("document.body && document.body.innerText.includes('pertev view printed')")
+            page.go(viewer.address)
+            page.until("document.body.dataset.kind == 'png'")
+            self.assertEqual([error for error in page.errors if "403 (Forbidden)" not in error], [])
+            tunnel = Tunnel(viewer)  # on a port of its own, as ssh -L may have it
+            page.go(viewer.address.replace(f":{viewer.port}/", f":{tunnel.port}/"))
+            page.until("document.body.dataset.kind == 'png' && document.body.dataset.steers == 'true'")
+            page.key("KeyD", "d", 0.3)
+            page.until("document.body.dataset.phase == 'done'")
+            moved = page.value("document.body.dataset.hash")
+            tunnel.cut()
+            page.until("!document.querySelector('#gone').hidden")
+            tunnel.mend()
+            page.until("document.querySelector('#gone').hidden && document.body.dataset.steers == 'true'")
+            self.assertEqual(page.until("document.body.dataset.phase == 'done' && document.body.dataset.hash"), moved)
+            self.assertEqual(viewer.end()[0], 0)
+            page.until("!document.querySelector('#gone').hidden")
+            self.assertIn("pertev view has ended", page.value("document.querySelector('#gone').innerText"))
+
+    def test_of_two_windows_one_steers(self):
+        with Viewer(size="64x48", spp=2) as viewer, Chromium() as first, Chromium() as second:
+            first.go(viewer.address)
+            first.until("document.body.dataset.steers == 'true'")
+            second.go(viewer.address)
+            second.until("document.body.dataset.steers == 'false' && document.body.dataset.samples")
+            click = "[...document.querySelectorAll('#people button')].find((b) => b.textContent.includes('{}')).click()"
+            second.value(click.format("ask"))
+            first.until("document.querySelector('#people').innerText.includes('asks')")
+            first.value(click.format("hand over"))
+            second.until("document.body.dataset.steers == 'true'")
+            first.until("document.body.dataset.steers == 'false'")
+            self.assertEqual(first.errors + second.errors, [])
+
+
+def numbers(flags):
+    """{"eye": [..], "target": [..], ...} of "--eye 1,2,3 --target ..."."""
+    words = flags.replace("'", "").split()
+    return {name[2:]: [float(x) for x in value.split(",")] for name, value in zip(words[::2], words[1::2])
+            if re.match(r"^[-0-9.e,]+$", value)}
+
+
+def far(view):
+    return sum((a - b) ** 2 for a, b in zip(view["eye"], view["target"])) ** 0.5
+
+
+def far_from(before, after):
+    """How far the eye is from where the target was."""
+    return sum((a - b) ** 2 for a, b in zip(after["eye"], before["target"])) ** 0.5
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,401 @@
+#!/usr/bin/env python3
+"""`pertev view` as a program sees it: who is let in, what pictures come, and that no client harms another."""
+
+import os
+import random
+import signal
+import socket
+import time
+import unittest
+
+from cli_run import SANITIZED, CliTest, main
+from viewer_client import Client, Closed, Viewer
+
+LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
+FUZZED = 1_000_000 if LONG else 10_000
+
+
+class WithViewer(unittest.TestCase):
+    """One viewer for all tests of a class."""
+
+    arguments = ()
+    options = {}
+
+    @classmethod
+    def setUpClass(cls):
+        cls.viewer = Viewer(*cls.arguments, **cls.options)
+        cls.viewer.__enter__()
+
+    @classmethod
+    def tearDownClass(cls):
+        ended, said = cls.viewer.process.poll(), cls.viewer.process
+        status, _ = cls.viewer.end() if ended is None else (ended, 0)
+        errors = said.stderr.read().decode()
+        cls.viewer.__exit__()
+        assert status == 0, (status, errors)
+        assert "Sanitizer" not in errors and "runtime error" not in errors, errors
+
+
+class Access(WithViewer):
+    def get(self, target, **changes):
+        headers = {**self.viewer.own_headers(), **changes}
+        return self.viewer.get(target, {name: value for name, value in headers.items() if value is not None})
+
+    def test_the_printed_address_lets_in_and_gives_a_cookie_that_scripts_cannot_read(self):
+        status, headers, body = self.get(f"/?token={self.viewer.token}", Cookie=None)
+        self.assertEqual(status, 200)
+        self.assertIn(b"<canvas", body)
+        self.assertRegex(headers["set-cookie"], r"^pertev-[0-9a-f]{8}=[0-9a-f]{32}; Path=/; HttpOnly; SameSite=Strict$")
+        self.assertNotIn(self.viewer.token, headers["set-cookie"])
+
+    def test_all_files_of_the_page_come_with_the_cookie_and_their_type(self):
+        for path, kind in [("/", "text/html"), ("/main.js", "text/javascript"), ("/link.js", "text/javascript"),
+                           ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/style.css", "text/css"),
+                           ("/icon.svg", "image/svg+xml")]:
+            status, headers, body = self.get(path)
+            self.assertEqual((status, headers["content-type"].split(";")[0]), (200, kind), path)
+            self.assertGreater(len(body), 100)
+            self.assertEqual(headers["x-content-type-options"], "nosniff")
+            policy = headers["content-security-policy"]
+            self.assertIn("default-src 'none'", policy)
+            self.assertNotIn("unsafe", policy)
+        page = self.get("/")[2].decode()
+        self.assertNotRegex(page, r"<script(?![^>]* src=)", "no script stands in the page itself")
+        self.assertNotRegex(page, r"\son\w+=|style=|https?://")
+
+    def test_without_cookie_or_with_a_wrong_one_nothing_comes(self):
+        wrong = self.viewer.let_in()[:-1] + "x"
+        for target in ["/", "/main.js", "/save?format=png", "/socket", "/nothing", "/?token=", "/?token=00",
+                       f"/main.js?token={self.viewer.token}", f"/?token={self.viewer.token}&token={self.viewer.token}"]:
+            for cookie in [None, wrong, "pertev-00000000=" + self.viewer.let_in().split("=")[1]]:
+                status, headers, body = self.get(target, Cookie=cookie)
+                self.assertEqual(status, 403, target)
+                self.assertNotIn("set-cookie", headers)
+                self.assertLess(len(body), 200)
+
+    def test_only_the_server_s_own_names_are_answered(self):
+        port = self.viewer.port
+        for host in ["localhost", "localhost:1", f"127.0.0.1:{port}", "[::1]:99", "LocalHost:8080"]:
+            self.assertEqual(self.get("/", Host=host)[0], 200, host)
+        for host in ["evil.com", f"evil.com:{port}", "localhost.evil.com", "127.0.0.2", "", "localhost:x"]:
+            self.assertEqual(self.get("/", Host=host)[0], 403, host)
+        twice = self.viewer.send_raw(b"GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil.com\r\n\r\n")
+        self.assertIn(b" 400 ", twice.split(b"\r\n")[0])
+
+    def test_a_page_of_another_origin_is_refused_and_a_web_socket_must_show_its_origin(self):
+        own = f"http://127.0.0.1:{self.viewer.port}"
+        self.assertEqual(self.get("/", Origin=own)[0], 200)
+        for origin in ["http://evil.com", "null", own + "1", own.replace("127.0.0.1", "localhost")]:
+            self.assertEqual(self.get("/", Origin=origin)[0], 403, origin)
+        headers = self.viewer.own_headers()
+        for origin in [None, "http://evil.com", "null"]:
+            given = dict(headers, Origin=origin) if origin else headers
+            with Client(self.viewer, headers=given) as client:
+                self.assertEqual(client.status, 403, origin)
+        with Client(self.viewer, headers={"Host": headers["Host"], "Origin": own}) as client:
+            self.assertEqual(client.status, 403)
+        with Client(self.viewer) as client:
+            self.assertEqual(client.status, 101)
+
+    def test_other_methods_bodies_paths_and_sizes_are_refused(self):
+        for method in ["POST", "PUT", "DELETE", "HEAD", "OPTIONS", "NONSENSE"]:
+            self.assertIn(self.viewer.get("/", method=method)[0], (400, 405), method)
+        for path in ["/../etc/passwd", "/%2e%2e/etc/passwd", "//etc/passwd", "/main.js/", "/cli_run.py", "/jsconfig.json",
+                     "/save", "/save?format=jpg", "/save?format=../x"]:
+            self.assertEqual(self.get(path)[0], 404, path)
+        self.assertEqual(self.get("/" + "a" * 2000)[0], 400)
+        self.assertEqual(self.get("/", Long="a" * 9000)[0], 413)
+        body = self.viewer.send_raw(b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999\r\n\r\n" + b"a" * 99999)
+        self.assertTrue(body == b"" or b" 413 " in body.split(b"\r\n")[0], body[:100])
+
+    def test_two_viewers_do_not_share_their_cookies(self):
+        with Viewer(size="16x16", spp=1) as other:
+            self.assertNotEqual(other.let_in().split("=")[0], self.viewer.let_in().split("=")[0])
+            self.assertEqual(other.get("/", self.viewer.own_headers())[0], 403)
+            both = dict(other.own_headers(), Cookie=f"{self.viewer.let_in()}; {other.let_in()}")
+            self.assertEqual(other.get("/", both)[0], 200)
+
+
+class Fuzzed(WithViewer):
+    def test_requests_and_messages_of_any_shape_end_in_an_answer_or_a_closed_connection(self):
+        """Half of them requests, half messages; spoiled good ones, so that many get far."""
+        chance = random.Random(7)
+
+        def spoil(data):
+            data = bytearray(data)
+            for _ in range(chance.randrange(4)):
+                at = chance.randrange(len(data))
+                how = chance.randrange(4)
+                if how == 0:
+                    data[at] = chance.randrange(256)
+                elif how == 1:
+                    del data[at : at + chance.randrange(8)]
+                elif how == 2:
+                    data[at:at] = bytes(chance.randrange(256) for _ in range(chance.randrange(8)))
+                else:
+                    data[at:at] = data[: chance.randrange(len(data) + 1)]
+                data = data or bytearray(b" ")
+            return bytes(data)
+
+        headers = "".join(f"{name}: {value}\r\n" for name, value in self.viewer.own_headers().items())
+        requests = [f"GET {path} HTTP/1.1\r\n{headers}Connection: close\r\n\r\n".encode()
+                    for path in ["/", "/icon.svg", "/save?format=gif", f"/?token={self.viewer.token}"]]
+        requests.append(f"GET /socket HTTP/1.1\r\n{headers}Origin: http://127.0.0.1:{self.viewer.port}\r\nUpgrade: websocket"
+                        "\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+                        "AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n\x81\x80aaaa".encode())
+        messages = ['{"type":"orbit","n":1,"dx":0.1,"dy":0.1}', '{"type":"set","n":2,"name":"exposure","value":1}',
+                    '{"type":"move","n":1,"right":1,"up":0,"forward":0,"ms":10,"pace":"fast"}',
+                    '{"type":"pick","n":3,"x":0.5,"y":0.5,"use":"orbit"}', '{"type":"ack","frame":1,"ms":1}',
+                    '{"type":"set","n":2,"name":"walk","value":"packet"}', '{"type":"hand","to":1}', '{"type":"meter","n":3}']
+        client, before = None, 0
+        for number in range(FUZZED // 2):
+            self.viewer.send_raw(spoil(chance.choice(requests)))
+            if client is None:
+                client = Client(self.viewer, key="fuzz", acknowledges=False)
+                self.assertEqual(client.status, 101)
+            try:
+                client.send_frame(chance.choice([1, 1, 1, 1, 1, 2, 9, 10, 3, 8]), spoil(chance.choice(messages).encode()))
+                if number % 16 == 0:
+                    raise ConnectionError  # it goes without a word
+            except OSError:
+                client.socket.close()
+                client = None
+            if number == FUZZED // 20:
+                before = self.viewer.resident_bytes()
+            self.assertIsNone(self.viewer.process.poll())
+        if client:
+            client.socket.close()
+        self.assertEqual(self.viewer.get("/")[0], 200)
+        if not SANITIZED:  # which keeps freed memory
+            self.assertLess(self.viewer.resident_bytes() - before, 48 << 20)
+
+
+class Pictures(CliTest):
+    def rendered(self, *arguments, spp=4):
+        done = self.render(*arguments, size="64x48", spp=spp, output=self.path("picture.png"))
+        with open(self.path("picture.png"), "rb") as file:
+            return done["hash"], file.read()
+
+    def test_the_film_at_rest_is_the_one_of_a_render_and_the_still_picture_is_its_png(self):
+        with Viewer() as viewer, Client(viewer) as client:
+            png = client.png()
+            self.assertEqual((client.done()["hash"], png), self.rendered())
+            # After a flight too: the flags that are shown for the view give the same bytes.
+            client.steer(type="look", dx=0.1, dy=-0.05)
+            client.steer(type="orbit", dx=-0.2, dy=0.1)
+            client.steer(type="pan", dx=0.02, dy=0.1)
+            client.steer(type="zoom", steps=-2)
+            last = client.steer(type="move", right=1, up=0.5, forward=-1, ms=100, pace="fast")
+            header, _ = client.picture(lambda h: h["input"] == last and h["flags"] & 1)
+            self.assertEqual(header["samples"], 4)
+            flags = client.done(lambda s: s["samples"] == 4)
+            words = flags["flags"].replace("'", "").split()
+            self.assertEqual(flags["hash"], self.rendered(*words)[0])
+            self.assertNotEqual(flags["hash"], self.rendered()[0])
+            # And no structure or walk changes it.
+            for name, value in [("structure", "octree"), ("walk", "while-while"), ("rta", "off"), ("structure", "sbvh")]:
+                client.set(name, value)
+                state = client.done(lambda s, n=name, v=value: s["values"][n] == v)
+                self.assertEqual(state["hash"], flags["hash"], (name, value))
+
+    def test_settings_change_the_picture_as_flags_do(self):
+        with Viewer() as viewer, Client(viewer) as client:
+            client.done()
+            for name, value, flag in [("max_depth", 1, "--max-depth"), ("integrator", "direct", "--integrator"),
+                                      ("spp", 7, "--spp")]:
+                client.set(name, value)
+                state = client.done(lambda s, n=name, v=value: s["values"][n] == v)
+                arguments = [flag, str(value)] if name != "spp" else []
+                kept = ["--max-depth", "1"] if name != "max_depth" else []
+                kept += ["--integrator", "direct"] if name == "spp" else []
+                self.assertEqual(state["hash"], self.rendered(*kept, *arguments, spp=state["spp"])[0], name)
+            client.set("spp", -1)
+            self.assertIn("whole number", client.text("notice")["text"])
+
+    def test_each_layer_shows_and_the_picture_comes_back(self):
+        with Viewer() as viewer, Client(viewer) as client:
+            whole = client.done()
+            seen = set()
+            for layer in ["albedo", "normal", "depth", "instances", "triangles", "materials", "heat: nodes",
+                          "heat: triangles"]:
+                last = client.set("layer", layer)
+                header, data = client.picture(lambda h, n=last: h["input"] == n and h["kind"] == 2)
+                self.assertEqual((header["width"], header["height"]), (64, 48))
+                seen.add(data)
+            self.assertEqual(len(seen), 8)
+            client.set("layer", "picture")
+            self.assertEqual(client.done(lambda s: s["values"]["layer"] == "picture")["hash"], whole["hash"])
+
+    def test_saved_files_are_those_of_a_render(self):
+        with Viewer() as viewer:
+            status, headers, png = viewer.get("/save?format=png")  # nobody need look
+            self.assertEqual(status, 200)
+            self.assertIn("attachment", headers["content-disposition"])
+            self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
+            with Client(viewer) as client:
+                state = client.done()
+            self.assertEqual(viewer.get("/save?format=png")[2], self.rendered()[1])
+            with open(self.path("saved.exr"), "wb") as file:
+                file.write(viewer.get("/save?format=exr")[2])
+            info = self.info("saved.exr")
+            self.assertEqual(info["hash"], state["hash"])
+
+    def test_what_lies_at_a_pixel_is_told_by_name(self):
+        with Viewer() as viewer, Client(viewer) as client:
+            client.steer(type="pick", x=0.5, y=0.95, use="show")
+            rows = {label: value for _, label, value in client.text("picked")["rows"]}
+            self.assertIn("floor", rows["instance"])
+            self.assertIn("white", rows["material"])
+            self.assertEqual(rows["normal"], "0, 1, 0")
+            client.set("aperture", 0.01)
+            client.steer(type="pick", x=0.5, y=0.95, use="focus")
+            self.assertIn("in focus", client.text("notice")["text"])
+            self.assertIn("--aperture 0.01", client.done(lambda s: "--aperture" in s["flags"])["flags"])
+
+    def test_while_the_camera_moves_pictures_are_small_and_soon_and_say_which_input_they_show(self):
+        with Viewer(size="640x480", spp=1000) as viewer, Client(viewer) as client:
+            client.picture()
+            for _ in range(12):
+                began = time.monotonic()
+                number = client.steer(type="orbit", dx=0.01, dy=0)
+                header, data = client.picture(lambda h, n=number: h["input"] >= n)
+                self.assertEqual(data[:2] + data[-2:], b"\xff\xd8\xff\xd9")
+                self.assertEqual((header["full_width"], header["full_height"]), (640, 480))
+            self.assertLess(time.monotonic() - began, 2)
+            self.assertLess(header["width"], 640)
+            # Input comes faster than pictures: these come all the same, and none is far behind.
+            shown, end = [], time.monotonic() + 2
+            while time.monotonic() < end:
+                number = client.steer(type="orbit", dx=0.002, dy=0)
+                try:
+                    while True:
+                        message = client.receive(1 / 60)
+                        if isinstance(message, tuple):
+                            shown.append(number - message[0]["input"])
+                except TimeoutError:
+                    pass
+            self.assertGreater(len(shown), 4)
+            self.assertLess(sorted(shown)[len(shown) // 2], 40)
+
+
+class Together(WithViewer):
+    options = {"size": "160x120", "spp": 100000}
+
+    def test_one_steers_the_others_watch_and_the_wheel_is_handed_over_and_found_again(self):
+        with Client(self.viewer, key="first") as first, Client(self.viewer, key="second") as second:
+            first.say(type="ask")  # a test before this one may have left a wheel that waits
+            people = second.text("people", lambda p: len(p["people"]) == 2 and p["steers"] == p["you"] - 1)
+            first.steer(type="home")
+            first.set("exposure", 2)
+            before = second.text("state", lambda s: s["values"]["exposure"] == 2)["flags"]
+            second.steer(type="orbit", dx=1, dy=0)  # is not heard
+            number = first.steer(type="set", name="exposure", value=3)
+            state = second.text("state", lambda s: s["values"]["exposure"] == 3)
+            self.assertEqual(state["flags"], before)
+            second.say(type="ask")
+            asked = first.text("people", lambda p: any(person["asks"] for person in p["people"]))
+            self.assertEqual(asked["steers"], asked["you"])
+            first.say(type="hand", to=people["you"])
+            second.text("people", lambda p: p["steers"] == p["you"])
+            second.steer(type="orbit", dx=0.2, dy=0)
+            moved = first.text("state", lambda s: s["flags"] != before)["flags"]
+            second.socket.close()
+            with Client(self.viewer, key="second") as again:
+                mine = again.text("people")
+                self.assertEqual(mine["steers"], mine["you"])
+                self.assertEqual(again.text("state")["flags"], moved)
+                again.steer(type="home")
+                again.text("state", lambda s: s["flags"] == before)
+            self.assertGreater(number, 0)
+
+    def watch(self, client, seconds=1.0):
+        """Pictures that it is sent in this time."""
+        count, end = 0, time.monotonic() + seconds
+        while time.monotonic() < end:
+            client.steer(type="orbit", dx=0.001, dy=0)
+            client.picture()
+            count += 1
+        return count
+
+    def test_clients_that_do_not_read_do_not_acknowledge_or_flood_do_not_stop_the_others(self):
+        with Client(self.viewer, key="good") as good:
+            good.text("people", lambda p: p["steers"] in (p["you"], 0))
+            good.say(type="ask")
+            with Client(self.viewer, key="deaf") as deaf, Client(self.viewer, key="mute", acknowledges=False) as mute, \
+                    Client(self.viewer, key="flood") as flood:
+                halves = [socket.create_connection((self.viewer.host, self.viewer.port)) for _ in range(20)]
+                for half in halves:
+                    half.sendall(b"GET / HTTP/1.1\r\nHost: loc")
+                self.assertGreater(self.watch(good), 3)
+                pictures = 0
+                try:
+                    while True:
+                        pictures += isinstance(mute.receive(0.3), tuple)
+                except TimeoutError:
+                    pass
+                self.assertEqual(pictures, 2)
+                with self.assertRaises((Closed, OSError)):
+                    for _ in range(5000):
+                        flood.say(type="zoom", n=1, steps=1)
+                    flood.until(lambda m: False, 10)
+                self.assertGreater(self.watch(good), 3)
+                self.assertEqual(deaf.status, 101)
+                for half in halves:
+                    half.close()
+
+    def test_there_is_room_for_sixteen_and_the_next_is_told_so(self):
+        clients = []
+        try:
+            for number in range(16):
+                clients.append(Client(self.viewer, key=f"one of many {number}"))
+                self.assertEqual(clients[-1].status, 101)
+                clients[-1].text("welcome")
+            with Client(self.viewer) as late:
+                code, reason = late.close_reason(10)
+                self.assertEqual(code, 1013)
+                self.assertIn("too many", reason)
+        finally:
+            for client in clients:
+                client.socket.close()
+
+    def test_messages_that_are_too_large_or_none_close_their_connection_alone(self):
+        for spoil, code in [(lambda c: c.say_text("x" * 5000), 1009), (lambda c: c.say_text("{}"), 1008),
+                            (lambda c: c.send_frame(2, b"abc"), 1008)]:
+            with Client(self.viewer, key="bad") as client:
+                client.text("welcome")
+                spoil(client)
+                self.assertIn(client.close_reason(10)[0], (code, 0))  # 0: what was not read any more cuts it short
+        self.assertEqual(self.viewer.get("/")[0], 200)
+
+
+class Ends(CliTest):
+    def test_ctrl_c_ends_it_within_a_second_with_status_0_whatever_it_does(self):
+        for how, size in [(signal.SIGINT, "64x48"), (signal.SIGTERM, "1600x1200")]:
+            with Viewer(size=size, spp=100000) as viewer, Client(viewer) as client:
+                client.picture()
+                status, seconds = viewer.end(how)
+                self.assertEqual(status, 0)
+                self.assertLess(seconds, 1.5)  # a second, and what a machine under load adds
+                self.assertIn(client.close_reason(5)[0], (0, 1001))
+
+    def test_a_port_in_use_and_a_host_that_is_none_are_refused(self):
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            port = taken.getsockname()[1]
+            self.refuse(2, "view", "cornell-box", "--size", "16x16", "--port", port, "--device", "cpu",
+                        says=["--port", str(port)])
+        for host in ["0.0.0.0", "::"]:
+            self.refuse(2, "view", "cornell-box", "--host", host, says=["--host", "browsers"])
+        self.refuse(2, "view", "cornell-box", "--port", "70000", says=["--port"])
+        self.refuse(2, "view", "nowhere.obj", says=["nowhere.obj"])
+        self.refuse(2, "view", "cornell-box", "-o", "x.png", says=["-o"])
+
+    def test_another_host_is_told_what_that_means(self):
+        with Viewer("--host", "127.0.0.2", size="16x16", spp=1) as viewer:
+            self.assertEqual(viewer.host, "127.0.0.2")
+            self.assertEqual(viewer.get("/")[0], 200)
+            self.assertEqual(viewer.end()[0], 0)
+            self.assertIn("not encrypted", viewer.process.stderr.read().decode())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,312 @@
+// What keeps pictures coming in time: sizes while moving (frame_pace.h), links (link_pace.h), who steers (wheel.h), who
+// is sent what (audience.h).
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "apps/viewer/audience.h"
+#include "apps/viewer/frame_pace.h"
+
+using namespace pertev;
+
+namespace {
+
+/// The time that a frame of this scale takes on a machine that needs `full_s` for a full one.
+double frame_time(double full_s, float scale) {
+    return full_s * static_cast<double>(scale) * static_cast<double>(scale);
+}
+
+SendJob next(Audience& audience) {
+    const auto job = audience.next_job(std::chrono::milliseconds(0));
+    return job.value_or(SendJob{});
+}
+
+/// Takes and forgets texts; gives the first picture, or nothing.
+SendJob next_picture(Audience& audience) {
+    for (int i = 0; i < 100; ++i) {
+        const SendJob job = next(audience);
+        if (job.client == 0 || job.picture != nullptr) return job;
+        audience.text_was_sent(job.client);
+    }
+    return {};
+}
+
+ShownFrame small_frame(bool is_final = false) {
+    ShownFrame frame;
+    frame.image = {2, 2, std::vector<uint8_t>(16, 200)};
+    frame.is_final = is_final;
+    return frame;
+}
+
+constexpr const char* kHello = R"({"type":"hello","key":"a"})";
+
+} // namespace
+
+TEST_CASE("the size while moving is the largest that keeps the frame rate, on machines fast and slow") {
+    for (const double full_s : {0.001, 0.1, 0.5, 2.0, 20.0}) {
+        FramePace pace(0.12);
+        for (int i = 0; i < 60; ++i) pace.took(pace.scale(), frame_time(full_s, pace.scale()));
+        CAPTURE(full_s);
+        const double time = frame_time(full_s, pace.scale());
+        CHECK(time <= 0.12);
+        if (pace.scale() < 1) CHECK(time > 0.12 / 3.5); // one step larger would not keep it with room
+        const float settled = pace.scale();
+        for (int i = 0; i < 20; ++i) { // and it does not swing
+            pace.took(pace.scale(), frame_time(full_s, pace.scale()));
+            CHECK(pace.scale() == settled);
+        }
+    }
+}
+
+TEST_CASE("a view that becomes dear makes pictures smaller within a few frames") {
+    FramePace pace(0.1);
+    for (int i = 0; i < 40; ++i) pace.took(pace.scale(), frame_time(0.07, pace.scale()));
+    CHECK(pace.scale() == 1);
+    for (int i = 0; i < 6; ++i) pace.took(pace.scale(), frame_time(1.5, pace.scale()));
+    CHECK(frame_time(1.5, pace.scale()) < 0.2);
+    CHECK(scaled_side(1, 0.0625f) == 1);
+    CHECK(scaled_side(1280, 0.375f) == 480);
+}
+
+TEST_CASE("two pictures at most are under way to a client, and acknowledging one takes those before it along") {
+    LinkPace pace;
+    pace.sent(1, 1000, 0);
+    CHECK(pace.may_send());
+    pace.sent(2, 1000, 0.01);
+    CHECK_FALSE(pace.may_send());
+    CHECK_FALSE(pace.acknowledged(7, 0.02));
+    CHECK(pace.acknowledged(2, 0.03));
+    CHECK(pace.is_idle());
+    CHECK_FALSE(pace.acknowledged(1, 0.04));
+}
+
+TEST_CASE("a slow link gets smaller pictures and a fast one good ones") {
+    LinkPace slow, fast;
+    double slow_now = 0, fast_now = 0;
+    for (uint32_t i = 1; i < 200; ++i) {
+        // 100 kB/s and a way of 20 ms; what a picture takes goes by its quality and its size.
+        const auto bytes_of = [](const LinkPace& pace) {
+            return static_cast<std::size_t>(4000.0 * pace.quality() * static_cast<double>(pace.scale() * pace.scale()));
+        };
+        const std::size_t bytes = bytes_of(slow);
+        slow.sent(i, bytes, slow_now);
+        slow_now += 0.02 + static_cast<double>(bytes) / 1e5;
+        slow.acknowledged(i, slow_now);
+        fast.sent(i, bytes_of(fast), fast_now);
+        fast_now += 0.005;
+        fast.acknowledged(i, fast_now);
+    }
+    CHECK(slow.quality() <= 40);
+    CHECK(slow.scale() < 1);
+    CHECK(fast.quality() == 92);
+    CHECK(fast.scale() == 1);
+    CHECK(slow.bytes_per_second() < 2e5);
+    CHECK(slow.piece_bytes(0.2) < fast.piece_bytes(0.2));
+}
+
+TEST_CASE("a far link is not taken for a slow one") {
+    LinkPace pace;
+    double now = 0;
+    for (uint32_t i = 1; i < 300; ++i) { // 0.25 s of way, 10 MB/s
+        const auto bytes =
+            static_cast<std::size_t>(1000.0 * pace.quality() * static_cast<double>(pace.scale() * pace.scale()));
+        pace.sent(i, bytes, now);
+        pace.acknowledged(i, now += 0.25 + static_cast<double>(bytes) / 1e7);
+    }
+    CHECK(pace.quality() >= 80);
+    CHECK(pace.scale() == 1);
+}
+
+TEST_CASE("the first who comes steers, hands over, and finds the wheel again after a reconnect") {
+    Wheel wheel;
+    wheel.join(1, "a", 0);
+    wheel.join(2, "b", 0);
+    CHECK(wheel.steers(1));
+    CHECK_FALSE(wheel.hand(2, 2));
+    CHECK_FALSE(wheel.hand(1, 9));
+    wheel.ask(2);
+    CHECK(wheel.seats()[1].asks);
+    CHECK(wheel.hand(1, 2));
+    CHECK(wheel.steers(2));
+    CHECK_FALSE(wheel.seats()[1].asks);
+    wheel.leave(2, 10);
+    CHECK(wheel.holder() == 0); // it waits
+    wheel.join(3, "b", 12);
+    CHECK(wheel.steers(3));
+    wheel.leave(3, 20);
+    wheel.look(25);
+    CHECK(wheel.holder() == 0);
+    wheel.look(31);
+    CHECK(wheel.steers(1));
+    wheel.leave(1, 40);
+    CHECK_FALSE(wheel.steers(0));
+    wheel.join(4, "d", 60);
+    CHECK(wheel.steers(4));
+}
+
+TEST_CASE("a page that comes back before it was missed takes the wheel from its former self, and no other page does") {
+    Wheel wheel;
+    wheel.join(1, "a", 0);
+    wheel.join(2, "b", 0);
+    CHECK(wheel.steers(1));
+    wheel.join(3, "a", 1);
+    CHECK(wheel.steers(3));
+    wheel.leave(1, 2);
+    CHECK(wheel.steers(3));
+    Wheel nameless;
+    nameless.join(1, "", 0);
+    nameless.join(2, "", 0);
+    CHECK(nameless.steers(1));
+}
+
+TEST_CASE("pieces of a still picture say nothing of how well moving ones come through") {
+    LinkPace pace;
+    double now = 0;
+    for (uint32_t i = 1; i < 30; ++i) {
+        pace.sent(i, 1000, now);
+        pace.acknowledged(i, now += 0.01);
+    }
+    const int quality = pace.quality();
+    for (uint32_t i = 30; i < 40; ++i) {
+        pace.sent(i, 1 << 20, now, true);
+        pace.acknowledged(i, now += 1);
+    }
+    CHECK(pace.quality() == quality);
+}
+
+TEST_CASE("whoever asks gets a wheel that nobody holds") {
+    Wheel wheel;
+    wheel.join(1, "a", 0);
+    wheel.join(2, "b", 0);
+    wheel.leave(1, 1);
+    wheel.ask(2);
+    CHECK(wheel.steers(2));
+}
+
+TEST_CASE("a client is sent nothing before its hello, then the welcome first, and pictures as it acknowledges them") {
+    Inbox inbox;
+    Audience audience(inbox, "welcome");
+    CHECK(audience.open(1, 0));
+    audience.publish(small_frame(), 0);
+    CHECK(next(audience).client == 0);
+    CHECK_FALSE(audience.is_anyone_there());
+    CHECK(audience.said(1, kHello, 0).empty());
+    CHECK(audience.is_anyone_there());
+    CHECK(next(audience).text == "welcome");
+    const SendJob picture = next(audience); // no second text before the first has gone
+    REQUIRE(picture.picture != nullptr);
+    const uint32_t first = audience.picture_leaves(picture, 100, 100, 0);
+    CHECK(next(audience).client == 0);
+    audience.publish(small_frame(), 0);
+    audience.picture_leaves(next(audience), 100, 100, 0);
+    for (int i = 0; i < 5; ++i) audience.publish(small_frame(), 0);
+    CHECK(next(audience).client == 0); // two are under way
+    CHECK_FALSE(audience.is_behind());
+    CHECK(audience.said(1, R"({"type":"ack","frame":)" + std::to_string(first) + R"(,"ms":1})", 0.1).empty());
+    CHECK(audience.is_behind());
+    CHECK(next(audience).picture->number == 7); // the newest, none of those before
+}
+
+TEST_CASE("the last picture goes without loss, in pieces, until a newer one is there") {
+    Inbox inbox;
+    Audience audience(inbox, "welcome");
+    audience.open(1, 0);
+    audience.said(1, kHello, 0);
+    audience.publish(small_frame(true), 0);
+    const auto acknowledge = [&](uint32_t frame) {
+        audience.said(1, R"({"type":"ack","frame":)" + std::to_string(frame) + R"(,"ms":1})", 0.1);
+    };
+    SendJob job = next_picture(audience);
+    CHECK_FALSE(job.is_piece);
+    acknowledge(audience.picture_leaves(job, 100, 100, 0));
+    job = next_picture(audience);
+    CHECK(job.is_piece);
+    CHECK(job.offset == 0);
+    acknowledge(audience.picture_leaves(job, 600, 1000, 0));
+    job = next_picture(audience);
+    CHECK(job.is_piece);
+    CHECK(job.offset == 600);
+    audience.publish(small_frame(false), 0);
+    acknowledge(audience.picture_leaves(job, 200, 1000, 0));
+    job = next_picture(audience);
+    CHECK_FALSE(job.is_piece); // the rest is given up
+    acknowledge(audience.picture_leaves(job, 100, 100, 0));
+    CHECK(next_picture(audience).client == 0);
+}
+
+TEST_CASE("messages reach the renderer from whoever steers alone, and floods and nonsense get their sender dropped") {
+    Inbox inbox;
+    Audience audience(inbox, "welcome");
+    audience.open(1, 0);
+    audience.open(2, 0);
+    CHECK_FALSE(audience.said(2, R"({"type":"home","n":1})", 0).empty()); // no hello
+    audience.said(1, kHello, 0);
+    audience.said(2, R"({"type":"hello","key":"b"})", 0);
+    CHECK_FALSE(audience.said(2, kHello, 0).empty());
+    inbox.take(std::chrono::milliseconds(0));
+    CHECK(audience.said(2, R"({"type":"home","n":1})", 0).empty());
+    CHECK(inbox.take(std::chrono::milliseconds(0)).empty());
+    CHECK(audience.said(1, R"({"type":"home","n":1})", 0).empty());
+    CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 1);
+    CHECK_FALSE(audience.said(1, "nonsense", 0).empty());
+    std::string why;
+    for (int i = 0; i < 2000 && why.empty(); ++i) why = audience.said(1, R"({"type":"home","n":1})", 0.1);
+    CHECK(why == "too many messages");
+    CHECK(inbox.take(std::chrono::milliseconds(0)).size() <= 1000);
+}
+
+TEST_CASE("there is room for so many clients, and those without a hello are dropped") {
+    Inbox inbox;
+    Audience audience(inbox, "welcome");
+    for (uint32_t i = 1; i <= Audience::kMostClients; ++i) CHECK(audience.open(i, 0));
+    CHECK_FALSE(audience.open(99, 0));
+    audience.said(3, kHello, 0);
+    CHECK(audience.look(5).empty());
+    CHECK(audience.look(11).size() == Audience::kMostClients - 1);
+    audience.close(1, 11);
+    CHECK(audience.open(99, 11));
+}
+
+TEST_CASE("what waits for a client that does not read stays small") {
+    Inbox inbox;
+    Audience audience(inbox, "welcome");
+    audience.open(1, 0);
+    audience.said(1, kHello, 0);
+    CHECK(next(audience).text == "welcome"); // never acknowledged as sent
+    for (int i = 0; i < 1000; ++i) {
+        audience.tell(0, "note " + std::to_string(i));
+        audience.tell_state("state");
+    }
+    CHECK(next(audience).client == 0);
+    audience.text_was_sent(1);
+    int texts = 0;
+    while (next(audience).client != 0) {
+        audience.text_was_sent(1);
+        ++texts;
+    }
+    CHECK(texts <= 10);
+}
+
+TEST_CASE(
+    "commands that move the camera raise the flag until they are taken, others do not, and a closed inbox takes none") {
+    std::atomic<bool> flag{false};
+    Inbox inbox;
+    inbox.raise(flag);
+    Steer set;
+    set.message.kind = MessageKind::Set;
+    CHECK(inbox.put(set));
+    CHECK_FALSE(flag);
+    Steer orbit;
+    orbit.message.kind = MessageKind::Orbit;
+    CHECK(inbox.put(orbit));
+    CHECK(flag);
+    CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 2);
+    CHECK_FALSE(flag);
+    bool replied = false;
+    CHECK(inbox.put(Save{"png", [&](std::vector<std::byte>) { replied = true; }}));
+    inbox.close();
+    CHECK_FALSE(inbox.put(orbit));
+    CHECK(inbox.take(std::chrono::milliseconds(0)).empty());
+    CHECK_FALSE(replied);
+}

@@ -1,0 +1,145 @@
+// Settings that a page may change (view_state.h), what it is told (panel_text.h), colours of layers (layer_colors.h),
+// and the bytes of pictures (frame_header.h, packer.h).
+
+#include <doctest/doctest.h>
+
+#include <simdjson.h>
+
+#include "apps/viewer/frame_header.h"
+#include "apps/viewer/layer_colors.h"
+#include "apps/viewer/packer.h"
+#include "apps/viewer/panel_text.h"
+#include "apps/viewer/view_state.h"
+#include "render/ray_queue.h"
+
+using namespace pertev;
+
+TEST_CASE("every setting takes each of its choices or its bounds, gives it back, and refuses what is none") {
+    for (const ViewSetting& setting : view_settings()) {
+        CAPTURE(setting.name);
+        ViewState state;
+        if (setting.kind == ViewSetting::Kind::Choice) {
+            REQUIRE(setting.choices.size() > 1);
+            CHECK_FALSE(set_view_setting(state, setting.name, "no such choice").empty());
+            CHECK_FALSE(set_view_setting(state, setting.name, 1.0).empty());
+            for (const std::string& choice : setting.choices) {
+                CAPTURE(choice);
+                if (set_view_setting(state, setting.name, choice).empty()) {
+                    CHECK(std::get<std::string>(setting.get(state)) == choice);
+                }
+            }
+            CHECK(std::get<std::string>(setting.get(state)) != "");
+        } else {
+            for (const double value : {setting.low, setting.high}) {
+                CHECK(set_view_setting(state, setting.name, value) == "");
+                CHECK(std::get<double>(setting.get(state)) == doctest::Approx(value));
+            }
+            const SettingValue before = setting.get(state);
+            CHECK_FALSE(set_view_setting(state, setting.name, setting.high + 1).empty());
+            CHECK_FALSE(set_view_setting(state, setting.name, setting.low - 1).empty());
+            CHECK_FALSE(set_view_setting(state, setting.name, "1").empty());
+            CHECK(setting.get(state) == before);
+        }
+    }
+    ViewState state;
+    CHECK_FALSE(set_view_setting(state, "nothing", 1.0).empty());
+    CHECK_FALSE(set_view_setting(state, "max_depth", 1.5).empty());
+}
+
+TEST_CASE("structures and walks that go together are chosen together, for all kinds of ray") {
+    ViewState state;
+    CHECK(set_view_setting(state, "structure", "octree") == "");
+    CHECK(state.picture.tracers->camera.walk == WalkKind::Octree);
+    CHECK(state.picture.tracers->shadow == state.picture.tracers->camera);
+    CHECK(set_view_setting(state, "walk", "while-while") == "");
+    CHECK(builder_of(state.picture.tracers->camera.structure).has_value());
+    CHECK(set_view_setting(state, "structure", "sbvh") == "");
+    CHECK(state.picture.tracers->bounce.walk == WalkKind::WhileWhile);
+    CHECK(set_view_setting(state, "rta", "off") == "");
+    CHECK_FALSE(state.picture.tracers->camera.options.rta);
+}
+
+TEST_CASE("texts to the page are JSON") {
+    Scene scene;
+    scene.cameras.push_back({.name = "a \"name\""});
+    scene.meshes.resize(1);
+    scene.instances.push_back({.name = "<b>", .mesh = 0, .material = 0});
+    ViewerStart start;
+    start.scene = &scene;
+    start.record.scene.scene = "scene\n.gltf";
+    ShownFrame frame;
+    frame.hash = "0123";
+    frame.stages = {{"render", 1.5}};
+    ViewNumbers numbers;
+    numbers.frame = &frame;
+    const PickedPoint point;
+    for (const std::string& text : {welcome_text(start), state_text(start.view, numbers, "--eye '1'"),
+                                    state_text(start.view, {}, ""), notice_text("error", "\"quoted\""),
+                                    picked_text(scene, &point, 0.5f, 0.5f), picked_text(scene, nullptr, 0, 0)}) {
+        simdjson::dom::parser parser;
+        std::string_view type;
+        CHECK_MESSAGE(parser.parse(text)["type"].get_string().get(type) == simdjson::SUCCESS, text);
+    }
+}
+
+TEST_CASE("layers have the colours that they are described by") {
+    const Image normal = {2, 1, 3, {0, 0, 1, 0, 0, 0}};
+    CHECK(show_normal(normal).pixels == std::vector<uint8_t>{128, 128, 255, 255, 0, 0, 0, 255});
+    const Image depth = {3, 1, 1, {1, 10, 0}};
+    const Rgba8Image far = show_depth(depth);
+    CHECK(far.pixels[0] > far.pixels[4]); // near is bright
+    CHECK(far.pixels[8] == 0);
+    const PixelIds ids[] = {{0, 0, 0}, {1, 0, 0}, {0, 5, 0}, {kNoHit, 0, 0}};
+    const Rgba8Image instances = show_ids(ids, 4, 1, IdKind::Instance);
+    const auto color = [&](std::size_t i) {
+        return std::vector(&instances.pixels[4 * i], &instances.pixels[4 * i] + 3);
+    };
+    CHECK(color(0) == color(2));
+    CHECK(color(0) != color(1));
+    CHECK(color(3) == std::vector<uint8_t>{0, 0, 0});
+    std::vector<RayWork> work(300, {50, 1});
+    work[0] = {0, 9};
+    uint32_t most = 0;
+    const Rgba8Image heat = show_work(work, 300, 1, WorkKind::Nodes, most);
+    CHECK(most == 50);
+    CHECK(heat.pixels[4] > heat.pixels[0]);
+}
+
+TEST_CASE("a frame's header has its numbers at the places that the page reads") {
+    const FrameHeader header = {.kind = PictureKind::Piece,
+                                .flags = 1,
+                                .frame = 0x01020304,
+                                .input = 5,
+                                .samples = 6,
+                                .width = 0x0708,
+                                .height = 9,
+                                .full_width = 10,
+                                .full_height = 11,
+                                .offset = 12,
+                                .total = 13};
+    const auto bytes = bytes_of(header);
+    CHECK(bytes[0] == 1);
+    CHECK(bytes[1] == 2);
+    CHECK(bytes[2] == 1);
+    CHECK(bytes[4] == 4);
+    CHECK(bytes[7] == 1);
+    CHECK(bytes[8] == 5);
+    CHECK(bytes[12] == 6);
+    CHECK(bytes[16] == 8);
+    CHECK(bytes[17] == 7);
+    CHECK(bytes[22] == 11);
+    CHECK(bytes[24] == 12);
+    CHECK(bytes[28] == 13);
+}
+
+TEST_CASE("a shrunk picture has the means of its pixels") {
+    Rgba8Image picture = {4, 3, std::vector<uint8_t>(48, 255)};
+    for (std::size_t i = 0; i < 12; ++i) picture.pixels[4 * i] = static_cast<uint8_t>(10 * i);
+    const Rgba8Image half = shrunk(picture, 2);
+    CHECK(half.width == 2);
+    CHECK(half.height == 1);
+    CHECK(half.pixels[0] == (0 + 10 + 40 + 50) / 4);
+    CHECK(half.pixels[3] == 255);
+    CHECK(shrunk(picture, 1).pixels == picture.pixels);
+    CHECK(shrunk(picture, 16).width == 1);
+}

@@ -1,0 +1,145 @@
+// Steps of the camera (apps/viewer/steering.h): each does what its key says, and flags of the command line place the
+// very same camera.
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "apps/viewer/steering.h"
+#include "render/camera_view.h"
+#include "tests/support/random.h"
+
+using namespace pertev;
+
+namespace {
+
+const Pose kStart = {{0, 1, 5}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}}; // looks along -z
+
+bool near(Vec3 a, Vec3 b, float tolerance = 1e-4f) { return length(a - b) < tolerance; }
+
+Vec3 ahead(const Pose& pose) { return normalize(pose.target - pose.eye); }
+
+} // namespace
+
+TEST_CASE("flying goes along the view's axes and takes target and centre along") {
+    const Pose forward = fly(kStart, 0, 0, 2);
+    CHECK(near(forward.eye, {0, 1, 3}));
+    CHECK(near(forward.target, {0, 1, -2}));
+    CHECK(near(forward.centre, {0, 1, -2}));
+    CHECK(near(fly(kStart, 1, 0, 0).eye, {1, 1, 5}));
+    CHECK(near(fly(kStart, 0, 1, 0).eye, {0, 2, 5}));
+}
+
+TEST_CASE("turning about the centre keeps the distance; what is dragged to the right comes from the left") {
+    const Pose turned = orbit(kStart, 0.25f, 0);
+    CHECK(length(turned.eye - turned.centre) == doctest::Approx(5));
+    CHECK(near(turned.centre, kStart.centre, 1e-6f));
+    CHECK(turned.eye.x < -1);                // the eye goes left, so things go right
+    CHECK(orbit(kStart, 0, 0.1f).eye.y > 1); // dragged down: seen from above
+    Pose aside = kStart;
+    aside.centre = {1, 1, 1}; // off the view's axis: the view turns as one, without a jump
+    const Pose moved = orbit(aside, 0.1f, 0.05f);
+    CHECK(length(moved.eye - moved.centre) == doctest::Approx(length(aside.eye - aside.centre)));
+    CHECK(length(moved.target - moved.eye) == doctest::Approx(5));
+    CHECK(near(orbit(aside, 0, 0).eye, aside.eye));
+}
+
+TEST_CASE("looking turns about the eye by what the drag covers, and turns right when dragged right") {
+    const float fov = 1;
+    const Pose turned = look(kStart, 0.3f, 0, fov);
+    CHECK(near(turned.eye, kStart.eye, 1e-6f));
+    CHECK(ahead(turned).x == doctest::Approx(std::sin(0.3)));
+    CHECK(near(turned.centre, turned.target, 1e-6f));
+    CHECK(ahead(look(kStart, 0, 0.2f, fov)).y == doctest::Approx(-std::sin(0.2)));
+}
+
+TEST_CASE("no drag goes over the poles") {
+    Pose pose = kStart;
+    for (int i = 0; i < 50; ++i) pose = orbit(pose, 0.01f, 0.3f);
+    CHECK(ahead(pose).y == doctest::Approx(-std::sin(1.55334)).epsilon(1e-4));
+    for (int i = 0; i < 50; ++i) pose = look(pose, 0, -0.9f, 1);
+    CHECK(ahead(pose).y == doctest::Approx(std::sin(1.55334)).epsilon(1e-4));
+    const Transform placed = look_at(pose.eye, pose.target, pose.up);
+    CHECK(is_finite(placed.row0));
+}
+
+TEST_CASE(
+    "panning keeps what lies at the centre's distance under the pointer; zooming nears the centre and never meets it") {
+    const float fov = 1, height = 2 * std::tan(0.5f * fov);
+    const Pose panned = pan(kStart, 0.5f, 0, height, false); // half a picture's height to the right
+    CHECK(panned.eye.x == doctest::Approx(-0.5 * static_cast<double>(height) * 5));
+    CHECK(near(ahead(panned), ahead(kStart)));
+    CHECK(pan(kStart, 0, 0.5f, 3, true).eye.y == doctest::Approx(1 + 1.5));
+    CHECK(length(zoom(kStart, 1).eye - kStart.centre) == doctest::Approx(5 * 6.0 / 7));
+    CHECK(length(zoom(kStart, -1).eye - kStart.centre) == doctest::Approx(5 * 7.0 / 6));
+    Pose near_centre = kStart;
+    for (int i = 0; i < 20; ++i) near_centre = zoom(near_centre, 20);
+    CHECK(is_finite(look_at(near_centre.eye, near_centre.target, near_centre.up).row0));
+}
+
+TEST_CASE("Shift is fast, Z is slow, and time is what counts") {
+    ClientMessage message;
+    message.seconds = 0.1f;
+    CHECK(metres_of(message, 2) == doctest::Approx(0.2));
+    message.pace = Pace::Fast;
+    CHECK(metres_of(message, 2) == doctest::Approx(0.8));
+    message.pace = Pace::Slow;
+    CHECK(metres_of(message, 2) < 0.1f);
+}
+
+TEST_CASE("a pose is taken from a camera with what was asked for, and a leaning camera keeps its lean") {
+    Camera camera;
+    camera.world_from_camera = look_at({1, 2, 3}, {0, 0, 0}, {0, 1, 0});
+    const Pose pose = pose_of(camera, {}, {}, 2);
+    CHECK(pose.up == Vec3{0, 1, 0});
+    CHECK(length(pose.target - pose.eye) == doctest::Approx(2));
+    CHECK(near(ahead(pose), normalize(Vec3{-1, -2, -3})));
+    CHECK(pose_of(camera, Vec3{0, 0, 0}, {}, 2).target == Vec3{0, 0, 0});
+    camera.world_from_camera = look_at({1, 2, 3}, {0, 0, 0}, {0.3f, 1, 0});
+    CHECK(pose_of(camera, {}, {}, 2).up != Vec3{0, 1, 0});
+}
+
+TEST_CASE("angles become degrees of the command line that give the same angle to the bit") {
+    test::Random random(11);
+    int exact = 0;
+    constexpr int kRounds = 1000;
+    for (int i = 0; i < kRounds; ++i) {
+        const float degrees = random.within(1, 170), radians = degrees * (kPi / 180.0f);
+        exact += degrees_for(radians) * (kPi / 180.0f) == radians ? 1 : 0;
+    }
+    CHECK(exact == kRounds); // each of these came from degrees
+}
+
+TEST_CASE("flags tell eye, target and lens") {
+    Camera camera;
+    camera.fov_y = 50 * (kPi / 180.0f);
+    CHECK(camera_flags(kStart, camera, "") == "--eye 0,1,5 --target 0,1,0 --fov 50");
+    camera.aperture_radius = 0.5f;
+    camera.focus_distance = 4;
+    Pose leaning = kStart;
+    leaning.up = {0, 0, 1};
+    CHECK(camera_flags(leaning, camera, "main") ==
+          "--camera 'main' --eye 0,1,5 --target 0,1,0 --up 0,0,1 --fov 50 --aperture 0.5 --focus 4");
+    camera.projection = Projection::Orthographic;
+    CHECK(camera_flags(kStart, camera, "").find("--projection orthographic --view-height 2") != std::string::npos);
+}
+
+TEST_CASE("a camera through a place of the picture looks where that pixel looks") {
+    Camera camera;
+    camera.world_from_camera = look_at({1, 2, 3}, {0, 0.5f, 0}, {0, 1, 0});
+    camera.aperture_radius = 0.1f;
+    for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
+        camera.projection = projection;
+        const CameraView view = make_camera_view(camera, 400, 300);
+        for (const auto& [x, y] : {std::pair{0.5f, 0.5f}, {0.1f, 0.8f}, {1.0f, 0.0f}}) {
+            Camera pinhole = camera;
+            pinhole.aperture_radius = 0;
+            const Ray expected = make_camera_ray(make_camera_view(pinhole, 400, 300), {x * 400, y * 300}, {0, 0});
+            const Camera through = camera_through(camera, 4.0f / 3, x, y);
+            const Ray ray = make_camera_ray(make_camera_view(through, 1, 1), {0.5f, 0.5f}, {0, 0});
+            CHECK(near(ray.origin, expected.origin));
+            CHECK(near(ray.direction, expected.direction));
+        }
+        CHECK(view.aperture_radius > 0);
+    }
+}
