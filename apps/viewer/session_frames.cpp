@@ -5,6 +5,7 @@
 #include "apps/viewer/layer_colors.h"
 #include "apps/viewer/steering.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
 #include "render/film_channels.h"
@@ -13,6 +14,8 @@
 namespace pertev {
 namespace {
 
+// Samples from which on a picture at rest is shown in place of a reconstruction: fewer are noisier.
+constexpr uint32_t kBetterThanReconstruction = 8;
 constexpr double kPass = 0.03; // seconds after which a render looks whether it is still wanted
 
 /// What the film must hold beside the picture for this layer.
@@ -107,10 +110,38 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     return image;
 }
 
+ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) {
+    const Stopwatch whole;
+    use(settings_for(request, scale));
+    const bool is_still = session_.camera() == request.camera && shows_reconstruction_;
+    still_frames_ = is_still ? still_frames_ + 1 : 1;
+    session_.set_camera(request.camera);
+    const Stopwatch render;
+    session_.render_frame(next_sample_, {});
+    next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
+    shows_reconstruction_ = true;
+    ShownFrame frame;
+    frame.rays = session_.frame_rays();
+    const double reconstruction_s = session_.frame().seconds();
+    frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
+    const Stopwatch display;
+    frame.image = session_.frame().display(request.view.display.tone_map, request.view.display.exposure_stops);
+    frame.stages = {{"render", 1e3 * frame.render_s},
+                    {"reconstruction", 1e3 * reconstruction_s},
+                    {"tone map", 1e3 * display.seconds()}};
+    frame.full_width = request.view.picture.width;
+    frame.full_height = request.view.picture.height;
+    frame.scale = scale;
+    frame.samples = still_frames_;
+    pace_.took(scale, whole.seconds());
+    return frame;
+}
+
 std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
     const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
+    if (is_small && is_beauty(request.view.layer) && request.view.is_reconstructed) return reconstruct(request, scale);
     use(settings_for(request, scale));
     session_.set_camera(request.camera);
     const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
@@ -132,6 +163,11 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (abandon_ && !is_small) return std::nullopt;
     frame.samples = session_.history().samples;
     if (frame.samples == 0) return std::nullopt;
+    if (shows_reconstruction_ && !is_small && is_beauty(request.view.layer) && frame.samples < wanted &&
+        frame.samples < kBetterThanReconstruction) {
+        return std::nullopt;
+    }
+    shows_reconstruction_ = false;
     const Stopwatch display;
     frame.image = show(request, frame);
     const double display_s = display.seconds();

@@ -1,8 +1,8 @@
 #pragma once
 
-// The pictures of a Session, as the viewer shows them. While the camera moves: few samples, at the resolution that
-// keeps the frame rate. At rest: samples gather at full size until all that were asked for are there; that film is the
-// one of `pertev render`, to the bit.
+// The pictures of a Session, as the viewer shows them. While the camera moves: frames of one sample, reconstructed with
+// what those before have seen, at the resolution that keeps the frame rate. At rest: samples gather at full size until
+// all that were asked for are there; that film is the one of `pertev render`, to the bit.
 
 #include "apps/viewer/frame_pace.h"
 #include "apps/viewer/frame_source.h"
@@ -22,6 +22,7 @@ public:
     RenderResult result() override { return session_.result(); }
 
 private:
+    ShownFrame reconstruct(const FrameRequest& request, float scale);
     RenderSettings settings_for(const FrameRequest& request, float scale);
     void use(const RenderSettings& settings);
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
@@ -29,6 +30,9 @@ private:
     Session& session_;
     FramePace pace_;
     std::atomic<bool> abandon_{false};
+    uint32_t next_sample_ = 0;  // of the frames in real time
+    uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
+    bool shows_reconstruction_ = false;
     double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known
 };
 

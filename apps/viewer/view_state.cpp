@@ -155,6 +155,13 @@ std::vector<ViewSetting> make_settings() {
             return std::string();
         });
     choice(
+        "denoiser", "Denoiser while moving", "Frames", {"svgf", "off"},
+        [](const ViewState& s) { return s.is_reconstructed ? "svgf" : "off"; },
+        [](ViewState& s, const std::string& name) {
+            s.is_reconstructed = name == "svgf";
+            return std::string();
+        });
+    choice(
         "moving_scale", "Size while moving", "Frames", strings(kScales),
         [](const ViewState& s) {
             return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];

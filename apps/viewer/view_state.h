@@ -31,8 +31,9 @@ struct ViewState {
     Display display;
     Camera lens; // angle of view, aperture, focus; its place is the pose's
     ShownLayer layer = ShownLayer::Beauty;
-    bool is_real_time = false; // also at rest, pictures are those of the movement
-    float moving_scale = 0;    // of the size while moving; 0: whatever keeps the frame rate
+    bool is_real_time = false;    // also at rest, pictures are those of the movement
+    bool is_reconstructed = true; // of the movement: by what frames before have seen (denoise/)
+    float moving_scale = 0;       // of the size while moving; 0: whatever keeps the frame rate
     bool on_cuda = false;
 };
 
