@@ -81,7 +81,7 @@ TEST_CASE("channels are read with their key frames") {
     CHECK(scene.animations[0].origin == "/animations/0");
     const std::vector<AnimationChannel>& channels = scene.animations[0].channels;
     REQUIRE(channels.size() == 4);
-    CHECK(channels[0].node == 0);
+    CHECK(channels[0].target == 0);
     CHECK(channels[0].part == AnimatedPart::Translation);
     CHECK(channels[0].interpolation == Interpolation::Linear);
     CHECK(channels[0].times == std::vector<float>{0, 1, 2});
@@ -149,7 +149,7 @@ TEST_CASE("validate_nodes refuses what no reader may leave") {
     refused([](Scene& s) { s.cameras.push_back({.name = "eye", .node = 9}); }, "eye: node 9 is out of range");
     refused([](Scene& s) { std::get<NodePose>(s.nodes[0].pose).scale.y = kInfinity; }, "its transform is not finite");
     refused([](Scene& s) { s.nodes[1].morph_weights[0] = kInfinity; }, "a morph weight is not finite");
-    refused([](Scene& s) { s.animations[0].channels[0].node = 3; }, "channel 0: node 3 is out of range");
+    refused([](Scene& s) { s.animations[0].channels[0].target = 3; }, "channel 0: node 3 is out of range");
     refused([](Scene& s) { s.animations[0].channels[0].times[1] = 0; }, "channel 0: key time 1 is 0");
     refused([](Scene& s) { s.animations[0].channels[0].values.pop_back(); }, "8 numbers for 3 key times; expected 9");
     refused([](Scene& s) { s.animations[0].channels[0].values[4] = kInfinity; }, "number 4 of its values");

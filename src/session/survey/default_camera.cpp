@@ -39,6 +39,7 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
     const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
     float distance = 0;
     for (const Instance& instance : scene.instances) {
+        if (instance.is_hidden) continue;
         const Mesh& mesh = scene.meshes[instance.mesh];
         const std::size_t step = 1 + mesh.indices.size() / 20'000;
         for (std::size_t i = 0; i < mesh.indices.size(); i += step) {
