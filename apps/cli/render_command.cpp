@@ -9,13 +9,14 @@
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
+#include "apps/cli/render_frames.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "formats/read_camera_path.h"
 
 namespace pertev {
 namespace {
@@ -84,53 +85,23 @@ SceneSource scene_source(const SceneOptions& options, const Scene& scene) {
             .show_back_faces = options.show_back_faces};
 }
 
-CameraSource camera_source(const SceneOptions& options, const Camera& camera) {
-    CameraSource source = {
-        .camera = camera, .name = options.camera, .target = {}, .up = {}, .fov_deg = options.fov_deg};
-    if (!options.target.empty()) source.target = parse_position("--target", options.target);
-    if (!options.up.empty()) source.up = parse_vec3("--up", options.up);
-    return source;
+/// Says what a time would show where none is given, or that one shows nothing.
+void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages) {
+    const bool has_time = flags.time_s || !flags.frames.empty();
+    if (moving.is_animated() && !has_time) {
+        double end_s = 0;
+        for (const Animation& animation : moving.scene().animations) end_s = std::max(end_s, animation.end_s());
+        messages.note(fmt::format("{}: shown at rest; --time S shows it at a time of its {} (0 to {:.4g} s)",
+                                  flags.scene.scene, counted(moving.scene().animations.size(), "animation"), end_s));
+    }
+    if (!moving.is_animated() && has_time && flags.camera_path.empty() && flags.turntable == 0) {
+        messages.warn(fmt::format("--{}: nothing moves in this scene (--time-limit ends a render after a time)",
+                                  flags.time_s ? "time" : "frames"));
+    }
 }
 
-int render(RenderFlags flags) {
-    Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    check_render_flags(flags, messages);
-    ComingMachine machine(flags.machine, messages);
-    std::optional<TracerChoice> tracers; // what does not fit the device is refused before the scene is read
-    if (!flags.tracer.are_empty()) tracers = tracer_choice(flags.tracer, machine.is_cuda());
-    reporter.say_messages();
-    reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    const Stopwatch watch;
-    const Scene scene = load_scene(flags.scene, messages);
-    if (flags.strict) refuse_missing(messages);
-    RenderSettings settings = render_settings(flags, scene);
-    settings.tracers = tracers;
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    aim_eye(flags.scene, scene, messages);
-    const Camera camera = choose_camera(flags.scene, scene, aspect, messages);
-    const double load_s = watch.seconds();
-    PrepareOptions prepare;
-    prepare.tracers = tracers.value_or(default_tracers(machine.is_cuda()));
-    prepare.may_be_better = may_be_better(flags.tracer);
-    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
-    reporter.set_work("building trees");
-    const PreparedScene prepared = prepare_scene(scene, prepare, messages);
-    const std::unique_ptr<Queue> queue = machine.take();
-    reporter.say_messages();
-    listen_for_interrupt();
-    report_start(flags, scene, prepared, settings, *queue, load_s, reporter);
-    PictureRecord record = {.scene = scene_source(flags.scene, scene),
-                            .camera = camera_source(flags.scene, camera),
-                            .settings = settings,
-                            .device = queue->device_name(),
-                            .display = {}};
-    record.scene.load_seconds = load_s;
-    record.scene.build_seconds = prepared.build_seconds;
-    report_camera(record.camera, reporter);
-    reporter.set_work("metering");
-    std::optional<Session> session(std::in_place, *queue, prepared, camera, settings);
-    record.display = choose_display(flags, *session, reporter);
+int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
+              std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
     session->render(settings.samples,
                     [&](const RenderProgress& now) { return report_progress(now, settings.time_limit_s, reporter); });
     RenderResult result = session->result();
@@ -138,22 +109,63 @@ int render(RenderFlags flags) {
     reporter.end_progress();
     const bool cut_short = interrupted() && result.samples < settings.samples;
     if (cut_short) reporter.say(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
-    say_hidden_backs(result.hidden_back_share, messages);
+    say_hidden_backs(result.hidden_back_share, reporter.messages());
     reporter.say_messages();
     reporter.set_work("writing");
     const WrittenPicture written = write_picture(flags.outputs, record, result);
-    std::vector<std::string> failures;
-    for (const WrittenFile& file : written.files) {
-        reporter.output(file.path, file.failure);
-        if (!file.failure.empty()) failures.push_back(file.failure);
-    }
-    report_result(result, written.hash, *queue, watch.seconds(), cut_short, reporter);
-    if (!failures.empty()) throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(failures, "; ")));
-    if (flags.strict && result.invalid_samples > 0) {
-        throw Error(ErrorCode::BadInput, fmt::format("--strict: {} not finite; the picture is written",
-                                                     counted(result.invalid_samples, "sample")));
-    }
+    const std::string failures = report_files(written, reporter);
+    report_result(result, written.hash, queue, watch.seconds(), cut_short, reporter);
+    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+    if (flags.strict && result.invalid_samples > 0) throw not_finite(result.invalid_samples);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
+}
+
+int render(const RenderFlags& flags) {
+    Reporter reporter(flags.report);
+    Messages& messages = reporter.messages();
+    check_render_flags(flags, messages);
+    const std::optional<FrameSequence> frames = frame_sequence(flags);
+    std::optional<CameraPath> path;
+    if (!flags.camera_path.empty()) path = read_camera_path(flags.camera_path);
+    ComingMachine machine(flags.machine, messages);
+    std::optional<TracerChoice> tracers; // what does not fit the device is refused before the scene is read
+    if (!flags.tracer.are_empty()) tracers = tracer_choice(flags.tracer, machine.is_cuda());
+    reporter.say_messages();
+    reporter.set_work(fmt::format("loading {}", flags.scene.scene));
+    const Stopwatch watch;
+    Scene scene = load_scene(flags.scene, messages);
+    if (flags.strict) refuse_missing(messages);
+    RenderSettings settings = render_settings(flags, scene);
+    settings.tracers = tracers;
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    const MovingCamera camera(camera_choice(flags.scene), path, scene, aspect, messages);
+    const double load_s = watch.seconds();
+    PrepareOptions prepare;
+    prepare.tracers = tracers.value_or(default_tracers(machine.is_cuda()));
+    prepare.may_be_better = may_be_better(flags.tracer);
+    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
+    reporter.set_work("building trees");
+    MovingScene moving(std::move(scene), frames ? frames->time_of(frames->first) : flags.time_s, prepare, messages);
+    say_what_moves(flags, moving, messages);
+    const std::unique_ptr<Queue> queue = machine.take();
+    reporter.say_messages();
+    listen_for_interrupt();
+    report_start(flags, moving.scene(), moving.prepared(), settings, *queue, load_s, reporter);
+    PictureRecord record = {.scene = scene_source(flags.scene, moving.scene()),
+                            .camera = {},
+                            .settings = settings,
+                            .device = queue->device_name(),
+                            .display = {}};
+    record.scene.load_seconds = load_s;
+    record.scene.build_seconds = moving.prepared().build_seconds;
+    FrameCamera frame_camera = {camera, frames.value_or(FrameSequence{.time_s = flags.time_s})};
+    place_frame(frame_camera.sequence.first, moving.scene(), frame_camera, record);
+    report_camera(record.camera, reporter);
+    reporter.set_work("metering");
+    std::optional<Session> session(std::in_place, *queue, moving.prepared(), record.camera.camera, settings);
+    record.display = choose_display(flags, *session, reporter);
+    if (frames) return render_frames(flags, frame_camera, moving, record, *session, reporter);
+    return write_one(flags, settings, record, session, *queue, watch, reporter);
 }
 
 } // namespace

@@ -8,8 +8,10 @@
 
 #include "base/error.h"
 #include "formats/read_gltf.h"
+#include "render/place_meshes.h"
 #include "scene/shape_mesh.h"
 #include "scene/validate.h"
+#include "session/choose_camera.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 
@@ -131,6 +133,23 @@ TEST_CASE("what a scale of 0 hides at rest is there when it moves, and left out 
         scene.animations.clear();
         CHECK(pose(scene).scene().instances.size() == 1);
     }
+}
+
+TEST_CASE("a scene of which all is hidden at rest can be looked at") {
+    Scene scene = make_scene();
+    scene.instances.erase(scene.instances.begin());
+    scene.instances[0].world_from_local = make_scale({0, 0, 0});
+    std::get<NodePose>(scene.nodes[1].pose).scale = {0, 0, 0};
+    scene.animations[0].channels = {channel(1, AnimatedPart::Scale, {1, 2}, {0, 0, 0, 2, 2, 2})};
+    PosedScene posed = pose(std::move(scene));
+    Messages messages;
+    const Camera camera = choose_camera({}, posed.scene(), 1, messages);
+    CHECK(!is_singular(camera.world_from_camera));
+    CHECK(is_finite(world_centre(posed.scene())));
+    CameraChoice choice;
+    choice.eye = Vec3{1, 2, 3};
+    choice.aperture = 0.1f;
+    CHECK(!is_singular(choose_camera(choice, posed.scene(), 1, messages).world_from_camera));
 }
 
 TEST_CASE("what flies too far is refused, and told later on") {
