@@ -127,6 +127,12 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
         cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);
     }
     facts.add("cameras", cameras);
+    std::vector<std::string> animations;
+    for (const Animation& animation : scene.animations) {
+        const std::string name = animation.name.empty() ? fmt::format("{}", animations.size()) : animation.name;
+        animations.push_back(fmt::format("{} ({:.6g} s)", name, animation.end_s()));
+    }
+    facts.add("animations", animations);
 }
 
 int info(const InfoFlags& flags) {

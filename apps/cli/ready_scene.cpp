@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
-#include "apps/cli/parse_values.h"
+#include "apps/cli/render_frames.h"
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "formats/read_camera_path.h"
 
 namespace pertev {
 namespace {
@@ -24,10 +25,27 @@ void refuse_missing(const Messages& messages) {
                             missing > 1 ? fmt::format(" (and {} like it)", counted(missing - 1, "warning")) : ""));
 }
 
+/// Says what a time would show where none is given, or that one shows nothing.
+void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages) {
+    const bool has_time = flags.time_s || !flags.frames.empty();
+    if (moving.is_animated() && !has_time) {
+        double end_s = 0;
+        for (const Animation& animation : moving.scene().animations) end_s = std::max(end_s, animation.end_s());
+        messages.note(fmt::format("{}: shown at rest; --time S shows it at a time of its {} (0 to {:.4g} s)",
+                                  flags.scene.scene, counted(moving.scene().animations.size(), "animation"), end_s));
+    }
+    if (!moving.is_animated() && has_time && flags.camera_path.empty() && flags.turntable == 0) {
+        messages.warn(fmt::format("--{}: nothing moves in this scene (--time-limit ends a render after a time)",
+                                  flags.time_s ? "time" : "frames"));
+    }
+}
+
 } // namespace
 
-std::unique_ptr<ReadyScene> make_ready(RenderFlags& flags, Reporter& reporter) {
+std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& reporter) {
     Messages& messages = reporter.messages();
+    std::optional<CameraPath> path;
+    if (!flags.camera_path.empty()) path = read_camera_path(flags.camera_path);
     ComingMachine machine(flags.machine, messages);
     std::optional<TracerChoice> tracers; // what does not fit the device is refused before the scene is read
     if (!flags.tracer.are_empty()) tracers = tracer_choice(flags.tracer, machine.is_cuda());
@@ -35,31 +53,34 @@ std::unique_ptr<ReadyScene> make_ready(RenderFlags& flags, Reporter& reporter) {
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const Stopwatch watch;
     auto ready = std::make_unique<ReadyScene>();
-    ready->scene = load_scene(flags.scene, messages);
+    Scene scene = load_scene(flags.scene, messages);
     if (flags.strict) refuse_missing(messages);
     RenderSettings& settings = ready->settings;
-    settings = render_settings(flags, ready->scene);
+    settings = render_settings(flags, scene);
     settings.tracers = tracers;
-    aim_eye(flags.scene, ready->scene, messages);
-    ready->camera = choose_camera(flags.scene, ready->scene, aspect_of(settings.width, settings.height), messages);
+    ready->camera.emplace(camera_choice(flags.scene), path, scene, aspect_of(settings.width, settings.height),
+                          messages);
     ready->load_s = watch.seconds();
     PrepareOptions prepare = prepare_options(settings, machine.is_cuda());
     prepare.may_be_better = may_be_better(flags.tracer);
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
-    ready->prepared = prepare_scene(ready->scene, prepare, messages);
+    ready->sequence = frame_sequence(flags).value_or(FrameSequence{.time_s = flags.time_s});
+    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages);
+    say_what_moves(flags, *ready->moving, messages);
     ready->queue = machine.take();
     return ready;
 }
 
 PictureRecord picture_record(const SceneOptions& options, const ReadyScene& ready) {
-    PictureRecord record = {.scene = source_of(open_options(options), ready.scene),
-                            .camera = source_of(camera_choice(options), ready.camera),
+    PictureRecord record = {.scene = source_of(open_options(options), ready.scene()),
+                            .camera = {},
                             .settings = ready.settings,
                             .device = ready.queue->device_name(),
                             .display = {}};
     record.scene.load_seconds = ready.load_s;
-    record.scene.build_seconds = ready.prepared.build_seconds;
+    record.scene.build_seconds = ready.prepared().build_seconds;
+    place_frame(ready.sequence.first, ready.scene(), {*ready.camera, ready.sequence}, record);
     return record;
 }
 

@@ -9,6 +9,7 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/render_frames.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
 #include "base/error.h"
@@ -61,21 +62,8 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
                     settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
 }
 
-int render(RenderFlags flags) {
-    Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    check_render_flags(flags, messages);
-    const Stopwatch watch;
-    const std::unique_ptr<ReadyScene> ready = make_ready(flags, reporter);
-    const auto& [scene, settings, camera, prepared, load_s, queue] = *ready;
-    reporter.say_messages();
-    listen_for_interrupt();
-    report_start(flags, scene, prepared, settings, *queue, load_s, reporter);
-    PictureRecord record = picture_record(flags.scene, *ready);
-    report_camera(record.camera, reporter);
-    reporter.set_work("metering");
-    std::optional<Session> session(std::in_place, *queue, prepared, camera, settings);
-    record.display = choose_display(flags, *session, reporter);
+int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
+              std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
     session->render(settings.samples,
                     [&](const RenderProgress& now) { return report_progress(now, settings.time_limit_s, reporter); });
     RenderResult result = session->result();
@@ -83,22 +71,37 @@ int render(RenderFlags flags) {
     reporter.end_progress();
     const bool cut_short = interrupted() && result.samples < settings.samples;
     if (cut_short) reporter.say(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
-    say_hidden_backs(result.hidden_back_share, messages);
+    say_hidden_backs(result.hidden_back_share, reporter.messages());
     reporter.say_messages();
     reporter.set_work("writing");
     const WrittenPicture written = write_picture(flags.outputs, record, result);
-    std::vector<std::string> failures;
-    for (const WrittenFile& file : written.files) {
-        reporter.output(file.path, file.failure);
-        if (!file.failure.empty()) failures.push_back(file.failure);
-    }
-    report_result(result, written.hash, *queue, watch.seconds(), cut_short, reporter);
-    if (!failures.empty()) throw Error(ErrorCode::FileWrite, fmt::format("{}", fmt::join(failures, "; ")));
-    if (flags.strict && result.invalid_samples > 0) {
-        throw Error(ErrorCode::BadInput, fmt::format("--strict: {} not finite; the picture is written",
-                                                     counted(result.invalid_samples, "sample")));
-    }
+    const std::string failures = report_files(written, reporter);
+    report_result(result, written.hash, queue, watch.seconds(), cut_short, reporter);
+    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+    if (flags.strict && result.invalid_samples > 0) throw not_finite(result.invalid_samples);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
+}
+
+int render(const RenderFlags& flags) {
+    Reporter reporter(flags.report);
+    check_render_flags(flags, reporter.messages());
+    const Stopwatch watch;
+    const std::unique_ptr<ReadyScene> ready = make_ready(flags, reporter);
+    const RenderSettings& settings = ready->settings;
+    Queue& queue = *ready->queue;
+    reporter.say_messages();
+    listen_for_interrupt();
+    report_start(flags, ready->scene(), ready->prepared(), settings, queue, ready->load_s, reporter);
+    PictureRecord record = picture_record(flags.scene, *ready);
+    report_camera(record.camera, reporter);
+    reporter.set_work("metering");
+    std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
+    record.display = choose_display(flags, *session, reporter);
+    if (frame_sequence(flags)) {
+        const FrameCamera camera = {*ready->camera, ready->sequence};
+        return render_frames(flags, camera, *ready->moving, record, *session, reporter);
+    }
+    return write_one(flags, settings, record, session, queue, watch, reporter);
 }
 
 } // namespace

@@ -18,6 +18,8 @@
 namespace pertev {
 namespace {
 
+constexpr uint32_t kMostFrames = 1'000'000'000;
+
 bool keeps_alpha(const std::string& output) {
     const ImageFormat format = image_format_for(output);
     return format == ImageFormat::Exr || format == ImageFormat::Png;
@@ -49,7 +51,90 @@ void check_for_list(const std::string& output, Messages& messages) {
     messages.warn(text);
 }
 
+void add_motion_flags(CLI::App& verb, RenderFlags& flags) {
+    const char* group = "Motion";
+    verb.add_option("--time", flags.time_s,
+                    "the scene at this time of its animations, which all play\nfrom 0 on (at rest)")
+        ->type_name("SECONDS")
+        ->check(number_between(-1e9f, 1e9f))
+        ->group(group);
+    verb.add_option("--frames", flags.frames,
+                    "pictures from frame A to frame B; in the name of each output\na run of # is the frame's number: "
+                    "-o frame-####.png")
+        ->type_name("A-B")
+        ->group(group);
+    verb.add_option("--fps", flags.fps, "of --frames: frames a second; frame k is at k / F seconds (24)")
+        ->type_name("F")
+        ->check(number_above_zero(1e6f))
+        ->group(group);
+    verb.add_option("--camera-path", flags.camera_path,
+                    "a JSON file of keys (time, eye, target, up, fov) that lead the\ncamera")
+        ->type_name("FILE")
+        ->check(file_name())
+        ->group(group);
+    verb.add_option("--turntable", flags.turntable,
+                    "N pictures, with which the camera goes once round what it looks at")
+        ->type_name("N")
+        ->check(whole_between(1, kMostFrames))
+        ->group(group);
+    verb.add_flag("--continue", flags.goes_on,
+                  "of a sequence that was interrupted: keep the frames that are there whole")
+        ->group(group);
+}
+
+void refuse(bool is_wrong, const std::string& text) {
+    if (is_wrong) throw Error(ErrorCode::BadInput, text);
+}
+
+void check_motion_flags(const RenderFlags& flags) {
+    const bool is_sequence = frame_sequence(flags).has_value();
+    refuse(flags.time_s && !flags.frames.empty(), "--time: with --frames every frame has its own; say --fps");
+    refuse(flags.fps > 0 && flags.frames.empty(), "--fps: of frames; say --frames A-B");
+    refuse(flags.goes_on && !is_sequence, "--continue: of a sequence; say --frames A-B or --turntable N");
+    refuse(flags.time_limit_s > 0 && is_sequence,
+           "--time-limit: a sequence's frames have as many samples each; say --spp");
+    const SceneOptions& scene = flags.scene;
+    if (!flags.camera_path.empty()) {
+        for (const auto& [flag, text] :
+             {std::pair("--eye", &scene.eye), std::pair("--target", &scene.target), std::pair("--up", &scene.up)}) {
+            refuse(!text->empty(), fmt::format("{}: the camera's path says it; leave out one of them", flag));
+        }
+        refuse(flags.turntable > 0, "--turntable: the camera goes its path; leave out one of them");
+    }
+    for (const std::string& output : flags.outputs) {
+        refuse(
+            is_sequence && !names_frames(output),
+            fmt::format("-o {}: each frame needs a file of its own; a run of # in its name is the frame's number: -o "
+                        "frame-####.png",
+                        output));
+    }
+}
+
 } // namespace
+
+std::optional<FrameSequence> frame_sequence(const RenderFlags& flags) {
+    FrameSequence sequence;
+    sequence.turntable = flags.turntable;
+    sequence.time_s = flags.time_s;
+    if (flags.frames.empty()) {
+        if (flags.turntable == 0) return std::nullopt;
+        sequence.last = flags.turntable - 1;
+        return sequence;
+    }
+    const std::size_t dash = flags.frames.find('-');
+    const auto first = whole_number_in(flags.frames.substr(0, dash));
+    const auto last = dash == std::string::npos ? first : whole_number_in(flags.frames.substr(dash + 1));
+    if (!first || !last || *first > *last || *last > kMostFrames) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--frames {}: expected A-B, two whole numbers of which the second is "
+                                "not the smaller, up to {}",
+                                flags.frames, kMostFrames));
+    }
+    sequence.first = static_cast<uint32_t>(*first);
+    sequence.last = static_cast<uint32_t>(*last);
+    sequence.fps = flags.fps > 0 ? flags.fps : 24;
+    return sequence;
+}
 
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group) {
     verb.add_option("--spp", flags.samples, "samples a pixel")
@@ -129,10 +214,11 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->allow_extra_args(false)
         ->check(one_of(aov_names()))
         ->group("Picture");
-    verb.add_option("--time", flags.time_s, "stop after this time, at a whole sample")
+    verb.add_option("--time-limit", flags.time_limit_s, "stop after this time, at a whole sample")
         ->type_name("SECONDS")
         ->check(number_above_zero())
         ->group("Quality");
+    add_motion_flags(verb, flags);
     verb.add_flag("--strict", flags.strict,
                   "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
                   "where a sample is "
@@ -154,11 +240,13 @@ void check_shown_picture_flags(const RenderFlags& flags) {
 
 void check_render_flags(const RenderFlags& flags, Messages& messages) {
     check_shown_picture_flags(flags);
+    check_motion_flags(flags);
+    const std::optional<FrameSequence> frames = frame_sequence(flags);
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
     for (const std::string& output : flags.outputs) {
         check_for_list(output, messages);
-        check_image_output(output, size.width, size.height);
+        check_image_output(frames ? frame_file(output, frames->first) : output, size.width, size.height);
     }
     if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
@@ -189,7 +277,7 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
     settings.filter = *filter_named(flags.filter);
     settings.filter_radius = flags.filter_radius;
     settings.transparent = flags.transparent;
-    settings.time_limit_s = flags.time_s;
+    settings.time_limit_s = flags.time_limit_s;
     for (const std::string& name : flags.aovs) settings.aovs |= *aov_named(name);
     settings.path = {.max_depth = flags.max_depth,
                      .clamp = flags.clamp,

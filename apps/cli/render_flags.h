@@ -2,6 +2,7 @@
 
 // The flags of pertev render, and what they ask for.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/tracer_flags.h"
+#include "session/frame_sequence.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -21,7 +23,12 @@ struct RenderFlags {
     bool transparent = false;
     std::vector<std::string> aovs;
     uint32_t samples = RenderSettings{}.samples;
-    double time_s = 0;
+    double time_limit_s = 0;
+    std::optional<double> time_s;
+    std::string frames, camera_path;
+    double fps = 0; // 0: not given
+    uint32_t turntable = 0;
+    bool goes_on = false; // --continue
     std::string integrator{integrator_name({})}, sampler{name_of(PathSettings{}.sampler)},
         filter{name_of(RenderSettings{}.filter)};
     float filter_radius = 0, clamp = 0;
@@ -41,6 +48,9 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
 
 /// Whether a picture is asked for that light is mapped to tones for: PNG or JPEG.
 bool writes_tone_mapped(const RenderFlags& flags);
+
+/// The frames that are asked for; none: a single picture. Throws Error(BadInput).
+std::optional<FrameSequence> frame_sequence(const RenderFlags& flags);
 
 /// What can be told before the scene is read. Throws Error, above all for an output that could not be written.
 void check_render_flags(const RenderFlags& flags, Messages& messages);

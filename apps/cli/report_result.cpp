@@ -7,6 +7,7 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/byte_units.h"
 #include "base/message_text.h"
@@ -39,6 +40,20 @@ void report_camera(const CameraSource& camera, Reporter& reporter) {
                               std::visit([](const auto& v) { return json_of(v); }, value));
     }
     reporter.event(object + '}');
+}
+
+std::string report_files(const WrittenPicture& written, Reporter& reporter) {
+    std::vector<std::string> failures;
+    for (const WrittenFile& file : written.files) {
+        reporter.output(file.path, file.failure);
+        if (!file.failure.empty()) failures.push_back(file.failure);
+    }
+    return fmt::format("{}", fmt::join(failures, "; "));
+}
+
+Error not_finite(uint64_t invalid_samples) {
+    return Error(ErrorCode::BadInput,
+                 fmt::format("--strict: {} not finite; the picture is written", counted(invalid_samples, "sample")));
 }
 
 void report_result(const RenderResult& result, const std::string& hash, const Queue& queue, double total_seconds,

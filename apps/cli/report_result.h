@@ -2,7 +2,10 @@
 
 // What a render says: the camera at its start, files, time and rates at its end.
 
+#include <string>
+
 #include "apps/cli/reporter.h"
+#include "base/error.h"
 #include "session/write_picture.h"
 
 namespace pertev {
@@ -10,6 +13,12 @@ namespace pertev {
 /// With --json, an object of the flags that place this camera, under the names and with the values that they have in an
 /// EXR's metadata.
 void report_camera(const CameraSource& camera, Reporter& reporter);
+
+/// Says which files were written. Returns what went wrong with the others; empty where nothing has.
+std::string report_files(const WrittenPicture& written, Reporter& reporter);
+
+/// What --strict ends with where samples are not finite.
+Error not_finite(uint64_t invalid_samples);
 
 /// Says time, rates, memory, invalid samples and hash. `total_seconds` since the scene began to load; `queue`: that
 /// it was rendered on; `interrupted`: before all samples were done.

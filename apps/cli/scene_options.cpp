@@ -6,6 +6,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/limits.h"
+#include "session/open_scene.h"
 
 namespace pertev {
 
@@ -25,13 +26,14 @@ OpenOptions open_options(const SceneOptions& options) {
     return open;
 }
 
+} // namespace
+
 CameraChoice camera_choice(const SceneOptions& options) {
     CameraChoice choice;
     choice.camera = options.camera;
     if (!options.eye.empty()) choice.eye = parse_position("--eye", options.eye);
     if (!options.target.empty()) choice.target = parse_position("--target", options.target);
     if (!options.up.empty()) choice.up = parse_vec3("--up", options.up);
-    choice.is_aimed = options.is_aimed;
     if (options.fov_deg > 0) choice.fov_deg = options.fov_deg;
     if (options.aperture_m >= 0) choice.aperture = options.aperture_m;
     if (options.focus_m > 0) choice.focus = options.focus_m;
@@ -135,13 +137,6 @@ Scene load_scene(const SceneOptions& options, Messages& messages) {
 
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene) {
     return scene_camera(options.camera, scene);
-}
-
-void aim_eye(SceneOptions& options, const Scene& scene, Messages& messages) {
-    CameraChoice choice = camera_choice(options);
-    aim_eye(choice, scene, messages);
-    if (choice.is_aimed) options.target = fmt::format("{},{},{}", choice.target->x, choice.target->y, choice.target->z);
-    options.is_aimed = choice.is_aimed;
 }
 
 Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages) {

@@ -23,8 +23,7 @@ struct SceneOptions {
     std::vector<std::filesystem::path> allowed_paths;
     std::string camera; // name or number
     std::string eye, target, up;
-    bool is_aimed = false; // the target is made up (aim_eye)
-    float fov_deg = 0;     // 0: the camera's own
+    float fov_deg = 0; // 0: the camera's own
     float aperture_m = -1, focus_m = 0;
     std::string projection; // "", "perspective", "orthographic"
     float view_height_m = 0;
@@ -51,11 +50,9 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
 // Error(BadInput) also for text that is no value.
 
 OpenOptions open_options(const SceneOptions& options);
-CameraChoice camera_choice(const SceneOptions& options);
 Scene load_scene(const SceneOptions& options, Messages& messages);
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene);
-/// Gives `options` the target that an eye alone looks at.
-void aim_eye(SceneOptions& options, const Scene& scene, Messages& messages);
+CameraChoice camera_choice(const SceneOptions& options);
 Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages);
 
 } // namespace pertev

@@ -100,7 +100,7 @@ void end_soon() {
     }).detach();
 }
 
-int view(ViewFlags flags) {
+int view(const ViewFlags& flags) {
     Reporter reporter(flags.render.report);
     check_host(flags.host);
     check_shown_picture_flags(flags.render);
@@ -108,19 +108,21 @@ int view(ViewFlags flags) {
     reporter.say_messages();
     listen_for_interrupt();
     reporter.set_work("metering");
-    Session session(*ready->queue, ready->prepared, ready->camera, ready->settings);
+    const PictureRecord record = picture_record(flags.render.scene, *ready);
+    const Camera& camera = record.camera.camera;
+    Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
     SessionFrames source(session, on_cuda ? kFrameOnGpu : kFrameOnCpu);
     ViewerStart start;
-    start.scene = &ready->scene;
-    start.camera = ready->camera;
-    start.record = picture_record(flags.render.scene, *ready);
+    start.scene = &ready->scene();
+    start.camera = camera;
+    start.record = record;
     start.view.picture = ready->settings;
     start.view.display = choose_shown_display(flags.render, session, reporter);
-    start.view.lens = ready->camera;
+    start.view.lens = camera;
     start.view.on_cuda = on_cuda;
-    start.camera_name = camera_name(flags.render.scene, ready->scene);
-    const float size = length(bounds_of(ready->scene).size());
+    start.camera_name = camera_name(flags.render.scene, ready->scene());
+    const float size = length(bounds_of(ready->scene()).size());
     start.speed = 0.12f * size;
     start.pose = start_pose(start.record, source, size);
     reporter.set_work("waiting for somebody to look");

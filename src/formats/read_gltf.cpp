@@ -1,7 +1,5 @@
 #include "formats/read_gltf.h"
 
-#include <fmt/format.h>
-
 #include "base/read_file.h"
 #include "formats/gltf/animations.h"
 #include "formats/gltf/materials.h"
@@ -29,15 +27,12 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::Textures textures(document, buffers, loader, messages);
     gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, messages);
     gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, messages);
-    gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
     scene.nodes = nodes.take_nodes();
     gltf::read_node_shapes(document, buffers, scene);
+    gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
     gltf::read_animations(document, buffers, scene, messages);
     loader.load_into(scene, buffers.file_bytes());
 
-    if (document.root().find("animations")) {
-        messages.warn(fmt::format("{}: animations are not played", document.file()));
-    }
     return scene;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
-// Vectors in double, for geometry that is made once on the host: there neither tiny nor huge triangles leave the range,
-// and what cancels keeps its digits.
+// Vectors in double, for geometry that is made once, before it is traced: there neither tiny nor huge triangles leave
+// the range, and what cancels keeps its digits.
 
+#include <cmath>
+
+#include "base/host_device.h"
 #include "math/vec3.h"
 
 namespace pertev {
@@ -11,18 +14,27 @@ struct DoubleVec3 {
     double x, y, z;
 };
 
-inline DoubleVec3 to_double(Vec3 v) {
+HD inline DoubleVec3 to_double(Vec3 v) {
     return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 /// Each component rounded.
-inline Vec3 to_float(DoubleVec3 v) {
+HD inline Vec3 to_float(DoubleVec3 v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
-inline DoubleVec3 operator-(DoubleVec3 a, DoubleVec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline DoubleVec3 operator/(DoubleVec3 a, double b) { return {a.x / b, a.y / b, a.z / b}; }
-inline double dot(DoubleVec3 a, DoubleVec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline DoubleVec3 cross(DoubleVec3 a, DoubleVec3 b) {
+HD inline DoubleVec3 operator-(DoubleVec3 a, DoubleVec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HD inline DoubleVec3 operator/(DoubleVec3 a, double b) { return {a.x / b, a.y / b, a.z / b}; }
+HD inline double dot(DoubleVec3 a, DoubleVec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+HD inline DoubleVec3 cross(DoubleVec3 a, DoubleVec3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// `v` at unit length, for any finite length but 0, else not finite. What is unit as near as floats can tell is left
+/// alone, so that doing it twice changes nothing.
+HD inline Vec3 normalize_safely(Vec3 v) {
+    const float square = length_squared(v);
+    if (abs(square - 1) <= 0x1p-22f) return v;
+    const DoubleVec3 exact = to_double(v);
+    return to_float(exact / ::sqrt(dot(exact, exact)));
 }
 
 } // namespace pertev

@@ -29,12 +29,22 @@ Transform inverse(const Transform& m) {
     return {to_float(r0), to_float(r1), to_float(r2), to_float({-dot(r0, t), -dot(r1, t), -dot(r2, t)})};
 }
 
+bool is_singular(const Transform& m) { return !is_finite(inverse(m)); }
+
 float condition_number(const Transform& m) {
     const auto norm = [](const Transform& a) {
         const auto sum = [](Vec3 r) { return abs(r.x) + abs(r.y) + abs(r.z); };
         return max(sum(a.row0), max(sum(a.row1), sum(a.row2)));
     };
     return norm(m) * norm(inverse(m));
+}
+
+std::optional<Transform> without_scale(const Transform& m) {
+    const Vec3 back = normalize(column(m, 2));
+    const Vec3 right = normalize(pertev::cross(column(m, 1), back));
+    const Vec3 up = pertev::cross(back, right);
+    if (!is_finite(back) || !is_finite(right) || !is_finite(m.translation)) return std::nullopt;
+    return Transform{{right.x, up.x, back.x}, {right.y, up.y, back.y}, {right.z, up.z, back.z}, m.translation};
 }
 
 Transform make_translation(Vec3 t) { return {.translation = t}; }

@@ -2,6 +2,8 @@
 
 // Affine map as a 3x4 matrix, rows first: p' = M p + t. Names read `world_from_local`.
 
+#include <optional>
+
 #include "base/host_device.h"
 #include "math/bounds3.h"
 #include "math/vec3.h"
@@ -30,14 +32,23 @@ HD inline Transform moved_to(Transform m, Vec3 centre) {
 HD inline Vec3 column(const Transform& m, int k) {
     return {component(m.row0, k), component(m.row1, k), component(m.row2, k)};
 }
+HD inline bool is_finite(const Transform& m) {
+    return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
+}
 HD inline float determinant(const Transform& m) { return dot(m.row0, cross(m.row1, m.row2)); }
 
 /// a after b: p' = a(b(p)). Host only: evaluated in double, rounded once.
 Transform compose(const Transform& a, const Transform& b);
 /// Inverse, evaluated in double. Throws nothing: a singular map gives values that are not finite.
 Transform inverse(const Transform& m);
+/// Whether `m` has no inverse that floats can hold.
+bool is_singular(const Transform& m);
 /// Product of the largest absolute row sums of the linear part and of its inverse (infinity-norm condition number).
 float condition_number(const Transform& m);
+
+/// `m` with scale, shear and mirroring taken out: the same origin, the same -z, upright in the same plane. Nothing
+/// where those directions are lost.
+std::optional<Transform> without_scale(const Transform& m);
 
 Transform make_translation(Vec3 t);
 Transform make_scale(Vec3 s);

@@ -15,12 +15,13 @@ struct SurfacePoint {
     Vec3 position, normal; // metres, moved world; the normal unit, or zero for a triangle without area
 };
 
-/// Triangles of all instances, counted through.
+/// Triangles of all instances that are not hidden, counted through.
 class PlacedTriangles {
 public:
     PlacedTriangles(const Scene& scene, Vec3 centre) : scene_(scene), centre_(centre) {
         for (const Instance& instance : scene.instances) {
-            ends_.push_back(count() + scene.meshes[instance.mesh].triangle_count());
+            const uint64_t own = instance.is_hidden ? 0 : scene.meshes[instance.mesh].triangle_count();
+            ends_.push_back(count() + own);
         }
     }
     uint64_t count() const { return ends_.empty() ? 0 : ends_.back(); }

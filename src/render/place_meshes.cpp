@@ -69,7 +69,8 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const bool stays_alone = uses[instance.mesh] == 1 && !moves[i];
-        const bool baked = stays_alone || !(condition_number(instance.world_from_local) <= kMaxCondition);
+        const bool is_skewed = !(condition_number(instance.world_from_local) <= kMaxCondition);
+        const bool baked = !instance.is_hidden && (stays_alone || is_skewed);
         placement.is_baked.push_back(baked);
         if (baked && uses[instance.mesh] > 1) {
             ++placement.copies;
@@ -129,8 +130,8 @@ std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& pla
                                     std::span<const Bounds3> bounds) {
     std::vector<PlacedBvh> placed;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-        if (placement.is_baked[i]) continue;
         const Instance& instance = scene.instances[i];
+        if (placement.is_baked[i] || instance.is_hidden) continue;
         const uint32_t tree = placement.tree_of_mesh[instance.mesh];
         placed.push_back(
             {moved_to(instance.world_from_local, placement.centre), bounds[tree], tree, static_cast<uint32_t>(i)});

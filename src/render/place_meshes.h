@@ -24,7 +24,7 @@ struct MeshPlacement {
     Vec3 centre;                               // of the world that they are placed in, in the file's coordinates
 };
 
-/// Where the origin of a picture's world lies, in the file's coordinates (metres), at time 0: the middle of the box
+/// Where the origin of a picture's world lies, in the file's coordinates (metres), at rest: the middle of the box
 /// round all instances (scene/scene.h's bounds_of), each coordinate rounded to a multiple of g, the least power of two
 /// that is not under the box's longest side. So a scene stays where it is unless it lies more than about its size from
 /// the origin, and to move one that does costs hardly any bits: the difference of a coordinate from a multiple of g is
@@ -33,8 +33,8 @@ Vec3 world_centre(const Scene& scene);
 
 /// An instance is baked when its mesh is used once and it may not move (scene/animation.h), or, moving or not, when its
 /// transform's condition number is over 2^12: a local space so skewed would cost the boxes of a top level more than the
-/// triangles cost memory. Throws Error(OverLimit) that names the instance with which such copies are out of all
-/// proportion to the scene's own triangles. `centre`: the origin of the world they are placed in.
+/// triangles cost memory. What is hidden is not. Throws Error(OverLimit) that names the instance with which such copies
+/// are out of all proportion to the scene's own triangles. `centre`: the origin of the world they are placed in.
 MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0});
 
 /// The triangles of all baked instances, in the moved world. Throws Error(OverLimit) for more than one tree can hold.

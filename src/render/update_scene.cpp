@@ -73,7 +73,10 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
 }
 
 uint32_t parts_of(const SceneUpdate& update) {
-    uint32_t parts = kPartTrees | kPartInstances | kPartLights;
+    uint32_t parts = kPartLights;
+    if (!update.moved_instances.empty() || !update.deformed_meshes.empty() || !update.replaced_meshes.empty()) {
+        parts |= kPartTrees | kPartInstances;
+    }
     if (!update.deformed_meshes.empty() || !update.replaced_meshes.empty()) parts |= kPartGeometry;
     return parts;
 }

@@ -5,21 +5,14 @@
 // with this centre.
 
 #include <cstdint>
-#include <vector>
 
 #include "render/prepare_scene.h"
+#include "scene/scene_update.h"
 
 namespace pertev {
 
-/// What has become another since the scene was prepared; indices into Scene::instances and Scene::meshes. Which
-/// materials there are, how many instances and meshes, which mesh an instance shows and what may move stay.
-struct SceneUpdate {
-    std::vector<uint32_t> moved_instances; // world_from_local is another
-    std::vector<uint32_t> deformed_meshes; // the same triangles (indices) with other positions or normals
-    std::vector<uint32_t> replaced_meshes; // anything about them
-};
-
-/// `scene` is valid and has the changes in it; it outlives what is returned. Of the trees,
+/// `scene` is valid and has the changes in it; it outlives what is returned, and may be the very scene that `before`
+/// was made of, changed where it stands. Of the trees,
 ///   moved instances     take a new top level; none of the meshes' trees. One that is baked (MeshPlacement) counts as a
 ///                       deformed mesh of the tree over all baked ones: whoever moves often should be able to move
 ///                       (scene/animation.h), so that it is not

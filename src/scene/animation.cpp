@@ -6,20 +6,49 @@
 
 namespace pertev {
 
-std::vector<bool> may_move(const Scene& scene) {
-    std::vector<bool> moving(scene.instances.size());
-    std::vector<bool> is_placed_anew(scene.nodes.size()), is_reshaped(scene.nodes.size());
+double Animation::end_s() const {
+    double end = 0;
+    for (const AnimationChannel& channel : channels) {
+        if (!channel.times.empty()) end = std::max(end, static_cast<double>(channel.times.back()));
+    }
+    return end;
+}
+
+std::vector<bool> moving_nodes(const Scene& scene) {
+    std::vector<bool> moves(scene.nodes.size());
     bool any = false;
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
-            (channel.part == AnimatedPart::Weights ? is_reshaped : is_placed_anew)[channel.node] = true;
-            any = true;
+            switch (channel.part) {
+            case AnimatedPart::Translation:
+            case AnimatedPart::Rotation:
+            case AnimatedPart::Scale:
+                moves[channel.target] = any = true;
+                break;
+            case AnimatedPart::Weights:
+            case AnimatedPart::CameraFov:
+            case AnimatedPart::LightIntensity:
+                break;
+            }
         }
     }
-    if (!any) return moving;
+    if (!any) return moves;
     for (const uint32_t node : parents_first(scene.nodes)) {
         const uint32_t parent = scene.nodes[node].parent;
-        if (parent != kNoNode && is_placed_anew[parent]) is_placed_anew[node] = true;
+        if (parent != kNoNode && moves[parent]) moves[node] = true;
+    }
+    return moves;
+}
+
+std::vector<bool> may_move(const Scene& scene) {
+    std::vector<bool> moving(scene.instances.size());
+    if (scene.animations.empty()) return moving;
+    const std::vector<bool> is_placed_anew = moving_nodes(scene);
+    std::vector<bool> is_reshaped(scene.nodes.size());
+    for (const Animation& animation : scene.animations) {
+        for (const AnimationChannel& channel : animation.channels) {
+            if (channel.part == AnimatedPart::Weights) is_reshaped[channel.target] = true;
+        }
     }
     std::vector<bool> skin_moves;
     for (const Skin& skin : scene.skins) {

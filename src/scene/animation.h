@@ -1,7 +1,7 @@
 #pragma once
 
-// What moves over time, as glTF 2.0 has it (section 3.11): each channel changes one part of one node by key frames. The
-// scene itself is at rest; nothing here has been applied to it.
+// What moves over time, as glTF 2.0 has it (section 3.11): each channel changes one part of one node, camera or light
+// by key frames. scene/posed_scene.h applies them.
 
 #include <cstdint>
 #include <string>
@@ -11,28 +11,35 @@ namespace pertev {
 
 struct Scene;
 
-enum class AnimatedPart : uint8_t { Translation, Rotation, Scale, Weights };
+enum class AnimatedPart : uint8_t { Translation, Rotation, Scale, Weights, CameraFov, LightIntensity };
 enum class Interpolation : uint8_t { Step, Linear, CubicSpline };
 
 struct AnimationChannel {
-    uint32_t node = 0; // index into Scene::nodes
+    uint32_t target = 0; // index into Scene::nodes; of CameraFov into Scene::cameras, of LightIntensity Scene::lights
     AnimatedPart part = AnimatedPart::Translation;
     Interpolation interpolation = Interpolation::Linear;
     std::vector<float> times; // seconds, at least 0, each above the one before
     /// A value for each time, one after the other; for CubicSpline three: tangent into the key, value, tangent out of
-    /// it. A value is 3 numbers (Translation in metres, Scale), 4 (Rotation: a quaternion x, y, z, w, not 0) or as many
-    /// as the node has morph_weights.
+    /// it, both a second. A value is 3 numbers (Translation in metres, Scale, LightIntensity), 4 (Rotation: a
+    /// quaternion x, y, z, w, not 0), as many as the node has morph_weights, or 1 (CameraFov in radians).
     std::vector<float> values;
 };
 
+/// All animations of a scene play at once, each from time 0, and hold their last value. Where two change the same part,
+/// the later one counts.
 struct Animation {
     std::string name, origin;
     std::vector<AnimationChannel> channels;
+
+    double end_s() const; // the last key's time, seconds; 0 without any
 };
 
+/// Of each node, whether a time may come at which it stands elsewhere: an animation moves it or one above it.
+std::vector<bool> moving_nodes(const Scene& scene);
+
 /// Of each instance, whether a time may come at which it stands elsewhere or has another shape: an animation changes
-/// its node or one above it or its morph weights or, where it has a skin, does so to a joint. All false without
-/// animations. Every index is in range (validate()).
+/// its node or one above it or its morph weights or, where it has a skin, does so to a joint. Of both: all false
+/// without animations; every index is in range (validate()).
 std::vector<bool> may_move(const Scene& scene);
 
 } // namespace pertev

@@ -26,6 +26,14 @@ struct Light {
     uint32_t node = kNoNode; // index into Scene::nodes
 };
 
+/// Puts `light` at the origin of a node, shining along the node's -z; its strength does not scale. False where that
+/// direction is lost.
+inline bool place_light(const Transform& world_from_node, Light& light) {
+    light.position = world_from_node.translation;
+    light.direction = normalize(-column(world_from_node, 2));
+    return light.kind == LightKind::Point || is_finite(light.direction);
+}
+
 /// Light from infinitely far away. Image columns run with longitude: the middle column looks along -z, +x is a quarter
 /// to the right of it; row 0 is +y.
 struct Environment {

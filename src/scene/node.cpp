@@ -21,6 +21,16 @@ Transform parent_from_node(const Node& node) {
     return transform_of(std::get<NodePose>(node.pose));
 }
 
+std::vector<Transform> world_from_nodes(std::span<const Node> nodes, std::span<const uint32_t> parents_first) {
+    std::vector<Transform> world(nodes.size());
+    for (const uint32_t node : parents_first) {
+        const Transform local = parent_from_node(nodes[node]);
+        const uint32_t parent = nodes[node].parent;
+        world[node] = parent == kNoNode ? local : compose(world[parent], local);
+    }
+    return world;
+}
+
 std::vector<uint32_t> parents_first(std::span<const Node> nodes) {
     enum class State : uint8_t { New, OnChain, Placed, Circular };
     std::vector<State> states(nodes.size(), State::New);

@@ -1,7 +1,8 @@
 #pragma once
 
 // The hierarchy that a scene's instances, cameras and lights stand in: each of them says its node, and a node says its
-// parent. At rest they are placed already (Instance::world_from_local): nodes are for what moves them later.
+// parent. They are placed already (Instance::world_from_local), at rest or at a time: nodes are for what moves them.
+// What a node says itself is at rest at all times.
 
 #include <cstdint>
 #include <span>
@@ -17,7 +18,7 @@ namespace pertev {
 
 inline constexpr uint32_t kNoSkin = 0xffffffffu;
 
-/// The parts that an animation changes. The transform is translation * rotation * scale.
+/// The parts that an animation changes, at rest. The transform is translation * rotation * scale.
 struct NodePose {
     Vec3 translation;             // metres
     Vec4 rotation = {0, 0, 0, 1}; // quaternion (x, y, z, w) of any length but 0
@@ -34,12 +35,16 @@ struct Node {
 
 /// Which nodes move the vertices of a skinned mesh.
 struct Skin {
-    std::vector<uint32_t> joints; // indices into Scene::nodes
+    std::vector<uint32_t> joints;           // indices into Scene::nodes
+    std::vector<Transform> joint_from_mesh; // inverse bind matrices, one a joint; empty: they do nothing
 };
 
 /// Parent from local.
 Transform transform_of(const NodePose& pose);
 Transform parent_from_node(const Node& node);
+
+/// World from local of each node. `parents_first`: all of them in such an order.
+std::vector<Transform> world_from_nodes(std::span<const Node> nodes, std::span<const uint32_t> parents_first);
 
 /// All nodes, each after its parent; fewer than all where some go round in a circle. Every parent is in range. In time
 /// in proportion to the nodes, without recursion.

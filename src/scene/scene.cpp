@@ -1,6 +1,15 @@
 #include "scene/scene.h"
 
+#include "base/limits.h"
+
 namespace pertev {
+namespace {
+
+Vec3 corner_of(const Bounds3& box, int number) {
+    return {number & 1 ? box.hi.x : box.lo.x, number & 2 ? box.hi.y : box.lo.y, number & 4 ? box.hi.z : box.lo.z};
+}
+
+} // namespace
 
 std::string origin_of(const Instance& instance) {
     return instance.node == kNoNode ? "" : "/nodes/" + std::to_string(instance.node);
@@ -12,17 +21,23 @@ Bounds3 bounds_of(const Mesh& mesh) {
     return bounds;
 }
 
+bool lies_near(const Transform& world_from_local, const Bounds3& local) {
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = transform_point(world_from_local, corner_of(local, corner));
+        if (!(is_finite(p) && max_component(abs(p)) <= kMaxCoordinate)) return false;
+    }
+    return true;
+}
+
 Bounds3 bounds_of(const Scene& scene) {
     std::vector<Bounds3> of_mesh(scene.meshes.size());
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) of_mesh[i] = bounds_of(scene.meshes[i]);
     Bounds3 bounds;
     for (const Instance& instance : scene.instances) {
         const Bounds3& local = of_mesh[instance.mesh];
-        if (local.is_empty()) continue;
+        if (local.is_empty() || instance.is_hidden) continue;
         for (int corner = 0; corner < 8; ++corner) {
-            bounds.extend(transform_point(instance.world_from_local,
-                                          {corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
-                                           corner & 4 ? local.hi.z : local.lo.z}));
+            bounds.extend(transform_point(instance.world_from_local, corner_of(local, corner)));
         }
     }
     return bounds;

@@ -1,8 +1,9 @@
 #pragma once
 
-// A scene as a reader leaves it: plain data, nothing derived. Ids are positions in these vectors; the order of
-// `instances` is the scene order of the one-picture law (docs/conventions.md). What has an `origin` says with it where
-// the file describes it, for messages: a JSON pointer, or a line; empty where the format has neither.
+// A scene as a reader leaves it, at rest, or as it is at a time (scene/posed_scene.h): plain data. Ids are positions in
+// these vectors; the order of `instances` is the scene order of the one-picture law (docs/conventions.md). What has an
+// `origin` says with it where the file describes it, for messages: a JSON pointer, or a line; empty where the format
+// has neither.
 
 #include <cstdint>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
+#include "scene/mesh_shape.h"
 #include "scene/node.h"
 #include "scene/texture.h"
 
@@ -26,6 +28,9 @@ struct Instance {
     uint32_t material = 0; // index into Scene::materials
     Transform world_from_local;
     uint32_t node = kNoNode; // index into Scene::nodes: where it stands, and where the file has it (origin_of)
+    Transform
+        node_from_local;    // its place within the node: world_from_local is that of the node times it, without a skin
+    bool is_hidden = false; // its transform is singular, as by a scale of 0: not there; world_from_local says nothing
 };
 
 struct Scene {
@@ -38,9 +43,15 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Node> nodes; // a glTF file's, by their numbers there; also those that hold nothing
     std::vector<Skin> skins;
+    std::vector<MeshShape> shapes; // of those meshes that morph targets or a skin can move
     std::vector<Animation> animations;
     std::string no_instances; // where there are none: what the file has instead, and what would be right
 };
+
+/// World from local of what has this place within a node. Exact where it has none of its own.
+inline Transform placed_in(const Transform& world_from_node, const Transform& node_from_local) {
+    return node_from_local == Transform() ? world_from_node : compose(world_from_node, node_from_local);
+}
 
 /// JSON pointer of the node that an instance comes from; empty for none.
 std::string origin_of(const Instance& instance);
@@ -48,7 +59,10 @@ std::string origin_of(const Instance& instance);
 /// Whether a transform turns the winding of triangles over.
 inline bool is_mirroring(const Transform& world_from_local) { return determinant(world_from_local) < 0; }
 
-/// World-space box of all instances.
+/// Whether all of `local` lies within kMaxCoordinate once it is placed.
+bool lies_near(const Transform& world_from_local, const Bounds3& local);
+
+/// World-space box of all instances that are not hidden.
 Bounds3 bounds_of(const Scene& scene);
 
 } // namespace pertev

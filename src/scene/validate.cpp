@@ -9,18 +9,14 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
+#include "math/double_vec3.h"
+#include "scene/shape_mesh.h"
 #include "scene/validate_materials.h"
 #include "scene/validate_mesh.h"
 #include "scene/validate_nodes.h"
 
 namespace pertev {
 namespace {
-
-bool all_finite(const Transform& m) {
-    return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
-}
-
-bool is_singular(const Transform& m) { return !all_finite(inverse(m)); }
 
 class Validator {
 public:
@@ -31,10 +27,8 @@ public:
         references();
         validate_nodes(scene_, file_);
         validate_materials(scene_, file_, messages_);
-        for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
-            Mesh& mesh = scene_.meshes[i];
-            repairs_ += repair_mesh(mesh, fmt::format("{}: {}", file_, place_of(i, mesh)));
-        }
+        moves_ = may_move(scene_);
+        meshes();
         report();
         const std::size_t all = scene_.instances.size();
         drop_empty_meshes();
@@ -92,6 +86,44 @@ private:
         }
     }
 
+    void meshes() {
+        std::vector<bool> moves(scene_.meshes.size());
+        for (std::size_t i = 0; i < moves_.size(); ++i) {
+            if (moves_[i]) moves[scene_.instances[i].mesh] = true;
+        }
+        std::vector<MeshShape*> shapes(scene_.meshes.size());
+        for (MeshShape& shape : scene_.shapes) {
+            if (shape.mesh >= shapes.size() || (shape.node != kNoNode && shape.node >= scene_.nodes.size()) ||
+                (shape.skin != kNoSkin && shape.skin >= scene_.skins.size())) {
+                throw bad(fmt::format("what shapes mesh {}: its mesh, node or skin is out of range", shape.mesh));
+            }
+            shapes[shape.mesh] = &shape;
+        }
+        for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+            Mesh& mesh = scene_.meshes[i];
+            const std::string of = fmt::format("{}: {}", file_, place_of(i, mesh));
+            MeshShape* shape = shapes[i];
+            repairs_ += repair_mesh(mesh, shape != nullptr && moves[i], of);
+            if (shape == nullptr) continue;
+            const std::size_t joints = shape->skin == kNoSkin ? 0 : scene_.skins[shape->skin].joints.size();
+            const MeshRepairs repairs = repair_shape(*shape, mesh, joints, of);
+            repairs_ += repairs;
+            if (repairs.normals + repairs.tangents > 0) shape_at_rest(*shape);
+        }
+    }
+
+    /// By what the shape has become.
+    void shape_at_rest(MeshShape& shape) {
+        std::vector<Transform> joints;
+        if (shape.skin != kNoSkin) {
+            joints =
+                joint_transforms(scene_.skins[shape.skin], world_from_nodes(scene_.nodes, parents_first(scene_.nodes)));
+        }
+        const std::span<const float> weights =
+            shape.node == kNoNode ? std::span<const float>() : scene_.nodes[shape.node].morph_weights;
+        shape_mesh(shape, weights, joints, scene_.meshes[shape.mesh]);
+    }
+
     void report() {
         const auto say = [&](uint64_t count, const char* thing, const char* what) {
             if (count > 0) messages_.warn(fmt::format("{}: {} {}", file_, counted(count, thing), what));
@@ -119,20 +151,28 @@ private:
         scene_.meshes.resize(kept);
         std::erase_if(scene_.instances, [&](const Instance& i) { return renumbered[i.mesh] == dropped; });
         for (Instance& instance : scene_.instances) instance.mesh = renumbered[instance.mesh];
+        std::erase_if(scene_.shapes, [&](const MeshShape& shape) { return renumbered[shape.mesh] == dropped; });
+        for (MeshShape& shape : scene_.shapes) shape.mesh = renumbered[shape.mesh];
+        moves_ = may_move(scene_);
     }
 
-    /// A scale of 0 is how glTF hides a node.
+    /// A scale of 0 is how glTF hides a node. What may move stays, hidden: at a time it may be there.
     void drop_singular_instances() {
         std::vector<Bounds3> bounds;
         for (const Mesh& mesh : scene_.meshes) bounds.push_back(bounds_of(mesh));
         std::size_t i = 0, dropped = 0;
         std::erase_if(scene_.instances, [&](const Instance& instance) {
             check_place(i, instance, bounds[instance.mesh]);
-            const bool drops = is_singular(instance.world_from_local);
+            const bool drops = is_singular(instance.world_from_local) && !moves_[i];
             if (drops && dropped++ == 0) first_singular_ = place_of(i, instance);
             ++i;
             return drops;
         });
+        for (Instance& instance : scene_.instances) {
+            if (!is_singular(instance.world_from_local)) continue;
+            instance.is_hidden = true;
+            instance.world_from_local = {};
+        }
         if (dropped == 0) return;
         messages_.warn(fmt::format("{}: {} with a singular transform, such as a scale of 0: left out; the first is {}",
                                    file_, counted(dropped, "instance"), first_singular_));
@@ -140,12 +180,8 @@ private:
 
     void check_place(std::size_t i, const Instance& instance, const Bounds3& local) const {
         const Transform& m = instance.world_from_local;
-        if (!all_finite(m)) throw bad(place_of(i, instance) + ": its transform is not finite");
-        for (int corner = 0; corner < 8; ++corner) {
-            const Vec3 p = {corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
-                            corner & 4 ? local.hi.z : local.lo.z};
-            if (!is_near(transform_point(m, p))) throw too_far(place_of(i, instance));
-        }
+        if (!is_finite(m)) throw bad(place_of(i, instance) + ": its transform is not finite");
+        if (!local.is_empty() && !lies_near(m, local)) throw too_far(place_of(i, instance));
     }
 
     static bool is_near(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
@@ -153,7 +189,7 @@ private:
     void camera(std::size_t i) const {
         const Camera& camera = scene_.cameras[i];
         const std::string of = numbered("camera", i, camera.name, camera.origin);
-        if (!all_finite(camera.world_from_camera)) throw bad(of + ": its transform is not finite");
+        if (!is_finite(camera.world_from_camera)) throw bad(of + ": its transform is not finite");
         if (is_singular(camera.world_from_camera)) throw bad(of + ": its transform is singular; no scale may be 0");
         if (!is_near(camera.world_from_camera.translation)) throw too_far(of);
         if (camera.projection == Projection::Perspective && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
@@ -202,6 +238,7 @@ private:
     const std::string& file_;
     Messages& messages_;
     MeshRepairs repairs_;
+    std::vector<bool> moves_;                       // may_move of the instances there are
     std::string first_empty_mesh_, first_singular_; // where they are described
 };
 

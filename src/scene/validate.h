@@ -12,8 +12,8 @@
 namespace pertev {
 
 /// Repairs what can be repaired (triangles with vertices that are not finite or without area are dropped, each kind
-/// with one warning that counts them; so are instances that a scale of 0 hides) and throws Error(BadInput or OverLimit)
-/// for the rest. `file` names the source in messages. A scene without any triangle left is an error.
+/// with one warning that counts them; so are instances that a scale of 0 hides at all times) and throws Error(BadInput
+/// or OverLimit) for the rest. `file` names the source in messages. A scene without any triangle left is an error.
 void validate(Scene& scene, const std::string& file, Messages& messages);
 
 } // namespace pertev

@@ -75,11 +75,12 @@ Fault fault_of(const Mesh& mesh, uint64_t triangle) {
     return area.x == 0 && area.y == 0 && area.z == 0 ? Fault::WithoutArea : Fault::None;
 }
 
-void drop_triangles(Mesh& mesh, const std::string& of, MeshRepairs& repairs) {
+void drop_triangles(Mesh& mesh, bool reshaped, const std::string& of, MeshRepairs& repairs) {
     const uint64_t count = mesh.indices.size() / 3;
     std::vector<Fault> faults(count);
     const uint64_t bad = count_in_parallel(count, [&](uint64_t i) {
         faults[i] = fault_of(mesh, i);
+        if (reshaped && faults[i] == Fault::WithoutArea) faults[i] = Fault::None;
         return faults[i] != Fault::None;
     });
     if (bad == 0) return;
@@ -99,13 +100,13 @@ void drop_triangles(Mesh& mesh, const std::string& of, MeshRepairs& repairs) {
 }
 
 /// Area-weighted mean of the triangles at each vertex of `wanted`; +z where there is none.
-void put_geometric_normals(Mesh& mesh, const std::vector<bool>& wanted) {
-    std::vector<DoubleVec3> sums(mesh.positions.size());
-    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-        const uint32_t* corner = mesh.indices.data() + i;
+void put_geometric_normals(const std::vector<Vec3>& positions, const std::vector<uint32_t>& indices,
+                           const std::vector<bool>& wanted, std::vector<Vec3>& normals) {
+    std::vector<DoubleVec3> sums(positions.size());
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        const uint32_t* corner = indices.data() + i;
         if (!wanted[corner[0]] && !wanted[corner[1]] && !wanted[corner[2]]) continue;
-        const DoubleVec3 area =
-            area_vector(mesh.positions[corner[0]], mesh.positions[corner[1]], mesh.positions[corner[2]]);
+        const DoubleVec3 area = area_vector(positions[corner[0]], positions[corner[1]], positions[corner[2]]);
         for (int k = 0; k < 3; ++k) {
             DoubleVec3& sum = sums[corner[k]];
             sum = {sum.x + area.x, sum.y + area.y, sum.z + area.z};
@@ -114,7 +115,7 @@ void put_geometric_normals(Mesh& mesh, const std::vector<bool>& wanted) {
     for (std::size_t i = 0; i < sums.size(); ++i) {
         if (!wanted[i]) continue;
         const Vec3 normal = unit(sums[i]);
-        mesh.normals[i] = is_finite(normal) ? normal : Vec3{0, 0, 1};
+        normals[i] = is_finite(normal) ? normal : Vec3{0, 0, 1};
     }
 }
 
@@ -126,7 +127,7 @@ uint64_t repair_normals(Mesh& mesh) {
     if (bad == 0) return 0;
     std::vector<bool> wanted(mesh.normals.size());
     for (std::size_t i = 0; i < mesh.normals.size(); ++i) wanted[i] = !is_finite(mesh.normals[i]);
-    put_geometric_normals(mesh, wanted);
+    put_geometric_normals(mesh.positions, mesh.indices, wanted, mesh.normals);
     return bad;
 }
 
@@ -142,6 +143,29 @@ uint64_t repair_tangents(Mesh& mesh) {
     });
 }
 
+void check_shape_sizes(const MeshShape& shape, const Mesh& mesh, const std::string& of) {
+    const std::size_t vertices = mesh.positions.size(), influences = vertices * shape.joints_per_vertex;
+    const auto fits = [&](std::size_t size, bool wanted) { return size == (wanted ? vertices : 0); };
+    bool fit = fits(shape.positions.size(), true) && fits(shape.normals.size(), !mesh.normals.empty()) &&
+               fits(shape.tangents.size(), !mesh.tangents.empty());
+    for (const MorphTarget& target : shape.targets) {
+        for (const std::vector<Vec3>* offsets : {&target.positions, &target.normals, &target.tangents}) {
+            fit = fit && (offsets->empty() || offsets->size() == vertices);
+        }
+    }
+    if (!fit || shape.joints.size() != influences || shape.weights.size() != influences) {
+        throw Error(ErrorCode::BadInput, fmt::format("{}: its morph targets or its skin have another number of "
+                                                     "vertices than its {}",
+                                                     of, vertices));
+    }
+}
+
+void put_zeros_for_not_finite(std::vector<Vec3>& values) {
+    parallel_for(values.size(), kGrain, [&](uint64_t i) {
+        if (!is_finite(values[i])) values[i] = {};
+    });
+}
+
 } // namespace
 
 MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
@@ -154,20 +178,11 @@ MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
     return *this;
 }
 
-Vec3 normalize_safely(Vec3 v) {
-    const float square = length_squared(v);
-    // Already unit as near as floats can tell: left alone, so that validating twice changes nothing.
-    if (abs(square - 1) <= 0x1p-22f) return v;
-    return unit(to_double(v));
-}
-
-MeshRepairs repair_mesh(Mesh& mesh, const std::string& of) {
+MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const std::string& of) {
     check_sizes(mesh, of);
     MeshRepairs repairs;
-    drop_triangles(mesh, of, repairs);
-    parallel_for(mesh.positions.size(), kGrain, [&](uint64_t i) {
-        if (!is_finite(mesh.positions[i])) mesh.positions[i] = {};
-    });
+    drop_triangles(mesh, reshaped, of, repairs);
+    put_zeros_for_not_finite(mesh.positions);
     repairs.normals = repair_normals(mesh);
     repairs.tangents = repair_tangents(mesh);
     for (std::vector<Vec2>& uv : mesh.uv) {
@@ -184,6 +199,40 @@ MeshRepairs repair_mesh(Mesh& mesh, const std::string& of) {
         mesh.colors[i] = kept;
         return !(kept == c);
     });
+    return repairs;
+}
+
+MeshRepairs repair_shape(MeshShape& shape, const Mesh& mesh, std::size_t joint_count, const std::string& of) {
+    check_shape_sizes(shape, mesh, of);
+    for (std::size_t i = 0; i < shape.joints.size(); ++i) {
+        if (!is_finite(shape.weights[i])) shape.weights[i] = 0;
+        if (shape.joints[i] < joint_count) continue;
+        throw Error(ErrorCode::BadInput, fmt::format("{}: vertex {} has joint {}; expected less than {}, the number of "
+                                                     "the skin's joints",
+                                                     of, i / shape.joints_per_vertex, shape.joints[i], joint_count));
+    }
+    put_zeros_for_not_finite(shape.positions);
+    for (MorphTarget& target : shape.targets) {
+        for (std::vector<Vec3>* offsets : {&target.positions, &target.normals, &target.tangents}) {
+            put_zeros_for_not_finite(*offsets);
+        }
+    }
+    MeshRepairs repairs;
+    std::vector<bool> wanted(shape.normals.size());
+    for (std::size_t i = 0; i < shape.normals.size(); ++i) {
+        wanted[i] = !is_finite(normalize_safely(shape.normals[i]));
+        repairs.normals += wanted[i];
+    }
+    if (repairs.normals > 0) put_geometric_normals(shape.positions, mesh.indices, wanted, shape.normals);
+    for (std::size_t i = 0; i < shape.tangents.size(); ++i) {
+        Vec4& t = shape.tangents[i];
+        t.w = t.w < 0 ? -1.0f : 1.0f;
+        if (is_finite(normalize_safely({t.x, t.y, t.z}))) continue;
+        const Vec3 across =
+            shape.normals.empty() ? Vec3{1, 0, 0} : make_frame(normalize_safely(shape.normals[i])).tangent;
+        t = {across.x, across.y, across.z, t.w};
+        ++repairs.tangents;
+    }
     return repairs;
 }
 

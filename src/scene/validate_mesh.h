@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scene/mesh.h"
+#include "scene/mesh_shape.h"
 
 namespace pertev {
 
@@ -18,11 +19,14 @@ struct MeshRepairs {
 };
 
 /// After it: indices in range, positions finite and within kMaxCoordinate, normals and tangents unit, texture
-/// coordinates finite, colours in [0, 1], no triangle without area. Vertices keep their numbers; one that is not finite
+/// coordinates finite, colours in [0, 1], no triangle without area, but for a mesh that is `reshaped` over time: such
+/// a triangle may have one later. Vertices keep their numbers; one that is not finite
 /// is then used by no triangle and set to 0. Throws Error(BadInput or OverLimit) that starts with `of`.
-MeshRepairs repair_mesh(Mesh& mesh, const std::string& of);
+MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const std::string& of);
 
-/// `v` at unit length, for any finite length but 0, else not finite.
-Vec3 normalize_safely(Vec3 v);
+/// What shape_mesh reads of the shape of `mesh`, of a scene whose nodes and skins are valid: every array has its size,
+/// joints are in range, every number is finite, normals and tangents have a direction. Throws Error(BadInput) that
+/// starts with `of`.
+MeshRepairs repair_shape(MeshShape& shape, const Mesh& mesh, std::size_t joint_count, const std::string& of);
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #include "scene/validate_nodes.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,10 +10,6 @@
 
 namespace pertev {
 namespace {
-
-bool all_finite(const Transform& m) {
-    return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
-}
 
 bool is_finite_pose(const NodePose& pose) {
     return is_finite(pose.translation) && is_finite(pose.rotation.x) && is_finite(pose.rotation.y) &&
@@ -26,28 +22,51 @@ bool is_zero_quaternion(const std::vector<float>& values, std::size_t first) {
                        values.begin() + static_cast<std::ptrdiff_t>(first + 4), [](float x) { return x == 0; });
 }
 
-} // namespace
-
-std::size_t numbers_in_value(AnimatedPart part, const Node& node) {
+/// What a channel's target is an index into, and how many there are.
+std::pair<const char*, std::size_t> targets_of(AnimatedPart part, const Scene& scene) {
     switch (part) {
     case AnimatedPart::Translation:
+    case AnimatedPart::Rotation:
     case AnimatedPart::Scale:
+    case AnimatedPart::Weights:
+        return {"node", scene.nodes.size()};
+    case AnimatedPart::CameraFov:
+        return {"camera", scene.cameras.size()};
+    case AnimatedPart::LightIntensity:
+        return {"light", scene.lights.size()};
+    }
+    return {"", 0};
+}
+
+bool places_node(AnimatedPart part) {
+    return part == AnimatedPart::Translation || part == AnimatedPart::Rotation || part == AnimatedPart::Scale;
+}
+
+} // namespace
+
+std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene) {
+    switch (channel.part) {
+    case AnimatedPart::Translation:
+    case AnimatedPart::Scale:
+    case AnimatedPart::LightIntensity:
         return 3;
     case AnimatedPart::Rotation:
         return 4;
     case AnimatedPart::Weights:
-        return node.morph_weights.size();
+        return scene.nodes[channel.target].morph_weights.size();
+    case AnimatedPart::CameraFov:
+        return 1;
     }
     return 0;
 }
 
-std::string fault_of(const AnimationChannel& channel, const Node& node) {
+std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     const std::vector<float>& times = channel.times;
     const std::vector<float>& values = channel.values;
-    if (channel.part == AnimatedPart::Weights && node.morph_weights.empty()) {
+    if (channel.part == AnimatedPart::Weights && scene.nodes[channel.target].morph_weights.empty()) {
         return "its node's mesh has no morph targets; expected one that has";
     }
-    if (channel.part != AnimatedPart::Weights && std::holds_alternative<Transform>(node.pose)) {
+    if (places_node(channel.part) && std::holds_alternative<Transform>(scene.nodes[channel.target].pose)) {
         return "its node has a matrix; expected translation, rotation and scale";
     }
     if (times.empty()) return "it has no key times; expected at least one";
@@ -56,7 +75,7 @@ std::string fault_of(const AnimationChannel& channel, const Node& node) {
             return fmt::format("key time {} is {}; expected seconds from 0 on, each above the one before", i, times[i]);
         }
     }
-    const std::size_t numbers = numbers_in_value(channel.part, node);
+    const std::size_t numbers = numbers_in_value(channel, scene);
     const std::size_t per_key = channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
     if (values.size() != times.size() * per_key * numbers) {
         return fmt::format("{} numbers for {}; expected {}: {} a key of {} each", values.size(),
@@ -94,7 +113,7 @@ void validate_nodes(const Scene& scene, const std::string& file) {
                 fmt::format("{}: skin {} is out of range; there are {}", place_of(i), node.skin, scene.skins.size()));
         }
         const NodePose* pose = std::get_if<NodePose>(&node.pose);
-        if (pose != nullptr ? !is_finite_pose(*pose) : !all_finite(std::get<Transform>(node.pose))) {
+        if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(std::get<Transform>(node.pose))) {
             throw bad(place_of(i) + ": its transform is not finite");
         }
         if (pose != nullptr && pose->rotation == Vec4{0, 0, 0, 0}) {
@@ -109,7 +128,15 @@ void validate_nodes(const Scene& scene, const std::string& file) {
             fmt::format("{} of {} nodes are their own ancestors or below such; expected trees", count - placed, count));
     }
     for (std::size_t i = 0; i < scene.skins.size(); ++i) {
-        for (const uint32_t joint : scene.skins[i].joints) {
+        const Skin& skin = scene.skins[i];
+        if (!skin.joint_from_mesh.empty() && skin.joint_from_mesh.size() != skin.joints.size()) {
+            throw bad(fmt::format("skin {}: {} inverse bind matrices for {} joints", i, skin.joint_from_mesh.size(),
+                                  skin.joints.size()));
+        }
+        if (!std::ranges::all_of(skin.joint_from_mesh, [](const Transform& m) { return is_finite(m); })) {
+            throw bad(fmt::format("skin {}: an inverse bind matrix is not finite", i));
+        }
+        for (const uint32_t joint : skin.joints) {
             if (joint >= count) {
                 throw bad(fmt::format("skin {}: joint {} is out of range; there are {} nodes", i, joint, count));
             }
@@ -132,11 +159,12 @@ void validate_nodes(const Scene& scene, const std::string& file) {
         const std::string of = numbered("animation", i, animation.name, animation.origin);
         for (std::size_t k = 0; k < animation.channels.size(); ++k) {
             const AnimationChannel& channel = animation.channels[k];
-            if (channel.node >= count) {
-                throw bad(
-                    fmt::format("{}: channel {}: node {} is out of range; there are {}", of, k, channel.node, count));
+            const auto [what, targets] = targets_of(channel.part, scene);
+            if (channel.target >= targets) {
+                throw bad(fmt::format("{}: channel {}: {} {} is out of range; there are {}", of, k, what,
+                                      channel.target, targets));
             }
-            const std::string fault = fault_of(channel, scene.nodes[channel.node]);
+            const std::string fault = fault_of(channel, scene);
             if (!fault.empty()) throw bad(fmt::format("{}: channel {}: {}", of, k, fault));
         }
     }

@@ -13,9 +13,9 @@ namespace pertev {
 /// do not fit their times.
 void validate_nodes(const Scene& scene, const std::string& file);
 
-/// Numbers in a value of an animated part of this node.
-std::size_t numbers_in_value(AnimatedPart part, const Node& node);
-/// What is wrong with a channel of this node, for messages; empty where it is right.
-std::string fault_of(const AnimationChannel& channel, const Node& node);
+/// Numbers in a value of the channel, whose target is in range.
+std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene);
+/// What is wrong with a channel whose target is in range, for messages; empty where it is right.
+std::string fault_of(const AnimationChannel& channel, const Scene& scene);
 
 } // namespace pertev

@@ -78,7 +78,9 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
     const bool has_target = choice.target && !choice.is_aimed;
     if (!(choice.aperture.value_or(0) > 0) || choice.focus || has_target) return;
     const std::optional<float> seen = distance_in_the_middle(scene, camera);
-    const float away = length(bounds_of(scene).centre() - camera.world_from_camera.translation);
+    const Bounds3 bounds = bounds_of(scene);
+    const Vec3 middle = bounds.is_empty() ? Vec3{} : bounds.centre();
+    const float away = length(middle - camera.world_from_camera.translation);
     const float distance = seen.value_or(max(away, 0x1p-40f));
     camera.focus_distance = rounded(distance, 4);
     messages.note(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,

@@ -67,12 +67,11 @@ ExrMetadata camera_metadata(const CameraSource& source) {
     return metadata;
 }
 
-ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash) {
+ExrMetadata settings_metadata(const PictureRecord& record) {
     const SceneSource& scene = record.scene;
     const RenderSettings& settings = record.settings;
     ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
                             {"pertev.scene", scene.scene},
-                            {"pertev.spp", static_cast<int32_t>(stats.samples)},
                             {"pertev.max_depth", static_cast<int32_t>(settings.path.max_depth)},
                             {"pertev.integrator", std::string(integrator_name(settings))},
                             {"pertev.sampler", std::string(name_of(settings.path.sampler))},
@@ -81,20 +80,27 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
                             {"pertev.seed", fmt::format("{}", settings.path.seed)},
                             {"pertev.clamp", settings.path.clamp},
                             {"pertev.two_sided_lights", static_cast<int32_t>(scene.two_sided_lights)},
-                            {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)},
-                            {"pertev.device", record.device},
-                            {"pertev.hash", hash},
-                            {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
-                            {"pertev.load_seconds", scene.load_seconds},
-                            {"pertev.build_seconds", scene.build_seconds},
-                            {"pertev.render_seconds", stats.render_seconds},
-                            {"pertev.rays", static_cast<double>(stats.rays.total())}};
+                            {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)}};
+    if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
     append(metadata, camera_metadata(record.camera));
     append(metadata, environment_metadata(scene));
     if (record.display) {
         append(metadata, {{"pertev.tone_map", std::string(name_of(record.display->tone_map))},
                           {"pertev.exposure", record.display->exposure_stops}});
     }
+    return metadata;
+}
+
+ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash) {
+    ExrMetadata metadata = settings_metadata(record);
+    append(metadata, {{"pertev.spp", static_cast<int32_t>(stats.samples)},
+                      {"pertev.device", record.device},
+                      {"pertev.hash", hash},
+                      {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
+                      {"pertev.load_seconds", record.scene.load_seconds},
+                      {"pertev.build_seconds", record.scene.build_seconds},
+                      {"pertev.render_seconds", stats.render_seconds},
+                      {"pertev.rays", static_cast<double>(stats.rays.total())}});
     return metadata;
 }
 

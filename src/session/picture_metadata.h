@@ -21,6 +21,7 @@ struct SceneSource {
     float environment_rotation_deg = 0;
     bool has_environment = false; // the scene has one: asked for, its own or the default
     bool two_sided_lights = false, show_back_faces = false;
+    std::optional<double> time_s;               // that it is shown at; none: at rest
     double load_seconds = 0, build_seconds = 0; // of reading; of the trees
 };
 
@@ -55,7 +56,11 @@ CameraSource source_of(const CameraChoice& choice, const Camera& camera);
 /// numbers go. And its matrix, column by column.
 ExrMetadata camera_metadata(const CameraSource& source);
 
-/// `hash`: of the picture.
+/// Of the picture, what it is a function of, but for the number of samples: the version, the scene as it was opened,
+/// the camera, the settings, how it is shown.
+ExrMetadata settings_metadata(const PictureRecord& record);
+
+/// settings_metadata and what came of it. `hash`: of the picture.
 ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash);
 
 } // namespace pertev

@@ -69,7 +69,7 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
     data.first_light.assign(scene.instances.size(), kNoLight);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (!scene.materials[instance.material].is_lamp()) continue;
+        if (instance.is_hidden || !scene.materials[instance.material].is_lamp()) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
         const uint64_t triangles = scene.meshes[instance.mesh].triangle_count();
         data.emitters.push_back(
@@ -302,7 +302,8 @@ void share_draws(LightSetData& data, double far_share) {
 uint64_t count_emissive_triangles(const Scene& scene) {
     uint64_t count = 0;
     for (const Instance& instance : scene.instances) {
-        if (scene.materials[instance.material].is_lamp()) count += scene.meshes[instance.mesh].triangle_count();
+        if (!instance.is_hidden && scene.materials[instance.material].is_lamp())
+            count += scene.meshes[instance.mesh].triangle_count();
     }
     return count;
 }

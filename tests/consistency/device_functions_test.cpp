@@ -162,3 +162,61 @@ TEST_CASE(
         }
     }
 }
+
+TEST_CASE("vertices are deformed alike on both devices") {
+    constexpr uint32_t kCount = 1u << 14, kJoints = 16, kPerVertex = 8, kTargets = 3;
+    test::Random random(21);
+    const auto vectors = [&](uint32_t count, float scale) {
+        std::vector<Vec3> values;
+        for (uint32_t i = 0; i < count; ++i) values.push_back(scale * random.point(-1, 1));
+        return values;
+    };
+    const std::vector<Vec3> positions = vectors(kCount, 3), normals = vectors(kCount, 1);
+    std::vector<Vec4> tangents;
+    for (const Vec3 t : vectors(kCount, 1)) tangents.push_back({t.x, t.y, t.z, t.x < 0 ? -1.0f : 1.0f});
+    const std::vector<Vec3> offsets = vectors(3 * kTargets * kCount, 0.5f);
+    const std::vector<float> morph_weights = {0.3f, 0, -1.5f};
+    std::vector<uint32_t> joints;
+    std::vector<float> weights;
+    for (uint32_t i = 0; i < kPerVertex * kCount; ++i) {
+        joints.push_back(random.below(kJoints));
+        weights.push_back(i % 5 == 0 ? 0.0f : random.within(0, 1));
+    }
+    std::vector<Transform> transforms;
+    for (uint32_t i = 0; i < kJoints; ++i) {
+        const std::vector<Vec3> rows = vectors(4, 1);
+        transforms.push_back({rows[0], rows[1], rows[2], rows[3]});
+    }
+    transforms[5] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, kInfinity, 0}};
+    check_same_bits(kCount, [&](Queue& queue, uint32_t* out, uint32_t count) {
+        const auto copy = [&](const auto& values) { return Buffer(queue, std::span(values), "deformed"); };
+        const auto base_positions = copy(positions), base_normals = copy(normals), all_offsets = copy(offsets);
+        const auto base_tangents = copy(tangents);
+        std::vector<MorphTargetView> views;
+        for (uint32_t k = 0; k < kTargets; ++k) {
+            const Vec3* first = all_offsets.data() + std::size_t(3) * k * kCount;
+            views.push_back({first, first + kCount, first + 2 * kCount});
+        }
+        const auto targets = copy(views);
+        const auto target_weights = copy(morph_weights), joint_weights = copy(weights);
+        const auto joint_numbers = copy(joints);
+        const auto world_from_joints = copy(transforms);
+        const Buffer<Vec3> out_positions(queue, count, "deformed"), out_normals(queue, count, "deformed");
+        const Buffer<Vec4> out_tangents(queue, count, "deformed");
+        const DeformVertices deform = {.base_positions = base_positions.data(),
+                                       .base_normals = base_normals.data(),
+                                       .base_tangents = base_tangents.data(),
+                                       .targets = targets.data(),
+                                       .morph_weights = target_weights.data(),
+                                       .target_count = kTargets,
+                                       .joints_per_vertex = kPerVertex,
+                                       .joints = joint_numbers.data(),
+                                       .joint_weights = joint_weights.data(),
+                                       .world_from_joints = world_from_joints.data(),
+                                       .positions = out_positions.data(),
+                                       .normals = out_normals.data(),
+                                       .tangents = out_tangents.data()};
+        launch(queue, "deform", count, test::DeformAndFold{deform, out});
+        queue.wait();
+    });
+}

@@ -11,7 +11,7 @@ class WhatIsRefused(CliTest):
     def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
         for flag in ["--foo", "--spp 0", "--spp -1", "--spp 1.5", "--spp 4294967297", "--fov nan", "--fov 0",
                      "--fov 180", "--aperture -1", "--aperture nan", "--focus 0", "--focus inf", "--clamp nan",
-                     "--clamp 0", "--time 0", "--time nan", "--environment-scale nan", "--environment-scale -1",
+                     "--clamp 0", "--time-limit 0", "--time-limit nan", "--time nan", "--time inf", "--fps 0", "--turntable 0", "--environment-scale nan", "--environment-scale -1",
                      "--environment-rotation inf", "--exposure much", "--exposure inf", "--seed -1",
                      "--seed 4294967296", "--threads 0", "--filter-radius nan", "--filter-radius 1e9",
                      "--view-height inf", "--max-depth -1", "--tone-map x", "--sampler x", "--filter x",
@@ -40,7 +40,7 @@ class WhatIsRefused(CliTest):
                         says=[f"--exposure {exposure}: expected auto, or stops"])
 
     def test_a_number_that_is_too_large_is_answered_by_the_largest(self):
-        for flag, limit in [("--time 1e300", "3.4028235e+38"), ("--clamp 1e300", "3.4028235e+38"),
+        for flag, limit in [("--time-limit 1e300", "3.4028235e+38"), ("--clamp 1e300", "3.4028235e+38"),
                             ("--exposure 1e300", "3.4028235e+38"), ("--eye 1e300,0,0", "3.4028235e+38"),
                             ("--environment-rotation 1e30", "1000000"), ("--environment-scale 1e30", "1000000000000")]:
             outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", *flag.split(), says=[*flag.split(), limit])

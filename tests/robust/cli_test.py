@@ -17,9 +17,10 @@ from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, liste
 FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
-              "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time "
+              "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit "
               "--integrator --max-depth --seed --sampler --filter --filter-radius --clamp --device --threads "
-              "--no-bvh-cache --build --structure --walk --rta --order --distribution",
+              "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
+              "--turntable --continue",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
@@ -264,10 +265,10 @@ class WhenItEnds(CliTest):
         self.assertEqual(self.files(), [])
 
     def test_a_time_limit_ends_at_a_whole_sample_with_0(self):
-        done = self.render("--time", "0.5", size="48x48", spp=8388607)
+        done = self.render("--time-limit", "0.5", size="48x48", spp=8388607)
         self.assertLess(done["seconds"], 60)
         self.assertEqual(self.render(size="48x48", spp=done["samples"])["hash"], done["hash"])
-        self.assertEqual(self.render("--time", "1e-9", size="48x48", spp=100)["samples"], 1)
+        self.assertEqual(self.render("--time-limit", "1e-9", size="48x48", spp=100)["samples"], 1)
 
 
 class WhatIsRendered(CliTest):

@@ -140,7 +140,7 @@ class SignsOfLife(CliTest):
         return program, *listen_to(leader)
 
     def test_a_line_every_10_s_tells_what_is_done_where_no_bar_can_be_drawn(self):
-        enough = ["--time", "10.4"]
+        enough = ["--time-limit", "10.4"]
         to_a_file = self.start(*enough)
         quiet = self.start(*enough, "-q")
         dumb, listener, said = self.on_a_terminal(*enough, TERM="dumb")
@@ -159,7 +159,7 @@ class SignsOfLife(CliTest):
 
     def test_a_terminal_of_no_known_kind_gets_no_escapes(self):
         for terms, draws in [({"TERM": "dumb"}, False), ({}, False), ({"TERM": "xterm"}, True)]:
-            program, listener, said = self.on_a_terminal("--time", "0.3", **terms)
+            program, listener, said = self.on_a_terminal("--time-limit", "0.3", **terms)
             program.communicate(timeout=300)
             listener.join()
             text = b"".join(said)

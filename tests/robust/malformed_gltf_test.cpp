@@ -9,23 +9,48 @@
 #include "base/error.h"
 #include "base/read_file.h"
 #include "formats/read_gltf.h"
+#include "scene/posed_scene.h"
+#include "scene/validate.h"
 #include "tests/support/cpu_seconds.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
 
 namespace fs = std::filesystem;
 using namespace pertev;
 
 namespace {
 
-/// What the Error says; "" when a scene came out.
+/// At some times of a valid scene every number that is rendered is finite, or there is an Error.
+void play(Scene scene) {
+    PosedScene posed(std::move(scene));
+    for (const double time_s : {-1.0, 0.25, 1.0, 1e300}) {
+        if (test::thrown_error([&] { posed.set_time(time_s); })) continue;
+        const Scene& now = posed.scene();
+        bool finite = true;
+        for (const Mesh& mesh : now.meshes) {
+            for (const Vec3 p : mesh.positions) finite = finite && is_finite(p);
+            for (const Vec3 n : mesh.normals) finite = finite && is_finite(n);
+        }
+        for (const Instance& instance : now.instances) finite = finite && !is_singular(instance.world_from_local);
+        for (const Camera& camera : now.cameras) finite = finite && !is_singular(camera.world_from_camera);
+        for (const Light& light : now.lights)
+            finite = finite && is_finite(light.position) && is_finite(light.intensity);
+        CHECK(finite);
+    }
+}
+
+/// What the Error says; "" when a scene came out, which is then played.
 std::string read_outcome(const fs::path& path, std::vector<std::byte> bytes) {
     Messages messages;
+    std::optional<Scene> scene;
     try {
-        read_gltf(path, std::move(bytes), FileAccess(path, {}), {}, messages);
+        scene = read_gltf(path, std::move(bytes), FileAccess(path, {}), {}, messages);
+        validate(*scene, path.string(), messages);
     } catch (const Error& error) {
         return error.what();
     }
+    play(*std::move(scene));
     return "";
 }
 
@@ -41,6 +66,9 @@ std::string rich_document() {
     builder.add_view(std::vector<float>{1, 2, 3, 4, 5, 6});
     builder.add_accessor(R"("componentType":5126,"type":"VEC3","count":4,"sparse":{"count":2,"indices":)"
                          R"({"bufferView":5,"componentType":5121},"values":{"bufferView":6}})");
+    builder.add("SCALAR", std::vector<float>{0, 2});                                          // 6
+    builder.add("VEC4", std::vector<float>{0, 0, 0, 1, 0, 1, 0, 0});                          // 7
+    builder.add("SCALAR", std::vector<float>{0.5f, 0, 0, 0, 1, 0}, ",\"name\":\"a spline\""); // 8
     return builder.json(
         R"("extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot",)"
         R"("spot":{"innerConeAngle":0.1}}]}},"meshes":[{"weights":[1],"primitives":[{"mode":5,"indices":1,"material":0,)"
@@ -49,7 +77,11 @@ std::string rich_document() {
         R"({"rotation":1}}}},"alphaMode":"MASK"}],"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],)"
         R"("images":[{"bufferView":4}],"skins":[{"joints":[1,2]}],"cameras":[{"type":"perspective","perspective":)"
         R"({"yfov":1}}],"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{"children":[2],)"
-        R"("extensions":{"KHR_lights_punctual":{"light":0}}},{"camera":0,"rotation":[0,0,0,1],"scale":[1,2,3]}])");
+        R"("extensions":{"KHR_lights_punctual":{"light":0}}},{"camera":0,"rotation":[0,0,0,1],"scale":[1,2,3]}],)"
+        R"("animations":[{"samplers":[{"input":6,"output":7},{"input":6,"output":8,"interpolation":"CUBICSPLINE"}],)"
+        R"("channels":[{"sampler":0,"target":{"node":2,"path":"rotation"}},)"
+        R"({"sampler":1,"target":{"node":0,"path":"weights"}},{"sampler":1,"target":{"path":"pointer","extensions":)"
+        R"({"KHR_animation_pointer":{"pointer":"/cameras/0/perspective/yfov"}}}}]}])");
 }
 
 } // namespace

@@ -5,5 +5,6 @@ namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const test::DrawSamples&);
 template void launch(Queue&, const char*, WorkCount, const test::ScatterRandomly&);
 template void launch(Queue&, const char*, WorkCount, const test::DrawLights&);
+template void launch(Queue&, const char*, WorkCount, const test::DeformAndFold&);
 template void launch(Queue&, const char*, WorkCount, const test::EvaluateMath&);
 } // namespace pertev

@@ -5,6 +5,7 @@
 // GPU.
 
 #include "math/sampler.h"
+#include "scene/deform_vertices.h"
 #include "shading/bsdf.h"
 #include "shading/light_set.h"
 #include "tests/support/portable_math_digest.h"
@@ -71,6 +72,19 @@ struct DrawLights {
         const uint32_t hash = fold(fold(fold(1, sample.wi), sample.radiance), sample.pdf);
         const Vec3 towards = random_direction(i, 6);
         out[i] = fold(fold(fold(hash, sample.light_point), sample.distance), pdf_environment(lights, towards));
+    }
+};
+
+/// Deforms a vertex.
+struct DeformAndFold {
+    DeformVertices deform;
+    uint32_t* out;
+
+    HD void operator()(uint32_t i) const {
+        deform(i);
+        const Vec4 t = deform.tangents[i];
+        const uint32_t hash = fold(fold(fold(1, deform.positions[i]), deform.normals[i]), Vec3{t.x, t.y, t.z});
+        out[i] = fold(hash, t.w);
     }
 };
 

@@ -29,7 +29,7 @@ Scene make_scene() {
 
 void animate(Scene& scene, uint32_t node, AnimatedPart part) {
     AnimationChannel channel;
-    channel.node = node;
+    channel.target = node;
     channel.part = part;
     scene.animations.push_back({.name = "", .origin = "", .channels = {channel}});
 }

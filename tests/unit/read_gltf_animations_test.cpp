@@ -81,7 +81,7 @@ TEST_CASE("channels are read with their key frames") {
     CHECK(scene.animations[0].origin == "/animations/0");
     const std::vector<AnimationChannel>& channels = scene.animations[0].channels;
     REQUIRE(channels.size() == 4);
-    CHECK(channels[0].node == 0);
+    CHECK(channels[0].target == 0);
     CHECK(channels[0].part == AnimatedPart::Translation);
     CHECK(channels[0].interpolation == Interpolation::Linear);
     CHECK(channels[0].times == std::vector<float>{0, 1, 2});
@@ -149,9 +149,89 @@ TEST_CASE("validate_nodes refuses what no reader may leave") {
     refused([](Scene& s) { s.cameras.push_back({.name = "eye", .node = 9}); }, "eye: node 9 is out of range");
     refused([](Scene& s) { std::get<NodePose>(s.nodes[0].pose).scale.y = kInfinity; }, "its transform is not finite");
     refused([](Scene& s) { s.nodes[1].morph_weights[0] = kInfinity; }, "a morph weight is not finite");
-    refused([](Scene& s) { s.animations[0].channels[0].node = 3; }, "channel 0: node 3 is out of range");
+    refused([](Scene& s) { s.animations[0].channels[0].target = 3; }, "channel 0: node 3 is out of range");
     refused([](Scene& s) { s.animations[0].channels[0].times[1] = 0; }, "channel 0: key time 1 is 0");
     refused([](Scene& s) { s.animations[0].channels[0].values.pop_back(); }, "8 numbers for 3 key times; expected 9");
     refused([](Scene& s) { s.animations[0].channels[0].values[4] = kInfinity; }, "number 4 of its values");
     refused([](Scene& s) { s.animations[0].channels[0].times.clear(); }, "it has no key times");
+}
+
+TEST_CASE("KHR_animation_pointer animates nodes, angles of view and lights; anything else is named and left out") {
+    GltfBuilder builder = numbers();
+    builder.add("SCALAR", std::vector<float>{1, 0.5f, 0.25f}); // 10
+    const auto pointer = [](const std::string& to, int number) {
+        return R"({"sampler":)" + std::to_string(number) +
+               R"(,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":")" + to + R"("}}}})";
+    };
+    const auto document = [&](const std::string& channels) {
+        return builder.json(
+            R"("extensionsUsed":["KHR_lights_punctual","KHR_animation_pointer"],"extensions":{"KHR_lights_punctual":)"
+            R"({"lights":[{"type":"point","color":[0.5,1,0.25],"intensity":2}]}},)"
+            R"("cameras":[{"type":"perspective","perspective":{"yfov":1}}],)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+            R"("nodes":[{"mesh":0},{"camera":0},{"camera":0},{"extensions":{"KHR_lights_punctual":{"light":0}}}],)"
+            R"("animations":[{"samplers":[)" +
+            sampler(1, 2) + "," + sampler(1, 10) + R"(],"channels":[)" + channels + "]}]");
+    };
+    const std::string light = "/extensions/KHR_lights_punctual/lights/0/";
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        document(pointer("/nodes/0/translation", 0) + "," + pointer("/cameras/0/perspective/yfov", 1) + "," +
+                 pointer(light + "intensity", 1) + "," + pointer("/materials/0/alphaCutoff", 1) + "," +
+                 pointer("/nodes/9/scale", 0)),
+        messages);
+    const std::vector<AnimationChannel>& channels = scene.animations.at(0).channels;
+    REQUIRE(channels.size() == 4); // two nodes hold the camera
+    CHECK(channels[0].part == AnimatedPart::Translation);
+    CHECK(channels[0].target == 0);
+    CHECK(channels[1].part == AnimatedPart::CameraFov);
+    CHECK(channels[1].values == std::vector<float>{1, 0.5f, 0.25f});
+    CHECK(channels[1].target == 0);
+    CHECK(channels[2].target == 1);
+    CHECK(channels[3].part == AnimatedPart::LightIntensity);
+    CHECK(channels[3].values == std::vector<float>{0.5f, 1, 0.25f, 0.25f, 0.5f, 0.125f, 0.125f, 0.25f, 0.0625f});
+    CHECK(test::has_warning(messages, {"/animations/0/channels/3", "/materials/0/alphaCutoff", "is not animated"}));
+    CHECK(test::has_warning(messages, {"/animations/0/channels/4", "/nodes/9/scale"}));
+
+    const Scene colored = test::read_gltf_text(document(pointer(light + "color", 0)), messages);
+    CHECK(colored.animations.at(0).channels.at(0).values == std::vector<float>{0, 0, 0, 2, 4, 6, 8, 10, 12});
+    test::read_gltf_text(document(pointer(light + "color", 0) + "," + pointer(light + "intensity", 1)), messages);
+    CHECK(test::has_warning(messages, {"colour and intensity of one light"}));
+}
+
+TEST_CASE("nodes that show one mesh share it, but for those whose weights are animated") {
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        numbers().json(
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":2},{"POSITION":2}]}]}],)"
+            R"("nodes":[{"mesh":0},{"mesh":0},{"mesh":0},{"mesh":0}],"animations":[{"samplers":[)" +
+            sampler(1, 5) + R"(],"channels":[)" + channel(1, "weights") + "," + channel(3, "weights") + "]}]"),
+        messages);
+    REQUIRE(scene.instances.size() == 4);
+    CHECK(scene.instances[0].mesh == scene.instances[2].mesh);
+    CHECK(scene.instances[0].mesh != scene.instances[1].mesh);
+    CHECK(scene.instances[1].mesh != scene.instances[3].mesh);
+    REQUIRE(scene.shapes.size() == 3);
+    for (const MeshShape& shape : scene.shapes) CHECK(shape.targets.size() == 2);
+    CHECK(scene.shapes[1].node == 1);
+}
+
+TEST_CASE("a skin's joints and weights are kept, four for each set") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC4", std::vector<uint8_t>{0, 1, 9, 9, 1, 0, 0, 0, 0, 0, 0, 0});
+    builder.add("VEC4", std::vector<float>{0.5f, 0.25f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    builder.add("MAT4", std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -7, 0, 0, 1, //
+                                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1});
+    const Scene scene = test::read_gltf_text(builder.json(
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2,"JOINTS_1":1,)"
+        R"("WEIGHTS_1":2}}]}],"skins":[{"joints":[1,2],"inverseBindMatrices":3}],"nodes":[{"mesh":0,"skin":0},{},{}])"));
+    REQUIRE(scene.shapes.size() == 1);
+    const MeshShape& shape = scene.shapes[0];
+    CHECK(shape.joints_per_vertex == 8);
+    CHECK(std::vector(shape.joints.begin(), shape.joints.begin() + 8) == std::vector<uint32_t>{0, 1, 0, 0, 0, 1, 0, 0});
+    CHECK(std::vector(shape.weights.begin(), shape.weights.begin() + 8) ==
+          std::vector<float>{0.5f, 0.25f, 0, 0, 0.5f, 0.25f, 0, 0});
+    CHECK(scene.skins[0].joint_from_mesh[0].translation == Vec3{-7, 0, 0});
+    CHECK(shape.positions == std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
 }

@@ -1,6 +1,6 @@
 #include "formats/gltf/animations.h"
 
-#include <set>
+#include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,13 +11,17 @@
 namespace pertev::gltf {
 namespace {
 
+std::optional<AnimatedPart> part_named(std::string_view path) {
+    if (path == "translation") return AnimatedPart::Translation;
+    if (path == "rotation") return AnimatedPart::Rotation;
+    if (path == "scale") return AnimatedPart::Scale;
+    if (path == "weights") return AnimatedPart::Weights;
+    return std::nullopt;
+}
+
 AnimatedPart part_of(const JsonValue& path) {
-    const std::string_view name = path.to_string();
-    if (name == "translation") return AnimatedPart::Translation;
-    if (name == "rotation") return AnimatedPart::Rotation;
-    if (name == "scale") return AnimatedPart::Scale;
-    if (name == "weights") return AnimatedPart::Weights;
-    throw path.error(fmt::format("\"{}\"; expected translation, rotation, scale or weights", name));
+    if (const auto part = part_named(path.to_string())) return *part;
+    throw path.error(fmt::format("\"{}\"; expected translation, rotation, scale or weights", path.to_string()));
 }
 
 Interpolation interpolation_of(const JsonValue& sampler) {
@@ -32,10 +36,12 @@ ElementType element_of(AnimatedPart part) {
     switch (part) {
     case AnimatedPart::Translation:
     case AnimatedPart::Scale:
+    case AnimatedPart::LightIntensity:
         return ElementType::Vec3;
     case AnimatedPart::Rotation:
         return ElementType::Vec4;
     case AnimatedPart::Weights:
+    case AnimatedPart::CameraFov:
         return ElementType::Scalar;
     }
     return ElementType::Scalar;
@@ -43,20 +49,115 @@ ElementType element_of(AnimatedPart part) {
 
 bool takes_integers(AnimatedPart part) { return part == AnimatedPart::Rotation || part == AnimatedPart::Weights; }
 
-AnimationChannel read_channel(const Document& document, Buffers& buffers, const JsonValue& source,
-                              const std::vector<JsonValue>& samplers, const Scene& scene) {
-    const JsonValue target = source.at("target"), reference = source.at("sampler");
+/// What a channel changes: one thing, but for a camera or light that several nodes hold.
+struct Target {
+    AnimatedPart part;
+    std::vector<uint32_t> indices; // AnimationChannel::target
+    std::optional<Rgb> factor;     // of a light: what the values are times; the accessor then holds...
+    bool is_scalar = false;        // ...one number a value and not a colour
+};
+
+Target node_target(const Document& document, const JsonValue& place, uint32_t node, AnimatedPart part,
+                   const Scene& scene) {
+    if (part == AnimatedPart::Weights && scene.nodes[node].morph_weights.empty()) {
+        throw place.error(fmt::format("the mesh of node {} has no morph targets; expected one that has", node));
+    }
+    if (part != AnimatedPart::Weights && document.table("nodes")[node].find("matrix")) {
+        throw place.error(fmt::format("node {} has a matrix; expected translation, rotation and scale", node));
+    }
+    return {part, {node}, {}, false};
+}
+
+/// Of a JSON pointer "/before/NUMBER/after": the number, where it is an index below `count`.
+std::optional<uint32_t> index_in(std::string_view pointer, std::string_view before, std::string_view after,
+                                 std::size_t count) {
+    if (!pointer.starts_with(before) || !pointer.ends_with(after) || pointer.size() < before.size() + after.size()) {
+        return std::nullopt;
+    }
+    const std::string_view digits = pointer.substr(before.size(), pointer.size() - before.size() - after.size());
+    uint32_t number = 0;
+    const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (fault != std::errc() || end != digits.data() + digits.size() || number >= count) return std::nullopt;
+    return number;
+}
+
+/// Those of the scene's cameras or lights that stand in a node for which `holds` is true.
+template <class Held, class Holds>
+std::vector<uint32_t> held_by(const std::vector<Held>& all, const Holds& holds) {
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i < all.size(); ++i) {
+        if (all[i].node != kNoNode && holds(all[i].node)) indices.push_back(i);
+    }
+    return indices;
+}
+
+constexpr std::string_view kNodePaths[] = {"translation", "rotation", "scale", "weights"};
+constexpr std::string_view kLights = "/extensions/KHR_lights_punctual/lights/";
+
+std::optional<uint32_t> node_of_pointer(const Document& document, std::string_view pointer, std::string_view path) {
+    return index_in(pointer, "/nodes/", fmt::format("/{}", path), document.table("nodes").size());
+}
+
+/// Nothing for a property that is not animated here.
+std::optional<Target> pointed_at(const Document& document, const JsonValue& place, const Scene& scene) {
+    const std::string_view pointer = place.to_string();
+    for (const std::string_view path : kNodePaths) {
+        if (const auto node = node_of_pointer(document, pointer, path)) {
+            return node_target(document, place, *node, *part_named(path), scene);
+        }
+    }
+    const std::vector<JsonValue>& nodes = document.table("nodes");
+    if (const auto number = index_in(pointer, "/cameras/", "/perspective/yfov", document.table("cameras").size())) {
+        return Target{AnimatedPart::CameraFov, held_by(scene.cameras, [&](uint32_t node) {
+                          return document.index_into("cameras", nodes[node].at("camera")) == *number;
+                      })};
+    }
+    for (const std::string_view path : {"color", "intensity"}) {
+        const auto number = index_in(pointer, kLights, fmt::format("/{}", path), document.table("lights").size());
+        if (!number) continue;
+        const JsonValue& light = document.table("lights")[*number];
+        const std::array<float, 3> color = light.floats_or<3>("color", {1, 1, 1});
+        const float intensity = light.float_or("intensity", 1);
+        const bool is_scalar = path == "intensity";
+        const Rgb factor = is_scalar ? Rgb{color[0], color[1], color[2]} : Rgb{intensity, intensity, intensity};
+        return Target{AnimatedPart::LightIntensity,
+                      held_by(scene.lights,
+                              [&](uint32_t node) {
+                                  const auto held = nodes[node].extension("KHR_lights_punctual");
+                                  return document.index_into("lights", held->at("light")) == *number;
+                              }),
+                      factor, is_scalar};
+    }
+    return std::nullopt;
+}
+
+/// Nothing, after a message, for what cannot be animated here.
+std::optional<Target> read_target(const Document& document, const JsonValue& target, const Scene& scene,
+                                  Messages& messages) {
+    if (const auto extension = target.extension("KHR_animation_pointer")) {
+        const JsonValue pointer = extension->at("pointer");
+        std::optional<Target> found = pointed_at(document, pointer, scene);
+        if (!found) {
+            messages.warn(fmt::format("{}: \"{}\" is not animated; expected a node's translation, rotation, scale or "
+                                      "weights, a camera's /perspective/yfov, or a light's color or intensity",
+                                      pointer.place(), shortened(pointer.to_string())));
+        }
+        return found;
+    }
+    const std::optional<JsonValue> node = target.find("node");
+    if (!node) { // the format leaves such to extensions
+        messages.note(fmt::format("{}: the channel names no node and is left out", target.place()));
+        return std::nullopt;
+    }
+    const uint32_t index = document.index_into("nodes", *node);
+    return node_target(document, target, index, part_of(target.at("path")), scene);
+}
+
+/// The keys, without a target.
+AnimationChannel read_keys(const Document& document, Buffers& buffers, const JsonValue& reference,
+                           const std::vector<JsonValue>& samplers, const Target& target, const Scene& scene) {
     AnimationChannel channel;
-    channel.node = document.index_into("nodes", target.at("node"));
-    channel.part = part_of(target.at("path"));
-    const Node& node = scene.nodes[channel.node];
-    if (channel.part == AnimatedPart::Weights && node.morph_weights.empty()) {
-        throw target.error(
-            fmt::format("the mesh of node {} has no morph targets; expected one that has", channel.node));
-    }
-    if (channel.part != AnimatedPart::Weights && std::holds_alternative<Transform>(node.pose)) {
-        throw target.error(fmt::format("node {} has a matrix; expected translation, rotation and scale", channel.node));
-    }
+    channel.part = target.part;
     const uint64_t number = reference.to_unsigned();
     if (number >= samplers.size()) {
         throw reference.error(fmt::format("{}; expected an index into \"samplers\", which has {}", number,
@@ -67,23 +168,49 @@ AnimationChannel read_channel(const Document& document, Buffers& buffers, const 
 
     const JsonValue input = sampler.at("input"), output = sampler.at("output");
     const Accessor times(document, buffers, input, {ElementType::Scalar});
-    const Accessor values(document, buffers, output, {element_of(channel.part)});
+    const Accessor values(document, buffers, output,
+                          {target.is_scalar ? ElementType::Scalar : element_of(target.part)});
     if (times.component_type() != ComponentType::Float) throw input.error("key times are no floats; expected 5126");
     if (values.component_type() != ComponentType::Float && !(takes_integers(channel.part) && values.is_normalized())) {
         throw output.error("the values are neither floats nor, of a rotation or weights, normalized integers");
     }
+    const bool has_weights = channel.part == AnimatedPart::Weights;
     const uint64_t a_key = (channel.interpolation == Interpolation::CubicSpline ? 3 : 1) *
-                           (channel.part == AnimatedPart::Weights ? node.morph_weights.size() : 1);
+                           (has_weights ? scene.nodes[target.indices[0]].morph_weights.size() : 1);
     if (times.count() == 0 || values.count() % a_key != 0 || values.count() / a_key != times.count()) {
         throw output.error(fmt::format("{} for {}; expected at least one time and {} a time",
                                        counted(values.count(), "element"), counted(times.count(), "key time"), a_key));
     }
     channel.times = times.read_floats();
     channel.values = values.read_floats();
+    if (!target.factor) return channel;
+    const std::vector<float> read = std::move(channel.values);
+    channel.values.clear();
+    for (std::size_t i = 0; i < read.size(); i += target.is_scalar ? 1 : 3) {
+        const Rgb value = target.is_scalar ? Rgb{read[i], read[i], read[i]} : Rgb{read[i], read[i + 1], read[i + 2]};
+        const Rgb light = *target.factor * value;
+        channel.values.insert(channel.values.end(), {light.r, light.g, light.b});
+    }
     return channel;
 }
 
 } // namespace
+
+std::set<uint32_t> nodes_with_animated_weights(const Document& document) {
+    std::set<uint32_t> nodes;
+    for (const JsonValue& animation : document.root().elements_of("animations")) {
+        for (const JsonValue& channel : animation.elements_of("channels")) {
+            const JsonValue target = channel.at("target");
+            if (const auto extension = target.extension("KHR_animation_pointer")) {
+                const std::string pointer = extension->string_or("pointer", "");
+                if (const auto node = node_of_pointer(document, pointer, "weights")) nodes.insert(*node);
+            } else if (const auto node = target.find("node"); node && target.string_or("path", "") == "weights") {
+                nodes.insert(document.index_into("nodes", *node));
+            }
+        }
+    }
+    return nodes;
+}
 
 void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages) {
     for (const JsonValue& source : document.root().elements_of("animations")) {
@@ -94,20 +221,29 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, M
         const std::vector<JsonValue> samplers = source.elements_of("samplers");
         std::set<std::pair<uint32_t, AnimatedPart>> taken;
         for (const JsonValue& entry : source.elements_of("channels")) {
-            const JsonValue target = entry.at("target");
-            if (!target.find("node")) { // the format leaves such to extensions
-                messages.note(fmt::format("{}: the channel names no node and is left out", target.place()));
+            const JsonValue place = entry.at("target");
+            const std::optional<Target> target = read_target(document, place, scene, messages);
+            if (!target || target->indices.empty()) continue;
+            AnimationChannel channel = read_keys(document, buffers, entry.at("sampler"), samplers, *target, scene);
+            if (!taken.emplace(target->indices[0], target->part).second) {
+                if (!target->factor) {
+                    throw place.error("an earlier channel of the animation has this node and path; expected one");
+                }
+                messages.warn(fmt::format("{}: colour and intensity of one light are animated together, of which the "
+                                          "first alone is played",
+                                          place.place()));
                 continue;
             }
-            AnimationChannel channel = read_channel(document, buffers, entry, samplers, scene);
-            if (!taken.emplace(channel.node, channel.part).second) {
-                throw target.error("an earlier channel of the animation has this node and path; expected one");
-            }
-            if (const std::string fault = fault_of(channel, scene.nodes[channel.node]); !fault.empty()) {
+            channel.target = target->indices[0];
+            if (const std::string fault = fault_of(channel, scene); !fault.empty()) {
                 messages.warn(fmt::format("{}: {}; the channel is left out", entry.place(), fault));
                 continue;
             }
-            animation.channels.push_back(std::move(channel));
+            buffers.charge(channel.values.size() * target->indices.size() * sizeof(float), entry);
+            for (const uint32_t index : target->indices) {
+                channel.target = index;
+                animation.channels.push_back(channel);
+            }
         }
         scene.animations.push_back(std::move(animation));
     }

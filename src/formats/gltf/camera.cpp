@@ -39,12 +39,4 @@ Camera read_camera(const JsonValue& source) {
     return camera;
 }
 
-std::optional<Transform> without_scale(const Transform& m) {
-    const Vec3 back = normalize(column(m, 2));
-    const Vec3 right = normalize(cross(column(m, 1), back));
-    const Vec3 up = cross(back, right);
-    if (!is_finite(back) || !is_finite(right) || !is_finite(m.translation)) return std::nullopt;
-    return Transform{{right.x, up.x, back.x}, {right.y, up.y, back.y}, {right.z, up.z, back.z}, m.translation};
-}
-
 } // namespace pertev::gltf

@@ -14,9 +14,10 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 8> kSupportedExtensions = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
+constexpr std::array<std::string_view, 9> kSupportedExtensions = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_animation_pointer",
+    "KHR_lights_punctual",     "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_unlit",     "KHR_mesh_quantization",           "KHR_texture_transform"};
 
 // Of these only the cases that materials.cpp names; it warns of the others. A file that requires one is refused.
 constexpr std::array<std::string_view, 3> kSupportedInPart = {"KHR_materials_specular", "KHR_materials_transmission",

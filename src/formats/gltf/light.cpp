@@ -65,10 +65,4 @@ Light read_light(const JsonValue& source, Messages& messages) {
     return light;
 }
 
-bool place_light(const Transform& world_from_node, Light& light) {
-    light.position = world_from_node.translation;
-    light.direction = normalize(-column(world_from_node, 2));
-    return light.kind == LightKind::Point || is_finite(light.direction);
-}
-
 } // namespace pertev::gltf

@@ -13,8 +13,4 @@ namespace pertev::gltf {
 /// The light without its place. A cone of equal angles (exporters write it for a sharp edge) is one after a warning.
 Light read_light(const JsonValue& light, Messages& messages);
 
-/// Puts `light` at the origin of a node, shining along the node's -z; its strength does not scale. False where that
-/// direction is lost.
-bool place_light(const Transform& world_from_node, Light& light);
-
 } // namespace pertev::gltf

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "formats/gltf/node_shapes.h"
+#include "formats/gltf/animations.h"
 #include "formats/gltf/skin.h"
+#include "scene/shape_mesh.h"
 
 namespace pertev::gltf {
 namespace {
@@ -19,34 +20,45 @@ std::string members_as_text(const JsonValue& object, std::initializer_list<std::
     return text;
 }
 
-// Equal texts: equal vertices and triangles.
-std::string data_key(const JsonValue& primitive, const std::vector<float>& weights,
-                     const std::optional<JsonValue>& skin) {
-    std::string key = members_as_text(primitive, {"mode", "attributes", "indices", "targets"});
-    if (primitive.find("targets")) key += fmt::format("{}", fmt::join(weights, ","));
-    return key + fmt::format(";{}", skin ? skin->to_json() : "");
-}
-
 } // namespace
 
-const std::vector<Meshes::Part>& Meshes::parts_of(const JsonValue& node) {
-    const auto [entry, is_new] = by_use_.try_emplace(members_as_text(node, {"mesh", "skin", "weights"}));
-    if (is_new) entry->second = read_parts(node);
+Meshes::Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
+               bool geometry_only, Messages& messages)
+    : document_(document), buffers_(buffers), nodes_(nodes), materials_(materials), scene_(scene),
+      geometry_only_(geometry_only), messages_(messages), reshaped_nodes_(nodes_with_animated_weights(document)) {}
+
+// Equal texts: equal parts at all times.
+std::string Meshes::use_key(uint32_t node) const {
+    const std::string key = members_as_text(document_.table("nodes")[node], {"mesh", "skin", "weights"});
+    return reshaped_nodes_.contains(node) ? fmt::format("{}{}", key, node) : key;
+}
+
+// Equal texts: equal vertices and triangles at all times.
+std::string Meshes::data_key(const JsonValue& primitive, uint32_t node) const {
+    std::string key = members_as_text(primitive, {"mode", "attributes", "indices", "targets"});
+    if (primitive.find("targets")) {
+        key += fmt::format("{}", fmt::join(scene_.nodes[node].morph_weights, ","));
+        if (reshaped_nodes_.contains(node)) key += fmt::format(";{}", node);
+    }
+    return fmt::format("{};{}", key, scene_.nodes[node].skin);
+}
+
+const std::vector<Meshes::Part>& Meshes::parts_of(uint32_t index) {
+    const auto [entry, is_new] = by_use_.try_emplace(use_key(index));
+    if (is_new) entry->second = read_parts(index);
     return entry->second;
 }
 
-std::vector<Meshes::Part> Meshes::read_parts(const JsonValue& node) {
-    const JsonValue& mesh = document_.item("meshes", node.at("mesh"));
-    const std::vector<float> weights = read_weights(node, mesh);
-    const std::optional<JsonValue> skin = node.find("skin");
+std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
+    const JsonValue& mesh = document_.item("meshes", document_.table("nodes")[index].at("mesh"));
     const std::string name = mesh.string_or("name", "");
     const std::vector<JsonValue> primitives = mesh.elements_of("primitives");
     std::vector<Part> parts;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const std::string part_name = primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
-        const std::optional<uint32_t> index = mesh_of(primitives[i], weights, skin, part_name);
-        if (!index) continue;
-        parts.push_back({*index, materials_.material_of(primitives[i])});
+        const std::optional<uint32_t> part = mesh_of(primitives[i], index, part_name);
+        if (!part) continue;
+        parts.push_back({*part, materials_.material_of(primitives[i])});
         check_texture_coordinates(parts.back());
     }
     return parts;
@@ -63,34 +75,51 @@ void Meshes::check_texture_coordinates(const Part& part) {
     }
 }
 
-std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, const std::vector<float>& weights,
-                                        const std::optional<JsonValue>& skin, const std::string& name) {
-    const auto [entry, is_new] = by_data_.try_emplace(data_key(primitive, weights, skin));
+std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name) {
+    const auto [entry, is_new] = by_data_.try_emplace(data_key(primitive, node));
     if (!is_new) return entry->second;
-    std::optional<Mesh> mesh = read_primitive({document_, buffers_, primitive, weights, geometry_only_}, messages_);
-    if (!mesh) return std::nullopt;
-    if (primitive.find("targets")) {
-        messages_.warn(fmt::format("{}: morph targets are drawn with their default weights; animation is not played",
-                                   document_.file()));
-    }
-    if (skin) {
-        messages_.warn(
-            fmt::format("{}: skinned meshes are drawn in their rest pose; animation is not played", document_.file()));
-        apply_skin(document_, buffers_, primitive.at("attributes"), joints_of(*skin), *mesh);
-    }
+    std::optional<Primitive> read = read_primitive({document_, buffers_, primitive, geometry_only_}, messages_);
+    if (!read) return std::nullopt;
     buffers_.charge(name.size(), primitive);
-    mesh->name = name;
-    mesh->origin = primitive.pointer();
-    scene_.meshes.push_back(*std::move(mesh));
+    read->mesh.name = name;
+    read->mesh.origin = primitive.pointer();
+    scene_.meshes.push_back(std::move(read->mesh));
+    if (!read->targets.empty() || scene_.nodes[node].skin != kNoSkin) {
+        add_shape(primitive, node, std::move(read->targets));
+    }
     entry->second = static_cast<uint32_t>(scene_.meshes.size() - 1);
     return entry->second;
 }
 
-const std::vector<Transform>& Meshes::joints_of(const JsonValue& skin) {
-    const uint32_t index = document_.index_into("skins", skin);
+/// What moves the vertices of the last mesh; and puts them where they are at rest.
+void Meshes::add_shape(const JsonValue& primitive, uint32_t node, std::vector<MorphTarget> targets) {
+    Mesh& mesh = scene_.meshes.back();
+    buffers_.charge(mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3) +
+                        mesh.tangents.size() * sizeof(Vec4),
+                    primitive);
+    MeshShape& shape = scene_.shapes.emplace_back();
+    shape.mesh = static_cast<uint32_t>(scene_.meshes.size() - 1);
+    shape.node = node;
+    shape.skin = scene_.nodes[node].skin;
+    shape.positions = mesh.positions;
+    shape.normals = mesh.normals;
+    shape.tangents = mesh.tangents;
+    shape.targets = std::move(targets);
+    std::span<const Transform> joints;
+    if (shape.skin != kNoSkin) {
+        joints = joints_of(shape.skin);
+        read_joint_weights(document_, buffers_, primitive.at("attributes"), joints.size(), shape);
+    }
+    shape_mesh(shape, scene_.nodes[node].morph_weights, joints, mesh);
+}
+
+const std::vector<Transform>& Meshes::joints_of(uint32_t index) {
     const auto [entry, is_new] = joints_.try_emplace(index);
-    if (is_new) entry->second = read_joint_transforms(document_, buffers_, nodes_, document_.table("skins")[index]);
-    return entry->second;
+    if (!is_new) return entry->second;
+    Skin& skin = scene_.skins[index];
+    skin.joint_from_mesh =
+        read_inverse_bind_matrices(document_, buffers_, document_.table("skins")[index], skin.joints.size());
+    return entry->second = joint_transforms(skin, nodes_.world_from_node());
 }
 
 } // namespace pertev::gltf

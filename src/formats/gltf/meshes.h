@@ -1,10 +1,11 @@
 #pragma once
 
 // glTF meshes as Scene meshes. A glTF mesh is a list of parts (primitives), each with a material: each part becomes one
-// Scene mesh, and parts with the same data, whatever their material, share one.
+// Scene mesh, and parts with the same data at all times, whatever their material, share one.
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,20 +23,22 @@ public:
         uint32_t material; // index into scene.materials
     };
 
+    /// `scene` has its nodes and skins.
     Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
-           bool geometry_only, Messages& messages)
-        : document_(document), buffers_(buffers), nodes_(nodes), materials_(materials), scene_(scene),
-          geometry_only_(geometry_only), messages_(messages) {}
+           bool geometry_only, Messages& messages);
 
-    /// The drawable parts of the mesh that `node` (which has one) shows. With a skin they are in world space.
-    const std::vector<Part>& parts_of(const JsonValue& node);
+    /// The drawable parts of the mesh that node `index` (which has one) shows, at rest. With a skin they are in world
+    /// space.
+    const std::vector<Part>& parts_of(uint32_t index);
 
 private:
-    std::vector<Part> read_parts(const JsonValue& node);
+    std::vector<Part> read_parts(uint32_t index);
     void check_texture_coordinates(const Part& part);
-    std::optional<uint32_t> mesh_of(const JsonValue& primitive, const std::vector<float>& weights,
-                                    const std::optional<JsonValue>& skin, const std::string& name);
-    const std::vector<Transform>& joints_of(const JsonValue& skin);
+    std::optional<uint32_t> mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name);
+    void add_shape(const JsonValue& primitive, uint32_t node, std::vector<MorphTarget> targets);
+    const std::vector<Transform>& joints_of(uint32_t skin);
+    std::string use_key(uint32_t node) const;
+    std::string data_key(const JsonValue& primitive, uint32_t node) const;
 
     const Document& document_;
     Buffers& buffers_;
@@ -46,7 +49,8 @@ private:
     Messages& messages_;
     std::map<std::string, std::vector<Part>> by_use_;        // what one node shows, another may show too
     std::map<std::string, std::optional<uint32_t>> by_data_; // nothing: not drawable
-    std::map<uint32_t, std::vector<Transform>> joints_;      // by skin
+    std::map<uint32_t, std::vector<Transform>> joints_;      // by skin; at rest
+    std::set<uint32_t> reshaped_nodes_;                      // whose morph weights an animation changes
 };
 
 } // namespace pertev::gltf

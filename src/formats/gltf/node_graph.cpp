@@ -50,24 +50,18 @@ void NodeGraph::read_children(const Document& document) {
 
 void NodeGraph::place_nodes(const Document& document) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
-    std::vector<uint32_t> roots;
-    for (uint32_t node = 0; node < nodes.size(); ++node) {
-        if (nodes_[node].parent == kNoNode) roots.push_back(node);
+    const std::vector<uint32_t> order = parents_first(nodes_);
+    if (order.size() < nodes.size()) {
+        std::vector<bool> is_placed(nodes.size());
+        for (const uint32_t node : order) is_placed[node] = true;
+        const auto first = std::ranges::find(is_placed, false) - is_placed.begin();
+        throw nodes[static_cast<std::size_t>(first)].error("the node is its own ancestor; expected a tree");
     }
-    world_from_node_.resize(nodes.size());
-    std::vector<bool> is_placed(nodes.size());
-    for_each_below(roots, [&](uint32_t node) {
+    for (uint32_t node = 0; node < nodes.size(); ++node) {
         nodes_[node].name = nodes[node].string_or("name", "");
         nodes_[node].pose = pose_of(nodes[node]);
-        const Transform local = parent_from_node(nodes_[node]);
-        const uint32_t parent = nodes_[node].parent;
-        world_from_node_[node] = parent == kNoNode ? local : compose(world_from_node_[parent], local);
-        is_placed[node] = true;
-    });
-    // Each node has at most one parent, so what no root leads to goes round in a circle.
-    for (uint32_t node = 0; node < nodes.size(); ++node) {
-        if (!is_placed[node]) throw nodes[node].error("the node is its own ancestor; expected a tree");
     }
+    world_from_node_ = world_from_nodes(nodes_, order);
 }
 
 std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages& messages) const {

@@ -22,8 +22,9 @@ public:
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
-    /// World from local of any node, in the scene or not.
+    /// World from local of any node, in the scene or not, at rest.
     const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
+    const std::vector<Transform>& world_from_node() const { return world_from_node_; }
     /// All nodes of the document, by their numbers.
     std::vector<Node> take_nodes() { return std::move(nodes_); }
 

@@ -18,14 +18,15 @@ std::vector<std::size_t> count_targets(const Document& document) {
     return counts;
 }
 
-} // namespace
-
+/// The weights at rest of the morph targets: the node's own, else its mesh's, by target.
 std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh) {
     const JsonValue& source = node.find("weights") ? node : mesh;
     std::vector<float> weights;
     for (const JsonValue& weight : source.elements_of("weights")) weights.push_back(weight.to_float());
     return weights;
 }
+
+} // namespace
 
 void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene) {
     for (const JsonValue& skin : document.table("skins")) {
@@ -35,8 +36,6 @@ void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene) 
     }
     const std::vector<JsonValue>& sources = document.table("nodes");
     const std::vector<std::size_t> targets = count_targets(document);
-    const bool has_targets = std::ranges::any_of(targets, [](std::size_t count) { return count > 0; });
-    if (scene.skins.empty() && !has_targets) return; // most files
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const std::optional<JsonValue> reference = sources[i].find("mesh");
         if (!reference) continue;

@@ -4,16 +4,10 @@
 //
 // Source: glTF 2.0 sections 3.7.2.2 and 3.7.3.
 
-#include <vector>
-
 #include "formats/gltf/buffers.h"
 #include "scene/scene.h"
 
 namespace pertev::gltf {
-
-/// The weights at rest of the morph targets: the node's own, else its mesh's, by target; targets past the end have
-/// weight 0.
-std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh);
 
 /// Fills scene.skins, and the skin and morph weights of scene.nodes, which are there. Throws Error(BadInput) for an
 /// index out of range.

@@ -63,20 +63,22 @@ std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Messages& messages) {
     const auto place_mesh = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
-        const std::vector<Meshes::Part>& parts = meshes.parts_of(node);
+        const std::vector<Meshes::Part>& parts = meshes.parts_of(index);
         const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
-        std::vector<Transform> world_from_local = {world_from_node};
-        if (node.find("skin")) {
-            world_from_local = {Transform()}; // its joints have moved it already
-        } else if (instancing) {
-            world_from_local = read_placements(document, buffers, *instancing);
-            for (Transform& m : world_from_local) m = compose(world_from_node, m);
-        }
+        const bool has_skin = node.find("skin").has_value(); // its joints have moved it already
+        std::vector<Transform> node_from_local(1);
+        if (instancing && !has_skin) node_from_local = read_placements(document, buffers, *instancing);
         const std::string name = node.string_or("name", "");
-        buffers.charge(world_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
-        for (const Transform& m : world_from_local) {
+        buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
+        for (const Transform& m : node_from_local) {
+            const Transform world_from_local = has_skin ? Transform() : placed_in(world_from_node, m);
             for (const Meshes::Part& part : parts) {
-                scene.instances.push_back({name, part.mesh, part.material, m, index});
+                scene.instances.push_back({.name = name,
+                                           .mesh = part.mesh,
+                                           .material = part.material,
+                                           .world_from_local = world_from_local,
+                                           .node = index,
+                                           .node_from_local = m});
             }
         }
         if (scene.instances.size() > kMaxInstances) {

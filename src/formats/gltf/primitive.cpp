@@ -1,6 +1,5 @@
 #include "formats/gltf/primitive.h"
 
-#include <algorithm>
 #include <limits>
 #include <numeric>
 
@@ -77,30 +76,20 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     }
 }
 
-// Adds weight * delta to each of `values`; Vec4 (tangents) keeps its w.
-template <class Vector>
-void add_deltas(const AttributeReader& target, std::string_view name, float weight, std::vector<Vector>& values) {
-    if (values.empty()) return;
-    const auto deltas = target.find(name, values.size(), {ElementType::Vec3});
-    if (!deltas) return;
-    const std::vector<Vec3> offsets = deltas->read_vec3();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i].x += weight * offsets[i].x;
-        values[i].y += weight * offsets[i].y;
-        values[i].z += weight * offsets[i].z;
+std::vector<MorphTarget> read_targets(const PrimitiveRequest& request, const Mesh& mesh) {
+    std::vector<MorphTarget> targets;
+    for (const JsonValue& source : request.primitive.elements_of("targets")) {
+        const AttributeReader reader(request, source);
+        const auto read = [&](std::string_view name, std::size_t vertices) {
+            const auto offsets = vertices == 0 ? std::nullopt : reader.find(name, vertices, {ElementType::Vec3});
+            return offsets ? offsets->read_vec3() : std::vector<Vec3>();
+        };
+        MorphTarget& target = targets.emplace_back();
+        target.positions = read("POSITION", mesh.positions.size());
+        target.normals = read("NORMAL", mesh.normals.size());
+        target.tangents = read("TANGENT", mesh.tangents.size());
     }
-}
-
-void apply_morph_targets(const PrimitiveRequest& request, Mesh& mesh) {
-    const std::vector<JsonValue> targets = request.primitive.elements_of("targets");
-    for (std::size_t i = 0; i < std::min(targets.size(), request.morph_weights.size()); ++i) {
-        const float weight = request.morph_weights[i];
-        if (weight == 0) continue;
-        const AttributeReader target(request, targets[i]);
-        add_deltas(target, "POSITION", weight, mesh.positions);
-        add_deltas(target, "NORMAL", weight, mesh.normals);
-        add_deltas(target, "TANGENT", weight, mesh.tangents);
-    }
+    return targets;
 }
 
 std::vector<uint32_t> read_corners(const PrimitiveRequest& request, std::size_t vertices) {
@@ -124,7 +113,7 @@ std::vector<uint32_t> read_corners(const PrimitiveRequest& request, std::size_t 
 
 } // namespace
 
-std::optional<Mesh> read_primitive(const PrimitiveRequest& request, Messages& messages) {
+std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages) {
     const std::string& file = request.document.file();
     const Topology topology = read_topology(request.primitive);
     if (!draws_triangles(topology)) {
@@ -136,9 +125,10 @@ std::optional<Mesh> read_primitive(const PrimitiveRequest& request, Messages& me
         messages.warn(fmt::format("{}: a part without positions is left out", file));
         return std::nullopt;
     }
-    Mesh mesh;
+    Primitive result;
+    Mesh& mesh = result.mesh;
     read_attributes(request, attributes, mesh);
-    apply_morph_targets(request, mesh);
+    result.targets = read_targets(request, mesh);
     std::vector<uint32_t> corners = read_corners(request, mesh.positions.size());
     if (topology == Topology::Triangles && corners.size() % 3 != 0) {
         messages.warn(
@@ -151,7 +141,7 @@ std::optional<Mesh> read_primitive(const PrimitiveRequest& request, Messages& me
         messages.warn(fmt::format("{}: a part without a whole triangle is left out", file));
         return std::nullopt;
     }
-    return mesh;
+    return result;
 }
 
 } // namespace pertev::gltf

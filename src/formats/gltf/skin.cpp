@@ -5,101 +5,78 @@
 namespace pertev::gltf {
 namespace {
 
-// Weighted sum of the joints that move one vertex.
-struct Blend {
-    Transform sum = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    float weight = 0;
-
-    void add(const Transform& joint, float w) {
-        sum.row0 += w * joint.row0;
-        sum.row1 += w * joint.row1;
-        sum.row2 += w * joint.row2;
-        sum.translation += w * joint.translation;
-        weight += w;
-    }
-    Transform result() const {
-        const float inv = 1 / weight; // weights are rounded in many files: their sum need not be 1
-        return {inv * sum.row0, inv * sum.row1, inv * sum.row2, inv * sum.translation};
-    }
+/// JOINTS_n and WEIGHTS_n of one n: four of each for every vertex.
+struct JointSet {
+    std::vector<uint32_t> joints;
+    std::vector<float> weights;
 };
 
-/// Adds JOINTS_`set` and WEIGHTS_`set` to the blends; false where there are none.
-bool add_set(const Document& document, Buffers& buffers, const JsonValue& attributes, int set,
-             const std::vector<Transform>& joints, std::vector<Blend>& blends) {
-    const std::optional<JsonValue> joint_reference = attributes.find(fmt::format("JOINTS_{}", set));
-    if (!joint_reference) return false;
-    const JsonValue weight_reference = attributes.at(fmt::format("WEIGHTS_{}", set));
+std::optional<JointSet> read_set(const Document& document, Buffers& buffers, const JsonValue& attributes,
+                                 std::size_t number, std::size_t joint_count, std::size_t vertices) {
+    const std::optional<JsonValue> joint_reference = attributes.find(fmt::format("JOINTS_{}", number));
+    if (!joint_reference) return std::nullopt;
+    const JsonValue weight_reference = attributes.at(fmt::format("WEIGHTS_{}", number));
     const Accessor indices(document, buffers, *joint_reference, {ElementType::Vec4});
     const Accessor shares(document, buffers, weight_reference, {ElementType::Vec4});
-    if (indices.count() != blends.size() || shares.count() != blends.size()) {
+    if (indices.count() != vertices || shares.count() != vertices) {
         throw joint_reference->error(fmt::format("{} joints and {} weights; expected {}, one for each of POSITION",
-                                                 indices.count(), shares.count(), blends.size()));
+                                                 indices.count(), shares.count(), vertices));
     }
-    const std::vector<uint32_t> numbers = indices.read_integers();
-    const std::vector<float> weights = shares.read_floats();
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (weights[i] == 0) continue; // exporters leave anything in unused joints
-        if (numbers[i] >= joints.size()) {
+    JointSet set = {indices.read_integers(), shares.read_floats()};
+    for (std::size_t i = 0; i < set.joints.size(); ++i) {
+        if (set.weights[i] == 0) set.joints[i] = 0; // exporters leave anything in unused joints
+        if (set.weights[i] != 0 && set.joints[i] >= joint_count) {
             throw joint_reference->error(fmt::format("vertex {} has joint {}; expected less than {}, the number of the "
                                                      "skin's joints",
-                                                     i / 4, numbers[i], joints.size()));
+                                                     i / 4, set.joints[i], joint_count));
         }
-        blends[i / 4].add(joints[numbers[i]], weights[i]);
     }
-    return true;
-}
-
-// Inverse transpose up to a positive factor: the cofactors, with the sign of the determinant.
-Vec3 transform_normal(const Transform& m, Vec3 n) {
-    const Vec3 moved = {dot(cross(m.row1, m.row2), n), dot(cross(m.row2, m.row0), n), dot(cross(m.row0, m.row1), n)};
-    return determinant(m) < 0 ? -moved : moved;
+    return set;
 }
 
 } // namespace
 
-std::vector<Transform> read_joint_transforms(const Document& document, Buffers& buffers, const NodeGraph& nodes,
-                                             const JsonValue& skin) {
-    const std::vector<JsonValue> references = skin.at("joints").elements();
-    std::vector<Transform> joints;
-    for (const JsonValue& reference : references) {
-        joints.push_back(nodes.world_from_node(document.index_into("nodes", reference)));
-    }
+std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buffers& buffers, const JsonValue& skin,
+                                                  std::size_t joint_count) {
+    std::vector<Transform> transforms;
     const std::optional<JsonValue> reference = skin.find("inverseBindMatrices");
-    if (!reference) return joints;
+    if (!reference) return transforms;
     const Accessor accessor(document, buffers, *reference, {ElementType::Mat4});
-    if (accessor.count() < joints.size() || accessor.component_type() != ComponentType::Float) {
+    if (accessor.count() < joint_count || accessor.component_type() != ComponentType::Float) {
         throw reference->error(
-            fmt::format("{} matrices; expected {} of floats, one a joint", accessor.count(), joints.size()));
+            fmt::format("{} matrices; expected {} of floats, one a joint", accessor.count(), joint_count));
     }
     const std::vector<float> matrices = accessor.read_floats();
-    for (std::size_t i = 0; i < joints.size(); ++i) {
+    for (std::size_t i = 0; i < joint_count; ++i) {
         float columns[16];
         std::copy_n(matrices.begin() + static_cast<std::ptrdiff_t>(16 * i), 16, columns);
-        joints[i] = compose(joints[i], transform_from_columns(columns));
+        transforms.push_back(transform_from_columns(columns));
     }
-    return joints;
+    return transforms;
 }
 
-void apply_skin(const Document& document, Buffers& buffers, const JsonValue& attributes,
-                const std::vector<Transform>& joints, Mesh& mesh) {
-    buffers.charge(mesh.positions.size() * sizeof(Blend), attributes);
-    std::vector<Blend> blends(mesh.positions.size());
-    for (int set = 0; add_set(document, buffers, attributes, set, joints, blends); ++set) {
+void read_joint_weights(const Document& document, Buffers& buffers, const JsonValue& attributes,
+                        std::size_t joint_count, MeshShape& shape) {
+    const std::size_t vertices = shape.positions.size();
+    std::vector<JointSet> sets;
+    while (auto set = read_set(document, buffers, attributes, sets.size(), joint_count, vertices)) {
+        sets.push_back(*std::move(set));
     }
-    int64_t mirrored = 0; // vertices turned inside out, less those that are not
-    for (std::size_t i = 0; i < blends.size(); ++i) {
-        if (!(blends[i].weight > 0)) continue;
-        const Transform m = blends[i].result();
-        mirrored += determinant(m) < 0 ? 1 : -1;
-        mesh.positions[i] = transform_point(m, mesh.positions[i]);
-        if (!mesh.normals.empty()) mesh.normals[i] = transform_normal(m, mesh.normals[i]);
-        if (mesh.tangents.empty()) continue;
-        Vec4& t = mesh.tangents[i];
-        const Vec3 moved = transform_vector(m, {t.x, t.y, t.z});
-        t = {moved.x, moved.y, moved.z, t.w};
+    shape.joints_per_vertex = static_cast<uint32_t>(4 * sets.size());
+    if (sets.size() == 1) {
+        shape.joints = std::move(sets[0].joints);
+        shape.weights = std::move(sets[0].weights);
+        return;
     }
-    if (mirrored <= 0) return;
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+    buffers.charge(vertices * sets.size() * 4 * (sizeof(uint32_t) + sizeof(float)), attributes);
+    for (std::size_t i = 0; i < 4 * vertices; i += 4) {
+        for (const JointSet& set : sets) {
+            shape.joints.insert(shape.joints.end(),
+                                {set.joints[i], set.joints[i + 1], set.joints[i + 2], set.joints[i + 3]});
+            shape.weights.insert(shape.weights.end(),
+                                 {set.weights[i], set.weights[i + 1], set.weights[i + 2], set.weights[i + 3]});
+        }
+    }
 }
 
 } // namespace pertev::gltf

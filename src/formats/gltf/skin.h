@@ -1,24 +1,23 @@
 #pragma once
 
-// Skinned meshes in their rest pose: each vertex goes where its joints stand when no animation plays.
+// Skins: what the file says of joints and of the vertices that they move.
 //
-// Source: glTF 2.0 section 3.7.3.3. The node that holds a skinned mesh does not move it: only its joints do.
+// Source: glTF 2.0 section 3.7.3. The node that holds a skinned mesh does not move it: only its joints do.
 
 #include <vector>
 
 #include "formats/gltf/accessor.h"
-#include "formats/gltf/node_graph.h"
-#include "scene/mesh.h"
+#include "scene/mesh_shape.h"
 
 namespace pertev::gltf {
 
-/// World from mesh space, one a joint: the joint's node times its inverse bind matrix.
-std::vector<Transform> read_joint_transforms(const Document& document, Buffers& buffers, const NodeGraph& nodes,
-                                             const JsonValue& skin);
+/// One a joint (Skin::joint_from_mesh); empty where the file has none.
+std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buffers& buffers, const JsonValue& skin,
+                                                  std::size_t joint_count);
 
-/// Moves the vertices of `mesh` to world space by the JOINTS_n and WEIGHTS_n of `attributes`. A vertex without weight
-/// stays. Throws Error(BadInput) for a joint that the skin does not have.
-void apply_skin(const Document& document, Buffers& buffers, const JsonValue& attributes,
-                const std::vector<Transform>& joints, Mesh& mesh);
+/// Fills the joints and weights of `shape`, which has its positions, by the JOINTS_n and WEIGHTS_n of `attributes`.
+/// Throws Error(BadInput) for a joint that the skin, which has `joint_count`, does not have.
+void read_joint_weights(const Document& document, Buffers& buffers, const JsonValue& attributes,
+                        std::size_t joint_count, MeshShape& shape);
 
 } // namespace pertev::gltf

@@ -6,6 +6,7 @@ namespace pertev {
 
 Target target_from(const Scene& scene, Vec3 eye) {
     const Bounds3 box = bounds_of(scene);
+    if (box.is_empty()) return {}; // all is hidden at rest
     const Vec3 centre = box.centre(), size = box.size();
     // Nearer than this the direction would be one of rounding.
     if (length(centre - eye) > 1e-4f * max_component(size)) return {centre, true};

@@ -96,6 +96,7 @@ std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays
     for (const Mesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh));
     std::vector<LocalRay> local;
     for (const Instance& instance : scene.instances) {
+        if (instance.is_hidden) continue;
         const Transform local_from_world = inverse(instance.world_from_local);
         local.clear();
         for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -39,6 +39,7 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
     const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
     float distance = 0;
     for (const Instance& instance : scene.instances) {
+        if (instance.is_hidden) continue;
         const Mesh& mesh = scene.meshes[instance.mesh];
         const std::size_t step = 1 + mesh.indices.size() / 20'000;
         for (std::size_t i = 0; i < mesh.indices.size(); i += step) {
@@ -47,6 +48,7 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
             distance = max(distance, z + max(x / o.half_x, y / o.half_y));
         }
     }
+    if (distance == 0) distance = length(box.size());
     return look(centre + (1.08f * distance) * direction, centre, o.fov_y, name);
 }
 
@@ -60,7 +62,8 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
 } // namespace
 
 Camera make_default_camera(const Scene& scene, float aspect, Messages& messages) {
-    const Surroundings around = look_around(scene);
+    Surroundings around = look_around(scene);
+    if (around.bounds.is_empty()) around.bounds = {{-1, -1, -1}, {1, 1, 1}}; // all is hidden at rest
     const char* what = "a view from outside and above";
     Camera camera;
     switch (around.kind) {

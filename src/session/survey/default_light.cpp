@@ -27,7 +27,7 @@ bool needs_light(const Scene& scene) {
     bool is_all_unlit = true; // what is unlit is seen without light, and gives none to the rest
     for (const Instance& instance : scene.instances) {
         const Material& material = scene.materials[instance.material];
-        if (is_lamp(material)) return false;
+        if (is_lamp(material)) return false; // hidden or not: it may come
         is_all_unlit = is_all_unlit && material.kind == MaterialKind::Unlit;
     }
     return !is_all_unlit;

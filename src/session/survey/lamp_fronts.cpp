@@ -80,7 +80,7 @@ void say_lamp_fronts(const Scene& scene, const std::string& file, Messages& mess
     std::vector<const Instance*> lamps;
     std::string names;
     for (const Instance& instance : scene.instances) {
-        if (!is_one_sided_lamp(scene.materials[instance.material])) continue;
+        if (instance.is_hidden || !is_one_sided_lamp(scene.materials[instance.material])) continue;
         lamps.push_back(&instance);
         if (lamps.size() <= kMostNames) names += (names.empty() ? "" : ", ") + shortened(instance.name);
     }

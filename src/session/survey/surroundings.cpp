@@ -73,7 +73,7 @@ Surroundings look_around(const Scene& scene) {
     uint64_t triangles = 0;
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
     const Vec3 centre = result.bounds.centre(), size = result.bounds.size();
-    if (triangles > kMostTriangles || is_flat(size)) return result;
+    if (triangles > kMostTriangles || result.bounds.is_empty() || is_flat(size)) return result;
 
     const Vec3 along = size.x >= size.z ? Vec3{0.2f * size.x, 0, 0} : Vec3{0, 0, 0.2f * size.z};
     const Vec3 down = {0, 0.2f * size.y, 0};

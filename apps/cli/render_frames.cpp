@@ -1,0 +1,146 @@
+#include "apps/cli/render_frames.h"
+
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "apps/cli/interrupt.h"
+#include "apps/cli/report_result.h"
+#include "base/hash.h"
+#include "base/message_text.h"
+#include "base/read_file.h"
+#include "base/stopwatch.h"
+#include "session/sequence_record.h"
+
+namespace pertev {
+namespace {
+
+std::string hash_of_file(const std::string& file) {
+    if (std::error_code fault; !std::filesystem::is_regular_file(file, fault)) return ""; // none, or a built-in scene
+    Hasher hasher;
+    hasher.add(read_file(file));
+    return hasher.result().hex();
+}
+
+/// All that decides the pictures: what the first frame's metadata say, and how the others follow.
+SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequence& sequence,
+                                     const PictureRecord& record) {
+    SequenceRecord::Settings settings;
+    for (const auto& [name, value] : settings_metadata(record)) {
+        settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
+    }
+    std::string layers;
+    for (const std::string& layer : flags.aovs) layers += layer + " ";
+    const RenderSettings& picture = record.settings;
+    settings.insert(settings.end(), {{"first frame", fmt::format("{}", sequence.first)},
+                                     {"--fps", sequence.fps ? fmt::format("{}", *sequence.fps) : ""},
+                                     {"--turntable", fmt::format("{}", sequence.turntable)},
+                                     {"hash of --camera-path", hash_of_file(flags.camera_path)},
+                                     {"hash of the scene's file", hash_of_file(flags.scene.scene)},
+                                     {"hash of --environment", hash_of_file(flags.scene.environment)},
+                                     {"--size", fmt::format("{}x{}", picture.width, picture.height)},
+                                     {"--spp", fmt::format("{}", picture.samples)},
+                                     {"--aov", layers},
+                                     {"--transparent", picture.transparent ? "yes" : "no"}});
+    return settings;
+}
+
+/// What is said of a whole sequence.
+struct Tally {
+    uint32_t rendered = 0, kept = 0;
+    uint64_t invalid_samples = 0;
+    double update_s = 0;
+};
+
+bool show_progress(const RenderProgress& now, uint32_t frame, uint32_t number, uint32_t frames, Reporter& reporter) {
+    const double share = (number + static_cast<double>(now.samples_done) / now.samples) / frames;
+    reporter.progress(
+        share, fmt::format("frame {} ({} of {})  {}/{} spp", frame, number + 1, frames, now.samples_done, now.samples));
+    return !interrupted();
+}
+
+std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
+    std::vector<std::string> files;
+    for (const std::string& output : flags.outputs) files.push_back(frame_file(output, frame));
+    return files;
+}
+
+} // namespace
+
+void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record) {
+    const std::optional<double> time_s = camera.sequence.time_of(frame);
+    record.scene.time_s = time_s;
+    const CameraChoice choice = camera.camera.choice_at(time_s);
+    record.camera = {.camera = camera.camera.at(scene, time_s),
+                     .name = choice.camera,
+                     .target = choice.target,
+                     .up = choice.up,
+                     .fov_deg = choice.fov_deg.value_or(0)};
+    const double turn = camera.sequence.turn_of(frame);
+    if (turn == 0) return;
+    record.camera.camera = camera.camera.turned(record.camera.camera, turn);
+    record.camera.target.reset(); // its words say where the camera began
+    record.camera.up.reset();
+}
+
+int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,
+                  Session& session, Reporter& reporter) {
+    const Stopwatch watch;
+    const FrameSequence& sequence = camera.sequence;
+    SequenceRecord done(flags.outputs, settings_of(flags, sequence, record));
+    if (flags.goes_on) done.load();
+    reporter.set_work("rendering");
+    Tally tally;
+    std::string failures;
+    for (uint32_t number = 0; number < sequence.count() && failures.empty() && !interrupted(); ++number) {
+        const uint32_t frame = sequence.first + number;
+        const std::optional<double> time_s = sequence.time_of(frame);
+        if (flags.goes_on && done.has(frame)) {
+            ++tally.kept;
+            reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true}})", frame));
+            continue;
+        }
+        const Stopwatch update;
+        if (time_s) {
+            if (const uint32_t parts = moving.set_time(*time_s, reporter.messages())) {
+                session.update_scene(moving.prepared(), parts);
+            }
+        }
+        const double update_s = update.seconds();
+        place_frame(frame, moving.scene(), camera, record);
+        session.set_camera(record.camera.camera);
+        session.render(record.settings.samples, [&](const RenderProgress& now) {
+            return show_progress(now, frame, number, sequence.count(), reporter);
+        });
+        RenderResult result = session.result();
+        if (result.samples < record.settings.samples) break; // interrupted: not whole, and not written
+        record.scene.build_seconds = update_s;
+        const WrittenPicture written = write_picture(files_of(flags, frame), record, result);
+        failures = report_files(written, reporter);
+        if (failures.empty()) done.add(frame);
+        ++tally.rendered;
+        tally.update_s += update_s;
+        tally.invalid_samples += result.invalid_samples;
+        reporter.event(fmt::format(
+            R"({{"event":"frame","frame":{},"time":{},"hash":"{}","samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
+            frame, time_s ? fmt::format("{}", *time_s) : "null", written.hash, result.samples, update_s,
+            result.render_seconds));
+    }
+    reporter.end_progress();
+    reporter.say_messages();
+    const bool cut_short = failures.empty() && tally.rendered + tally.kept < sequence.count();
+    reporter.say(fmt::format(
+        "{} of {} written{} in {:.2f} s, of which {:.1f} ms a frame to move the scene; {}{}", tally.rendered,
+        counted(sequence.count(), "frame"), tally.kept > 0 ? fmt::format(", {} kept", tally.kept) : "", watch.seconds(),
+        1e3 * tally.update_s / std::max(tally.rendered, 1u), counted(tally.invalid_samples, "invalid sample"),
+        cut_short ? "; interrupted: the same command with --continue goes on" : ""));
+    reporter.event(fmt::format(
+        R"({{"event":"sequence","frames":{},"written":{},"kept":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
+        sequence.count(), tally.rendered, tally.kept, watch.seconds(), tally.update_s, tally.invalid_samples,
+        cut_short));
+    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+    if (flags.strict && tally.invalid_samples > 0) throw not_finite(tally.invalid_samples);
+    return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
+}
+
+} // namespace pertev

@@ -1,0 +1,28 @@
+#pragma once
+
+// The frames of pertev render --frames and --turntable: one after the other by one session, which takes over from frame
+// to frame what does not move.
+
+#include "apps/cli/render_flags.h"
+#include "session/moving_camera.h"
+#include "session/moving_scene.h"
+#include "session/picture_metadata.h"
+#include "session/session.h"
+
+namespace pertev {
+
+/// Where the camera is at each frame.
+struct FrameCamera {
+    const MovingCamera& camera;
+    FrameSequence sequence;
+};
+
+/// Gives `record` the camera and the time of `frame`; `scene` is at that time.
+void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record);
+
+/// `moving`, `session` and `record` are those of the first frame, exposed as all frames will be. Ctrl-C ends after the
+/// last whole frame. Returns the exit status. Throws Error.
+int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,
+                  Session& session, Reporter& reporter);
+
+} // namespace pertev

@@ -1,0 +1,61 @@
+#include "formats/read_camera_path.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/limits.h"
+#include "formats/json_file.h"
+#include "math/transform.h"
+
+namespace pertev {
+namespace {
+
+using gltf::JsonValue;
+
+Vec3 read_vec3(const JsonValue& value) {
+    const std::array<float, 3> v = value.to_floats<3>();
+    for (const float x : v) {
+        if (abs(x) > kMaxCoordinate) throw value.error(fmt::format("{}; expected at most 2^40 metres", x));
+    }
+    return {v[0], v[1], v[2]};
+}
+
+CameraKey read_key(const JsonValue& source, const CameraPath& before) {
+    CameraKey key;
+    const JsonValue time = source.at("time");
+    key.time_s = static_cast<double>(time.to_float());
+    if (key.time_s < 0) throw time.error(fmt::format("{}; expected seconds, at least 0", key.time_s));
+    if (!before.keys.empty() && key.time_s <= before.keys.back().time_s) {
+        throw time.error(fmt::format("{}; expected more than {}, the time of the key before", key.time_s,
+                                     before.keys.back().time_s));
+    }
+    key.eye = read_vec3(source.at("eye"));
+    key.target = read_vec3(source.at("target"));
+    if (const auto up = source.find("up")) key.up = read_vec3(*up);
+    if (!is_finite(look_at(key.eye, key.target, key.up))) {
+        throw source.error("the target must differ from the eye, and not lie along up (0, 1, 0 without \"up\")");
+    }
+    const auto fov = source.find("fov");
+    if (fov) key.fov_deg = fov->to_float();
+    if (fov && !(key.fov_deg >= 0.01f && key.fov_deg <= 179)) {
+        throw fov->error(fmt::format("{}; expected degrees, from 0.01 to 179", key.fov_deg));
+    }
+    if (!before.keys.empty() && fov.has_value() != (before.keys[0].fov_deg > 0)) {
+        throw source.error("\"fov\" stands in some keys; expected it in all or in none");
+    }
+    return key;
+}
+
+} // namespace
+
+CameraPath read_camera_path(const std::filesystem::path& path) {
+    const JsonFile file(path);
+    CameraPath result;
+    const JsonValue keys = file.root().at("keys");
+    for (const JsonValue& source : keys.elements()) result.keys.push_back(read_key(source, result));
+    if (result.keys.empty()) throw keys.error("there are none; expected at least one");
+    return result;
+}
+
+} // namespace pertev

@@ -1,0 +1,30 @@
+#pragma once
+
+// The frames of a moving picture: their numbers, their times, their files.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace pertev {
+
+struct FrameSequence {
+    uint32_t first = 0, last = 0; // both are frames; first <= last
+    std::optional<double> fps;    // frames a second; none: all frames are of one time
+    std::optional<double> time_s; // that time; none: at rest
+    uint32_t turntable = 0;       // frames that the camera takes to go round once; 0: it does not
+
+    uint32_t count() const { return last - first + 1; }
+    /// Frame k of a moving scene is at k / fps seconds.
+    std::optional<double> time_of(uint32_t frame) const { return fps ? std::optional(frame / *fps) : time_s; }
+    /// Share of a turn, in [0, 1).
+    double turn_of(uint32_t frame) const { return turntable == 0 ? 0 : double(frame % turntable) / turntable; }
+};
+
+/// Whether `pattern` names a file for each frame: it has a '#'.
+bool names_frames(const std::string& pattern);
+/// The file of a frame: its number in place of each run of '#', with zeros before it up to the run's length. All '#'
+/// stand in the file's name, not in its folder's.
+std::string frame_file(const std::string& pattern, uint32_t frame);
+
+} // namespace pertev

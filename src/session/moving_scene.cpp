@@ -1,0 +1,33 @@
+#include "session/moving_scene.h"
+
+#include <utility>
+
+#include "render/place_meshes.h"
+#include "render/scene_on_device.h"
+
+namespace pertev {
+
+MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages)
+    : posed_(std::move(rest)), time_s_(time_s), options_(std::move(options)) {
+    options_.centre = world_centre(posed_.scene());
+    if (time_s) posed_.set_time(*time_s);
+    prepared_ = prepare_scene(posed_.scene(), options_, messages);
+}
+
+uint32_t MovingScene::set_time(double time_s, Messages& messages) {
+    const bool was_behind = std::exchange(is_behind_, true);
+    const SceneUpdate update = posed_.set_time(time_s);
+    uint32_t parts = 0;
+    if (was_behind) {
+        prepared_ = prepare_scene(posed_.scene(), options_, messages);
+        parts = kAllParts;
+    } else if (!update.is_empty()) {
+        prepared_ = update_scene(prepared_, posed_.scene(), update, messages);
+        parts = parts_of(update);
+    }
+    is_behind_ = false;
+    time_s_ = time_s;
+    return parts;
+}
+
+} // namespace pertev

@@ -1,0 +1,204 @@
+"""Moving pictures: times, frames, a camera's path, a turntable; and sequences that are interrupted and go on."""
+
+import base64
+import json
+import os
+import signal
+import struct
+import subprocess
+import time
+
+from cli_run import PROGRAM, CliTest, main, write
+
+TINY = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--exposure", "0"]
+
+
+def moving_gltf():
+    """A triangle that goes along x by 1 m/s for 2 s and a camera that goes along with another node; a lamp."""
+    numbers = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0)  # 0: positions
+    numbers += struct.pack("<2f", 0, 2)  # 36: times
+    numbers += struct.pack("<6f", 0, 0, 0, 2, 0, 0)  # 44: translations
+    numbers += struct.pack("<6f", 0, 0, 4, 0, 1, 4)  # 68: of the camera
+    views = [(0, 36), (36, 8), (44, 24), (68, 24)]
+    uri = "data:application/octet-stream;base64," + base64.b64encode(numbers).decode()
+    return json.dumps({
+        "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3}]}},
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4]},
+                  {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "animations": [{"name": "slide", "samplers": [{"input": 1, "output": 2}, {"input": 1, "output": 3}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}},
+                                     {"sampler": 1, "target": {"node": 1, "path": "translation"}}]}],
+        "accessors": [{"bufferView": view, "componentType": 5126, "count": count, "type": kind, **limits}
+                      for view, (count, kind, limits) in enumerate([
+                          (3, "VEC3", {"min": [-1, -1, 0], "max": [1, 1, 0]}), (2, "SCALAR", {"min": [0], "max": [2]}),
+                          (2, "VEC3", {}), (2, "VEC3", {})])],
+        "bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size in views],
+        "buffers": [{"byteLength": len(numbers), "uri": uri}]})
+
+
+class MovingPictures(CliTest):
+    def setUp(self):
+        super().setUp()
+        write(self.path("m.gltf"), moving_gltf())
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def hash_at(self, *arguments, scene="m.gltf"):
+        return self.succeed("render", scene, "-o", "one.png", *TINY, "--json", *arguments).events("done")[0]["hash"]
+
+    def frames(self, *arguments, scene="m.gltf", output="f-###.png"):
+        return self.succeed("render", scene, "-o", output, *TINY, "--json", *arguments)
+
+    def test_a_time_moves_the_scene_and_its_camera(self):
+        self.assertEqual(self.hash_at("--time", "0"), self.hash_at())  # it rests as it begins
+        self.assertNotEqual(self.hash_at("--time", "1"), self.hash_at())
+        self.assertEqual(self.hash_at("--time", "2"), self.hash_at("--time", "1000"))
+        self.assertEqual(self.hash_at("--time=-1"), self.hash_at("--time", "0"))
+        self.succeed("render", "m.gltf", "-o", "x.exr", "--size", "8x8", "--spp", "1", "--device", "cpu", "--time", "1")
+        info = self.info("x.exr")
+        self.assertEqual(info["pertev.time"], 1)
+        self.assertEqual(info["pertev.eye"], "0,0.5,4")
+
+    def test_what_moves_is_said_where_it_is_not_shown_and_the_other_way_round(self):
+        said = self.succeed("render", "m.gltf", "-o", "x.png", *TINY)
+        self.assertIn("--time S shows it at a time of its 1 animation (0 to 2 s)", said.stderr)
+        said = self.succeed("render", "cornell-box", "-o", "x.png", *TINY, "--time", "1")
+        self.assertIn("--time: nothing moves in this scene", said.stderr)
+        self.assertEqual(self.info("m.gltf")["animations"], ["slide (2 s)"])
+
+    def test_each_frame_is_the_picture_at_its_time(self):
+        said = self.frames("--frames", "9-12", "--fps", "10")
+        self.assertEqual(self.files(), ["f-###.json", "f-009.png", "f-010.png", "f-011.png", "f-012.png", "m.gltf"])
+        frames = said.events("frame")
+        self.assertEqual([event["frame"] for event in frames], [9, 10, 11, 12])
+        for event in frames:
+            self.assertEqual(event["time"], event["frame"] / 10)
+            self.assertEqual(event["hash"], self.hash_at("--time", repr(event["time"])))
+            self.assertEqual(self.read(f"f-{event['frame']:03}.png"), self.read("one.png"))
+        self.assertEqual(len({event["hash"] for event in frames}), 4)
+        end = said.events("sequence")[0]
+        self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (4, 4, 0, False))
+
+    def test_all_frames_are_exposed_as_the_first(self):
+        said = self.succeed("render", "m.gltf", "-o", "f-#.png", "--size", "24x16", "--spp", "2", "--device", "cpu",
+                            "--json", "--frames", "0-2", "--fps", "1")
+        self.assertEqual(len(said.events("exposure")), 1)
+        stops = said.events("exposure")[0]["stops"]
+        self.succeed("render", "m.gltf", "-o", "one.png", "--size", "24x16", "--spp", "2", "--device", "cpu", "--time",
+                     "2", "--exposure", stops)
+        self.assertEqual(self.read("one.png"), self.read("f-2.png"))
+
+    def test_what_is_whole_is_kept_and_the_rest_rendered_again(self):
+        self.frames("--frames", "0-3", "--fps", "2")
+        files = ["f-000.png", "f-001.png", "f-002.png", "f-003.png"]
+        whole = [self.read(name) for name in files]
+        os.remove(self.path("f-000.png"))
+        with open(self.path("f-002.png"), "r+b") as file:
+            file.truncate(60)
+        kept = os.stat(self.path("f-001.png")).st_mtime_ns
+        end = self.frames("--frames", "0-4", "--fps", "2", "--continue").events("sequence")[0]
+        self.assertEqual((end["frames"], end["written"], end["kept"]), (5, 3, 2))
+        self.assertEqual([self.read(name) for name in files], whole)
+        self.assertEqual(os.stat(self.path("f-001.png")).st_mtime_ns, kept)
+        self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "3", "--continue",
+                    says=["f-###.json: /settings", "--fps"])
+        self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--seed", "1",
+                    "--continue", says=["pertev.seed"])
+        write(self.path("m.gltf"), moving_gltf() + " ")
+        self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
+                    says=["hash of the scene's file"])
+        write(self.path("f-###.json"), "{")
+        self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
+                    says=["f-###.json: not valid JSON"])
+
+    def test_ctrl_c_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
+        arguments = ["render", "m.gltf", "-o", "f-##.png", "--size", "64x64", "--spp", "64", "--device", "cpu",
+                     "--exposure", "0", "--frames", "0-39", "--fps", "20"]
+        program = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, env=self.environment,
+                                   stdin=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        while program.poll() is None and not os.path.exists(self.path("f-02.png")):
+            time.sleep(0.01)
+        program.send_signal(signal.SIGINT)
+        said = program.communicate(timeout=300)[1].decode()
+        self.assertEqual(program.returncode, 75, said)
+        self.assertIn("interrupted: the same command with --continue goes on", said)
+        there = [name for name in self.files() if name.endswith(".png")]
+        self.assertEqual(there, [f"f-{k:02}.png" for k in range(len(there))])
+        self.assertLess(len(there), 40)
+        before = {name: self.read(name) for name in there}
+        end = self.succeed(*arguments, "--continue", "--json").events("sequence")[0]
+        self.assertEqual(end["kept"], len(there))
+        self.assertEqual({name: self.read(name) for name in there}, before)
+        os.mkdir(self.path("anew"))
+        arguments[3] = "anew/f-##.png"
+        self.succeed(*arguments)
+        for k in range(40):
+            self.assertEqual(self.read(f"f-{k:02}.png"), self.read(f"anew/f-{k:02}.png"), k)
+
+    def test_a_path_leads_the_camera_through_its_keys(self):
+        keys = [{"time": 0, "eye": [0, 0, 5], "target": [0, 0, 0], "fov": 50},
+                {"time": 1, "eye": [3, 0, 4], "target": [0, 1, 0], "fov": 40},
+                {"time": 3, "eye": [0, 2, 6], "target": [0, 0, 0], "up": [0.1, 1, 0], "fov": 60}]
+        write(self.path("path.json"), json.dumps({"keys": keys}))
+        at_1 = self.hash_at("--camera-path", "path.json", "--time", "1")
+        self.assertEqual(at_1, self.hash_at("--eye", "3,0,4", "--target", "0,1,0", "--up", "0,1,0", "--fov", "40",
+                                            "--time", "1"))
+        self.assertEqual(self.hash_at("--camera-path", "path.json"),
+                         self.hash_at("--eye", "0,0,5", "--target", "0,0,0", "--up", "0,1,0", "--fov", "50"))
+        frames = self.frames("--camera-path", "path.json", "--frames", "0-3", "--fps", "1").events("frame")
+        self.assertEqual(frames[1]["hash"], at_1)
+        self.assertEqual(len({event["hash"] for event in frames}), 4)
+        # What an EXR tells of a frame between keys gives the frame again.
+        self.succeed("render", "m.gltf", "-o", "e-#.exr", "--size", "24x16", "--spp", "2", "--device", "cpu",
+                     "--camera-path", "path.json", "--frames", "2-2", "--fps", "1")
+        told = self.info("e-2.exr")
+        words = [word for name in ["eye", "target", "up", "fov", "time"]
+                 for word in [f"--{name}={told['pertev.' + name]}"]]
+        self.assertEqual(self.hash_at(*words), frames[2]["hash"])
+
+    def test_a_path_that_is_wrong_says_where(self):
+        def refuse(text, *says):
+            write(self.path("path.json"), text)
+            self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, "--camera-path", "path.json",
+                        says=["path.json", *says])
+
+        key = '{"time":0,"eye":[0,0,1],"target":[0,0,0]}'
+        refuse("{", "not valid JSON")
+        refuse("{}", "keys")
+        refuse('{"keys":[]}', "/keys: there are none")
+        refuse('{"keys":[{"time":0,"eye":[0,0],"target":[0,0,0]}]}', "/keys/0/eye")
+        refuse('{"keys":[{"time":-1,"eye":[0,0,1],"target":[0,0,0]}]}', "/keys/0/time: -1")
+        refuse(f'{{"keys":[{key},{key}]}}', "/keys/1/time: 0; expected more than 0")
+        refuse('{"keys":[{"time":0,"eye":[0,0,1],"target":[0,0,1]}]}', "/keys/0: the target must differ")
+        refuse('{"keys":[{"time":0,"eye":[0,0,1],"target":[0,0,0],"fov":180}]}', "/keys/0/fov: 180")
+        refuse(f'{{"keys":[{key},{{"time":1,"eye":[0,0,1],"target":[0,0,0],"fov":50}}]}}', "/keys/1", "in all or in none")
+        self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, "--camera-path", "no.json", says=["no.json"])
+
+    def test_a_turntable_goes_round_once(self):
+        frames = self.frames("--turntable", "3", scene="cornell-box").events("frame")
+        self.assertEqual([event["frame"] for event in frames], [0, 1, 2])
+        self.assertEqual([event["time"] for event in frames], [None] * 3)
+        self.assertEqual(frames[0]["hash"], self.hash_at(scene="cornell-box"))
+        slow = self.frames("--turntable", "24", "--frames", "0-24", scene="cornell-box").events("frame")
+        self.assertEqual(slow[24]["hash"], slow[0]["hash"])
+        self.assertNotEqual(slow[1]["hash"], slow[0]["hash"])
+        self.assertEqual(slow[8]["hash"], frames[1]["hash"])
+
+    def test_what_does_not_fit_is_refused(self):
+        for line, flag in [("--frames 3-2", "--frames 3-2"), ("--frames x", "--frames x"), ("--fps 3", "--fps"),
+                           ("--continue", "--continue"), ("--frames 0-1 --time 1", "--time"),
+                           ("--frames 0-1 --time-limit 1", "--time-limit"),
+                           ("--camera-path p --turntable 2", "--turntable"), ("--camera-path p --eye 0,0,1", "--eye")]:
+            with self.subTest(line=line):
+                self.refuse(2, "render", "m.gltf", "-o", "f-#.png", *TINY, *line.split(), says=[flag])
+        self.refuse(2, "render", "m.gltf", "-o", "f.png", *TINY, "--frames", "0-1", says=["-o frame-####.png"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,29 @@
+// The numbers, times and files of frames.
+
+#include "session/frame_sequence.h"
+
+#include <doctest/doctest.h>
+
+using namespace pertev;
+
+TEST_CASE("each run of # in a file's name is the frame's number") {
+    CHECK(frame_file("frame-####.png", 7) == "frame-0007.png");
+    CHECK(frame_file("frame-##.png", 12345) == "frame-12345.png");
+    CHECK(frame_file("a#b/c#d##.exr", 3) == "a#b/c3d03.exr");
+    CHECK(frame_file("###", 1) == "001");
+    CHECK(names_frames("x#.png"));
+    CHECK(!names_frames("x#/y.png"));
+    CHECK(!names_frames("x.png"));
+}
+
+TEST_CASE("frame k is at k / fps, and a turn ends where it began") {
+    const FrameSequence moving = {.first = 3, .last = 5, .fps = 24.0};
+    CHECK(moving.count() == 3);
+    CHECK(moving.time_of(3) == 3 / 24.0);
+    CHECK(moving.turn_of(4) == 0);
+    const FrameSequence turning = {.last = 7, .time_s = 1.5, .turntable = 8};
+    CHECK(turning.time_of(6) == 1.5);
+    CHECK(turning.turn_of(2) == 0.25);
+    CHECK(turning.turn_of(8) == 0);
+    CHECK(!FrameSequence{}.time_of(9));
+}
