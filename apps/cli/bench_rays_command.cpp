@@ -1,5 +1,6 @@
 // pertev bench rays: how many rays a second the walk of pictures traces, on sets of rays that other tracers can be
-// timed on (docs/ray_sets.md). What the record says of the same sets stands beside.
+// timed on (docs/ray_sets.md). What the record says of the same sets stands beside. On a CPU the same tree is walked
+// with one ray after the other, where pictures go by packets and flights of rays (trace/wide/trace_many.h).
 
 #include <algorithm>
 #include <memory>

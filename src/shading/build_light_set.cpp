@@ -64,12 +64,14 @@ double punctual_power(const PunctualLight& light, double radius) {
     return 0;
 }
 
+bool is_light(const Material& material) { return material.is_lamp(); }
+
 void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
     uint64_t count = 0;
     data.first_light.assign(scene.instances.size(), kNoLight);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (instance.is_hidden || !scene.materials[instance.material].is_lamp()) continue;
+        if (instance.is_hidden || !is_light(scene.materials[instance.material])) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
         const uint64_t triangles = scene.meshes[instance.mesh].triangle_count();
         data.emitters.push_back(
@@ -240,7 +242,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
                              std::shared_ptr<const EnvironmentData> environment) {
     LightSetData data;
     for (const Material& material : scene.materials) {
-        data.emissions.push_back({material.is_lamp() ? material.emission : Rgb{}, material.emission_texture});
+        data.emissions.push_back({is_light(material) ? material.emission : Rgb{}, material.emission_texture});
     }
     add_triangles(scene, centre, data);
     for (const Light& light : scene.lights) {
@@ -302,7 +304,7 @@ void share_draws(LightSetData& data, double far_share) {
 uint64_t count_emissive_triangles(const Scene& scene) {
     uint64_t count = 0;
     for (const Instance& instance : scene.instances) {
-        if (!instance.is_hidden && scene.materials[instance.material].is_lamp())
+        if (!instance.is_hidden && is_light(scene.materials[instance.material]))
             count += scene.meshes[instance.mesh].triangle_count();
     }
     return count;
