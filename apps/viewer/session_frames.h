@@ -29,6 +29,14 @@ private:
     Session& session_;
     FramePace pace_;
     std::atomic<bool> abandon_{false};
+    /// The hash of the film as it is; the one before where that is the same film.
+    const std::string& film_hash();
+    struct Hashed {
+        std::string hash;
+        Camera camera;
+        uint64_t cuts = 0;
+        uint32_t samples = 0;
+    } hashed_;
     double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known
 };
 
