@@ -18,6 +18,7 @@
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
+#include "image/write_jpeg.h"
 
 extern char** environ;
 
@@ -105,6 +106,7 @@ int view(const ViewFlags& flags) {
     check_host(flags.host);
     check_shown_picture_flags(flags.render);
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
+    check_jpeg_size("--size", ready->settings.width, ready->settings.height); // that is how pictures are sent
     reporter.say_messages();
     listen_for_interrupt();
     reporter.set_work("metering");

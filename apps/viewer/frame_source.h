@@ -55,9 +55,8 @@ class FrameSource {
 public:
     virtual ~FrameSource() = default;
 
-    /// The next picture: at rest more samples gather in the one before. Nothing where `abandon` broke it off, which is for
-    /// pictures at rest alone: the movement's are short. Throws
-    /// Error(OutOfMemory, OverLimit, DeviceFault).
+    /// The next picture: at rest more samples gather in the one before. Nothing where `abandon` broke it off, which is
+    /// for pictures at rest alone: the movement's are short. Throws Error(OutOfMemory, OverLimit, DeviceFault).
     virtual std::optional<ShownFrame> next(const FrameRequest& request) = 0;
     /// While it is true, the picture at rest that is under way is not wanted any more.
     virtual std::atomic<bool>& abandon() = 0;

@@ -1,7 +1,10 @@
 #include "apps/viewer/packer.h"
 
 #include <algorithm>
+#include <chrono>
+#include <exception>
 
+#include "apps/viewer/panel_text.h"
 #include "base/stopwatch.h"
 #include "image/write_jpeg.h"
 #include "image/write_png.h"
@@ -54,7 +57,12 @@ void Packer::run() {
         if (job->picture == nullptr) {
             server_.send_text(job->client, job->text);
         } else {
-            send_picture(*job);
+            try {
+                send_picture(*job);
+            } catch (const std::exception& error) { // above all no memory: the next one may fit again
+                audience_.tell(0, notice_text("error", error.what()));
+                std::this_thread::sleep_for(std::chrono::seconds(1));
+            }
         }
     }
 }

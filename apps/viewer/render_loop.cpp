@@ -69,6 +69,7 @@ void RenderLoop::run(const std::function<bool()>& goes_on) {
 }
 
 void RenderLoop::handle(const Command& command) {
+    is_new_ = true;
     if (const Steer* asked = std::get_if<Steer>(&command)) return steer(*asked);
     if (const Save* save = std::get_if<Save>(&command)) return saves_.push_back(*save);
     is_done_ = false; // somebody came: shows the present picture again
@@ -181,6 +182,10 @@ void RenderLoop::set(const Steer& asked) {
 
 void RenderLoop::show_next() {
     const FrameRequest wanted = request();
+    if (wanted.is_moving && !is_new_ && last_ && last_->samples >= view_.picture.samples) { // nothing new to be seen
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return;
+    }
     std::optional<ShownFrame> frame;
     try {
         frame = source_.next(wanted);
@@ -192,6 +197,7 @@ void RenderLoop::show_next() {
         return tell_state();
     }
     if (!frame) return;
+    is_new_ = false;
     shown_ = view_;
     const double now = now_s_();
     const double since = now - std::exchange(framed_at_s_, now);
@@ -200,9 +206,6 @@ void RenderLoop::show_next() {
     // A small picture has all its samples: nothing is left to do unless it is to become a large one.
     const bool rests_small = !wanted.is_moving && wanted.view.is_real_time && frame->samples >= view_.picture.samples;
     is_done_ = (frame->is_final || rests_small) && !is_moving();
-    if (wanted.is_moving && frame->samples >= view_.picture.samples) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
     last_ = *frame;
     last_->image.pixels.clear();
     audience_.publish(*std::move(frame), input_);

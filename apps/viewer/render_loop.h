@@ -53,6 +53,7 @@ private:
     double moved_at_s_ = -1e9, told_at_s_ = -1e9, framed_at_s_ = -1e9;
     double frames_per_second_ = 0;
     double budget_s_ = 0.1;          // of the next picture at rest
+    bool is_new_ = true;             // something was asked for since the last picture
     bool is_done_ = false;           // nothing is left to be rendered for this state
     std::optional<ShownFrame> last_; // without its pixels, but for their number
     std::vector<Save> saves_;

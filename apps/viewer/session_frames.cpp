@@ -66,6 +66,7 @@ void SessionFrames::use(const RenderSettings& settings) {
     const RenderSettings before = session_.settings();
     try {
         session_.set_settings(settings);
+        if (settings.tracers != before.tracers) session_.cut(); // the picture stays, but its rays are to be seen at work
     } catch (const Error&) {
         RenderSettings as_before = settings;
         as_before.tracers = before.tracers;
@@ -137,6 +138,16 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     return frame;
 }
 
+const std::string& SessionFrames::film_hash() {
+    const History& now = session_.history();
+    const bool is_known = !hashed_.hash.empty() && hashed_.cuts == now.cuts && hashed_.samples == now.samples &&
+                          hashed_.camera == session_.camera();
+    if (!is_known) {
+        hashed_ = {picture_hash(session_.picture()).hex(), session_.camera(), now.cuts, now.samples};
+    }
+    return hashed_.hash;
+}
+
 std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
@@ -179,7 +190,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     frame.stages = {{"render", 1e3 * frame.render_s}, {"tone map", 1e3 * display_s}};
     if (frame.is_reference) {
         const Stopwatch hash;
-        frame.hash = picture_hash(session_.picture()).hex();
+        frame.hash = film_hash();
         frame.stages.emplace_back("hash", 1e3 * hash.seconds());
     }
     if (is_small && !was_begun) pace_.took(scale, whole.seconds());

@@ -33,6 +33,14 @@ private:
     uint32_t next_sample_ = 0;  // of the frames in real time
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
     bool shows_reconstruction_ = false;
+    /// The hash of the film as it is; the one before where that is the same film.
+    const std::string& film_hash();
+    struct Hashed {
+        std::string hash;
+        Camera camera;
+        uint64_t cuts = 0;
+        uint32_t samples = 0;
+    } hashed_;
     double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known
 };
 

@@ -107,7 +107,7 @@ public:
         stream_.read_message_max(server_.limits.message_bytes);
         stream_.auto_fragment(false);
         stream_.async_accept(request, [self = shared_from_this()](error_code fault) {
-            if (fault) return;
+            if (fault) return self->leave();
             self->is_open_ = true;
             if (!self->server_.events.opened(self->client_)) {
                 self->is_counted_ = false;

@@ -387,6 +387,7 @@ class Ends(CliTest):
             self.refuse(2, "view", "cornell-box", "--host", host, says=["--host", "browsers"])
         self.refuse(2, "view", "cornell-box", "--port", "70000", says=["--port"])
         self.refuse(2, "view", "nowhere.obj", says=["nowhere.obj"])
+        self.refuse(3, "view", "cornell-box", "--size", "65501x1", "--device", "cpu", says=["--size"])
         self.refuse(2, "view", "cornell-box", "-o", "x.png", says=["-o"])
 
     def test_another_host_is_told_what_that_means(self):
