@@ -76,13 +76,14 @@ PartArrays list_textures(const Scene& scene, std::vector<TextureImageView>& imag
     return arrays;
 }
 
+void add_table(const OrderedTable& table, PartArrays& arrays, OrderedTableView& view) {
+    arrays.add(table.starts, view.starts);
+    arrays.add(table.guide, view.guide);
+}
+
 PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
     PartArrays arrays;
-    const auto add_table = [&](const OrderedTable& table, OrderedTableView& table_view) {
-        arrays.add(table.starts, table_view.starts);
-        arrays.add(table.guide, table_view.guide);
-    };
-    add_table(lights.choice, view.choice);
+    add_table(lights.choice, arrays, view.choice);
     arrays.add(lights.emitters, view.emitters);
     arrays.add(lights.triangle_order, view.triangle_order);
     arrays.add(lights.triangle_starts, view.triangle_starts);
@@ -91,11 +92,17 @@ PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
     arrays.add(lights.punctual, view.punctual);
     arrays.add(lights.first_light, view.first_light);
     arrays.add(lights.emissions, view.emissions);
-    if (!lights.has_environment) return arrays;
-    arrays.add(lights.environment.pixels, view.environment.pixels);
-    arrays.add(lights.environment.row_bounds, view.environment.row_bounds);
-    add_table(lights.environment.rows, view.environment.rows);
-    add_table(lights.environment.columns, view.environment.columns);
+    return arrays;
+}
+
+PartArrays list_panorama(const LightSetData& lights, EnvironmentView& view) {
+    PartArrays arrays;
+    if (lights.environment == nullptr) return arrays;
+    const EnvironmentData& environment = *lights.environment;
+    arrays.add(environment.pixels, view.pixels);
+    arrays.add(environment.row_bounds, view.row_bounds);
+    add_table(environment.rows, arrays, view.rows);
+    add_table(environment.columns, arrays, view.columns);
     return arrays;
 }
 
@@ -109,6 +116,7 @@ void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it looks at
+    if ((parts & kPartPanorama) != 0) update_panorama(queue, prepared);
 }
 
 void SceneOnDevice::update_geometry(Queue& queue, const Scene& scene) {
@@ -134,8 +142,17 @@ void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {
 }
 
 void SceneOnDevice::update_lights(Queue& queue, const PreparedScene& prepared) {
+    const EnvironmentView panorama = view_.lights.environment;
     view_.lights = view_of(prepared.lights, view_.images, view_.linear_from_srgb);
+    view_.lights.environment = panorama;
     list_lights(prepared.lights, view_.lights).upload(queue, lights_, "lights");
+}
+
+void SceneOnDevice::update_panorama(Queue& queue, const PreparedScene& prepared) {
+    EnvironmentView& view = view_.lights.environment;
+    view = {};
+    if (prepared.lights.environment != nullptr) view = view_of(*prepared.lights.environment);
+    list_panorama(prepared.lights, view).upload(queue, panorama_, "panorama");
 }
 
 std::size_t predicted_bytes(const PreparedScene& prepared) {
@@ -147,7 +164,8 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
     std::vector<TextureImageView> images;
     return list_geometry(scene, meshes, view).bytes() + list_instances(prepared, instances, view).bytes() +
            list_materials(scene, materials, view).bytes() + list_textures(scene, images, view).bytes() +
-           list_lights(prepared.lights, view.lights).bytes();
+           list_lights(prepared.lights, view.lights).bytes() +
+           list_panorama(prepared.lights, view.lights.environment).bytes();
 }
 
 } // namespace pertev

@@ -17,9 +17,10 @@ enum ScenePart : uint32_t {
                         // their backs
     kPartMaterials = 4, // all else of materials; what they emit is in the lights too
     kPartTextures = 8,  // images
-    kPartLights = 16,   // near and far ones
+    kPartLights = 16,   // near and far ones, but for what lies in a panorama
     kPartTrees = 32,    // not here: a tracer's (render/tracer/)
-    kAllParts = 63,
+    kPartPanorama = 64, // the pixels of the environment, and the tables that draw them
+    kAllParts = 127,
 };
 
 /// Every update copies: what it is given may go away afterwards. The view, and each copy of it, is void after an
@@ -40,13 +41,16 @@ public:
     void update_instances(Queue& queue, const PreparedScene& prepared);
     /// All else of materials. What they emit is in the lights too.
     void update_materials(Queue& queue, const Scene& scene);
+    /// The environment stays the same one.
     void update_lights(Queue& queue, const PreparedScene& prepared);
+    /// After update_lights, where both have changed.
+    void update_panorama(Queue& queue, const PreparedScene& prepared);
     /// Images.
     void update_textures(Queue& queue, const Scene& scene);
 
 private:
     SceneView view_{};
-    Buffer<std::byte> geometry_, instances_, materials_, lights_, textures_;
+    Buffer<std::byte> geometry_, instances_, materials_, lights_, panorama_, textures_;
 };
 
 /// Bytes that SceneOnDevice asks for.

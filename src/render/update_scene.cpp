@@ -66,7 +66,7 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     after.structures = before.structures->updated(after.trees, after.top_level, changes, triangles);
     after.triangles = after.trees.triangle_count();
     after.build_seconds = watch.seconds();
-    after.lights = build_light_set(scene, srgb_decode_table().data(), messages, after.centre);
+    after.lights = build_light_set(scene, srgb_decode_table().data(), messages, after.centre, &before.lights);
     balance_lights(after, srgb_decode_table().data());
     return after;
 }

@@ -20,19 +20,22 @@ double mean_of_channels(Rgb c) {
     return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3.0;
 }
 
-/// Pyramids of the textures that lights of the scene emit by, each (image, encoding) once.
-using Pyramids = std::map<std::pair<int32_t, bool>, BrightnessPyramid>;
+using Pyramids = decltype(LightSetData::pyramids);
 
 Pyramids build_pyramids(const LightSetData& data, const std::vector<TextureImageView>& images,
-                        const float* linear_from_srgb) {
+                        const float* linear_from_srgb, const Pyramids* before) {
     Pyramids pyramids;
     for (const SurfaceEmission& surface : data.emissions) {
         const TextureRef& ref = surface.texture;
         if (ref.image == kNoImage || is_black(surface.emission)) continue;
         const auto key = std::pair(ref.image, ref.is_srgb);
         if (pyramids.contains(key)) continue;
+        if (before != nullptr && before->contains(key)) {
+            pyramids.emplace(key, before->at(key));
+            continue;
+        }
         const TextureImageView& image = images[static_cast<std::size_t>(ref.image)];
-        pyramids.try_emplace(key, image, ref.is_srgb, linear_from_srgb);
+        pyramids.emplace(key, std::make_shared<const BrightnessPyramid>(image, ref.is_srgb, linear_from_srgb));
     }
     return pyramids;
 }
@@ -46,7 +49,7 @@ double triangle_power(const LightSetData& data, const Pyramids& pyramids, const 
     const double untextured = faces * kPiDouble * area * mean_of_channels(surface.emission);
     const TextureRef& ref = surface.texture;
     if (ref.image == kNoImage) return untextured;
-    const BrightnessPyramid& pyramid = pyramids.at({ref.image, ref.is_srgb});
+    const BrightnessPyramid& pyramid = *pyramids.at({ref.image, ref.is_srgb});
     return untextured * pyramid.mean_over_triangle(ref, triangle.uv0, triangle.uv1, triangle.uv2);
 }
 
@@ -238,7 +241,8 @@ void store_probabilities(LightSetData& data) {
 
 } // namespace
 
-LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages, Vec3 centre) {
+LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages, Vec3 centre,
+                             const LightSetData* before) {
     LightSetData data;
     for (const Material& material : scene.materials) {
         data.emissions.push_back({is_light(material) ? material.emission : Rgb{}, material.emission_texture});
@@ -248,17 +252,21 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
         data.punctual.push_back({light.kind, light.position - centre, light.direction, light.intensity, light.cos_inner,
                                  light.cos_outer, light.range});
     }
-    data.has_environment = scene.environment.has_value();
-    if (data.has_environment) data.environment = build_environment_light(*scene.environment, messages);
+    if (before != nullptr) {
+        data.environment = before->environment;
+    } else if (scene.environment) {
+        data.environment =
+            std::make_shared<const EnvironmentData>(build_environment_light(*scene.environment, messages));
+    }
 
     const Bounds3 bounds = bounds_of(scene);
     const double radius = bounds.is_empty() ? 1.0 : 0.5 * static_cast<double>(length(bounds.size()));
     const std::vector<TextureImageView> images = views_of_images(scene);
-    const Pyramids pyramids = build_pyramids(data, images, linear_from_srgb);
+    data.pyramids = build_pyramids(data, images, linear_from_srgb, before == nullptr ? nullptr : &before->pyramids);
 
     order_emitters(data);
     order_punctual_lights(data);
-    data.source_powers = build_triangle_tables(data, pyramids);
+    data.source_powers = build_triangle_tables(data, data.pyramids);
     const auto add_source = [&](double power, bool is_far) {
         data.source_powers.push_back(power);
         if (!is_far) data.near_count = static_cast<uint32_t>(data.source_powers.size());
@@ -267,8 +275,8 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     for (const PunctualLight& light : data.punctual) {
         add_source(punctual_power(light, radius), light.kind == LightKind::Directional);
     }
-    if (data.has_environment) {
-        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment.mean_radiance),
+    if (data.environment != nullptr) {
+        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment->mean_radiance),
                    true);
     }
     share_draws(data, kEvenShare);
@@ -316,12 +324,12 @@ LightSetView view_of(const LightSetData& data, const TextureImageView* images, c
     view.emitter_count = static_cast<uint32_t>(data.emitters.size());
     view.triangle_count = static_cast<uint32_t>(data.triangles.size());
     view.punctual_count = static_cast<uint32_t>(data.punctual.size());
-    if (data.has_environment) view.environment_source = view.emitter_count + view.punctual_count;
+    if (data.environment != nullptr) view.environment_source = view.emitter_count + view.punctual_count;
     view.first_light = data.first_light.data();
     view.emissions = data.emissions.data();
     view.images = images;
     view.linear_from_srgb = linear_from_srgb;
-    view.environment = view_of(data.environment);
+    if (data.environment != nullptr) view.environment = view_of(*data.environment);
     return view;
 }
 

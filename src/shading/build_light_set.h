@@ -7,6 +7,9 @@
 // said apart (render/balance_lights.h).
 
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/messages.h"
@@ -14,6 +17,8 @@
 #include "shading/light_set.h"
 
 namespace pertev {
+
+class BrightnessPyramid;
 
 struct LightSetData {
     OrderedTable choice; // over sources; empty: nothing gives light
@@ -23,15 +28,16 @@ struct LightSetData {
     std::vector<PunctualLight> punctual;
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
-    EnvironmentData environment; // meaningful where has_environment
-    bool has_environment = false;
+    std::shared_ptr<const EnvironmentData> environment; // null: there is none
+    /// Of the textures that lights emit by, each (image, encoding) once.
+    std::map<std::pair<int32_t, bool>, std::shared_ptr<const BrightnessPyramid>> pyramids;
     std::vector<double> source_powers; // W; emitters, point and spot lights, then the far ones
     uint32_t near_count = 0;           // of the sources
 
     /// Light from near and from far, some of each.
     bool has_both_kinds() const;
     std::size_t count() const {
-        return choice.starts.empty() ? 0 : triangles.size() + punctual.size() + (has_environment ? 1 : 0);
+        return choice.starts.empty() ? 0 : triangles.size() + punctual.size() + (environment != nullptr ? 1 : 0);
     }
 };
 
@@ -39,9 +45,10 @@ struct LightSetData {
 inline constexpr double kEvenShare = 0.5;
 
 /// `scene` has passed validate(). `linear_from_srgb` [256]. `centre`: the origin of the world that the lights are
-/// placed in, in the scene's coordinates. Throws Error(OverLimit) for more than kMaxLights.
+/// placed in, in the scene's coordinates. `before`: the lights of this scene before something in it moved: what is made
+/// of images is taken from there. Throws Error(OverLimit) for more than kMaxLights.
 LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages,
-                             Vec3 centre = {0, 0, 0});
+                             Vec3 centre = {0, 0, 0}, const LightSetData* before = nullptr);
 
 /// Makes the table that draws a source: by power within near and far ones, `far_share` (0, 1) of the draws for the far
 /// ones where there are both.

@@ -27,14 +27,14 @@ Scene make_area_lit_scene() {
 
 /// Of every channel of every pixel, and last of the whole picture: its mean and the variance of that, from independent
 /// renders of independent samples.
-struct Estimate {
+struct PartsEstimate {
     std::vector<double> mean, variance_of_mean;
 };
 
 constexpr uint32_t kWidth = 24, kHeight = 16, kPixels = kWidth * kHeight;
 constexpr uint32_t kRenders = 64; // the fewer, the less a variance is known: hence Student's t below
 
-Estimate estimate(LightStrategy strategy, uint32_t first_seed) {
+PartsEstimate estimate(LightStrategy strategy, uint32_t first_seed) {
     RenderSettings settings;
     settings.width = kWidth;
     settings.height = kHeight;
@@ -60,7 +60,7 @@ Estimate estimate(LightStrategy strategy, uint32_t first_seed) {
             square_sum[i] += value * value;
         }
     }
-    Estimate result;
+    PartsEstimate result;
     for (std::size_t i = 0; i < count; ++i) {
         const double mean = sum[i] / kRenders;
         result.mean.push_back(mean);
@@ -83,7 +83,7 @@ double student_p_value(double t, double degrees) {
 }
 
 /// Two-sided p-value of the largest deviation of all, Sidak corrected; of two means by Welch's test.
-double p_value(const Estimate& a, const Estimate& b) {
+double p_value(const PartsEstimate& a, const PartsEstimate& b) {
     double smallest = 1;
     for (std::size_t i = 0; i < a.mean.size(); ++i) {
         const double deviation = std::fabs(a.mean[i] - b.mean[i]);
@@ -97,7 +97,7 @@ double p_value(const Estimate& a, const Estimate& b) {
 }
 
 /// Brighter in those pixels whose means are off by more than `least_error`, as those of the background are not.
-Estimate brightened(Estimate e, double factor, double least_error) {
+PartsEstimate brightened(PartsEstimate e, double factor, double least_error) {
     for (std::size_t i = 0; i < 3 * kPixels; ++i) {
         if (!(std::sqrt(e.variance_of_mean[i]) > least_error * e.mean[i])) continue;
         e.mean[3 * kPixels + i % 3] += (factor - 1) * e.mean[i] / kPixels;
@@ -132,15 +132,15 @@ TEST_CASE("direct and indirect light add up to the whole picture") {
 }
 
 TEST_CASE("next-event estimation, BSDF sampling and both weighted converge to one picture") {
-    const Estimate mis = estimate(LightStrategy::Mis, 1);
-    const Estimate nee = estimate(LightStrategy::NeeOnly, 100'000);
-    const Estimate bsdf = estimate(LightStrategy::BsdfOnly, 200'000);
+    const PartsEstimate mis = estimate(LightStrategy::Mis, 1);
+    const PartsEstimate nee = estimate(LightStrategy::NeeOnly, 100'000);
+    const PartsEstimate bsdf = estimate(LightStrategy::BsdfOnly, 200'000);
     CHECK(p_value(mis, nee) > 0.001);
     CHECK(p_value(mis, bsdf) > 0.001);
     // The test can see, on a picture 2 % brighter where means are off by 0.2 % or more, and on one 5 % brighter where
     // they are off by 1 % or more, which is what light transport does to most pixels here. (1 % and 2 % it cannot.)
     const double error = static_cast<double>(test::effort(4, 1)) / 4; // sixteen times the samples in the long setting
-    for (const Estimate& brighter : {brightened(mis, 1.02, 2e-3 * error), brightened(mis, 1.05, 1e-2 * error)}) {
+    for (const PartsEstimate& brighter : {brightened(mis, 1.02, 2e-3 * error), brightened(mis, 1.05, 1e-2 * error)}) {
         CHECK(p_value(brighter, nee) < 1e-6);
         CHECK(p_value(brighter, bsdf) < 1e-6);
     }

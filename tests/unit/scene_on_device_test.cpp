@@ -105,6 +105,7 @@ TEST_CASE("a scene that was updated part by part gives the picture of the scene 
     Scene after = before;
     for (Material& material : after.materials) material.base_color = 0.5f * material.base_color;
     for (Light& light : after.lights) light.intensity = 2.0f * light.intensity;
+    after.environment->scale = 0.5f * after.environment->scale;
     for (Instance& instance : after.instances) instance.world_from_local.translation.x += 0.125f;
     for (Mesh& mesh : after.meshes) {
         for (Vec2& uv : mesh.uv[0]) uv = 2.0f * uv;
@@ -134,6 +135,8 @@ TEST_CASE("a scene that was updated part by part gives the picture of the scene 
     changes("geometry");
     scene.update_lights(queue, new_scene);
     changes("lights");
+    scene.update_panorama(queue, new_scene);
+    changes("panorama");
     scene.update_instances(queue, new_scene);
     changes("instances", &new_scene);
     CHECK(last == hash_afresh(new_scene));
