@@ -312,6 +312,22 @@ MUTATIONS = [
     Mutation("highlights burn", [edit("src/image/auto_exposure.cpp", "constexpr double kBurntShare = 0.005;",
                                       "constexpr double kBurntShare = 0.5;")],
              ["unit/auto_exposure"]),
+    Mutation("rotations that go the longer way",
+             [edit("src/scene/sample_channel.cpp", "a.w * b.w < 0 ? -1.0f : 1.0f", "a.w * b.w < 0 ? 1.0f : 1.0f")],
+             ["unit/sample_channel"]),
+    Mutation("tangents of a spline that know nothing of the time between the keys",
+             [edit("src/scene/sample_channel.cpp", "seconds * (t3 - 2 * t2 + t) * out", "(t3 - 2 * t2 + t) * out")],
+             ["unit/sample_channel"]),
+    Mutation("normals that go with a skin as directions do",
+             [edit("src/scene/deform_vertices.h", "return determinant(m) < 0 ? -moved : moved;",
+                   "return determinant(m) == 0 ? moved : transform_vector(m, n);")],
+             ["unit/posed_scene"]),
+    Mutation("a frame with the vertices of the one before",
+             [edit("src/render/update_scene.cpp", "parts |= kPartGeometry;", "parts |= kPartTrees;")],
+             ["consistency/moving_scene", "consistency/update_scene"]),
+    Mutation("what is hidden gives light",
+             [edit("src/shading/build_light_set.cpp", "if (instance.is_hidden || !is_light(", "if (!is_light(")],
+             ["consistency/moving_scene"]),
 ]
 
 

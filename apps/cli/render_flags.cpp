@@ -78,7 +78,7 @@ void add_motion_flags(CLI::App& verb, RenderFlags& flags) {
         ->check(whole_between(1, kMostFrames))
         ->group(group);
     verb.add_flag("--continue", flags.goes_on,
-                  "of a sequence that was interrupted: keep the frames that are there whole")
+                  "of a sequence that was interrupted: keep the frames that are\nthere whole")
         ->group(group);
 }
 

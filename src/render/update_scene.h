@@ -2,7 +2,7 @@
 
 // A prepared scene after a frame's change: what did not change is shared with the scene before, trees above all. The
 // world's centre stays, as it follows no motion. The picture is, to the bit, that of the changed scene prepared afresh
-// with this centre.
+// with this centre. The environment and all images stay too.
 
 #include <cstdint>
 

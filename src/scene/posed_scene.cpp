@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,6 +28,23 @@ std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
     return numbers;
 }
 
+/// Zeros of two signs are two, as what is computed from them may be.
+template <class T>
+bool same_bits(const T* a, const T* b, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return count == 0 || std::memcmp(a, b, count * sizeof(T)) == 0;
+}
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && same_bits(a.data(), b.data(), a.size());
+}
+
+template <class T>
+bool same_bits(const T& a, const T& b) {
+    return same_bits(&a, &b, 1);
+}
+
 } // namespace
 
 PosedScene::PosedScene(Scene rest)
@@ -40,9 +59,19 @@ PosedScene::PosedScene(Scene rest)
     }
     for (const Camera& camera : scene_.cameras) fovs_.push_back(camera.fov_y);
     for (const Light& light : scene_.lights) intensities_.push_back(light.intensity);
+    drop_shapes_at_rest();
     for (const MeshShape& shape : scene_.shapes) applied_.push_back(wanted(shape));
     if (!is_animated()) return;
     for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
+}
+
+/// Those of meshes that no animation changes: they have done what they are for.
+void PosedScene::drop_shapes_at_rest() {
+    std::vector<bool> moves(scene_.meshes.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        if (instance_moves_[i]) moves[scene_.instances[i].mesh] = true;
+    }
+    std::erase_if(scene_.shapes, [&](const MeshShape& shape) { return !moves[shape.mesh]; });
 }
 
 bool PosedScene::is_animated() const {
@@ -114,7 +143,8 @@ void PosedScene::shape_meshes() {
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
         MeshShape& shape = scene_.shapes[i];
         Applied pose = wanted(shape);
-        if (pose == applied_[i]) continue;
+        const bool is_same = same_bits(pose.morph_weights, applied_[i].morph_weights);
+        if (is_same && same_bits(pose.joints, applied_[i].joints)) continue;
         applied_[i] = std::move(pose);
         Mesh& mesh = scene_.meshes[shape.mesh];
         const bool is_wound_anew = shape_mesh(shape, applied_[i].morph_weights, applied_[i].joints, mesh);
@@ -131,7 +161,7 @@ void PosedScene::place_instances(double time_s) {
             const Transform world = placed_in(world_from_node_[instance.node], instance.node_from_local);
             const bool is_hidden = is_singular(world);
             const Transform place = is_hidden ? Transform() : world;
-            if (place != instance.world_from_local || is_hidden != instance.is_hidden) moved_[i] = true;
+            if (!same_bits(place, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
             instance.world_from_local = place;
             instance.is_hidden = is_hidden;
         }
@@ -169,9 +199,8 @@ void PosedScene::place_lights() {
             }
         }
         Light& now = scene_.lights[i];
-        if (light.position == now.position && light.direction == now.direction && light.intensity == now.intensity) {
-            continue;
-        }
+        const bool stays = same_bits(light.position, now.position) && same_bits(light.direction, now.direction);
+        if (stays && same_bits(light.intensity, now.intensity)) continue;
         now = std::move(light);
         lights_changed_ = true;
     }

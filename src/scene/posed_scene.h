@@ -7,7 +7,6 @@
 // What a transform does that is singular or not finite at a time: it hides its instance; a camera whose direction it
 // loses stands as at rest, a light gives no light.
 
-#include <span>
 #include <vector>
 
 #include "scene/scene.h"
@@ -32,8 +31,8 @@ public:
     SceneUpdate set_time(double time_s);
 
 private:
+    void drop_shapes_at_rest();
     void read_channels(double time_s);
-    void put_weights(uint32_t node, std::span<const float> weights);
     void place_nodes();
     void place_instances(double time_s);
     void shape_meshes();
@@ -58,7 +57,6 @@ private:
     struct Applied {
         std::vector<float> morph_weights;
         std::vector<Transform> joints;
-        bool operator==(const Applied&) const = default;
     };
     Applied wanted(const MeshShape& shape) const;
     std::vector<Applied> applied_;

@@ -146,6 +146,28 @@ TEST_CASE("what is squeezed past the limit of baking is baked at that time alone
     CHECK(none_moving_is_baked());
 }
 
+TEST_CASE("what a scale of 0 hides is not there: it is not seen, throws no shadow and gives no light") {
+    Messages messages;
+    Scene without = test::make_mixed_scene();
+    validate(without, "mixed", messages);
+    Scene with = without; // and a lamp, the last of the instances and within the box of the others
+    const Transform place = make_translation({0.5f, 2, 0.5f});
+    with.nodes.resize(1);
+    with.instances.push_back({.name = "lamp",
+                              .mesh = 0,
+                              .material = with.instances[5].material,
+                              .world_from_local = compose(place, make_scale({0.2f, 0.2f, 0.2f})),
+                              .node = 0,
+                              .node_from_local = compose(place, make_scale({0.2f, 0.2f, 0.2f}))});
+    with.animations.emplace_back();
+    with.animations[0].channels.push_back(
+        channel(0, AnimatedPart::Scale, Interpolation::Step, {0, 1}, {1, 1, 1, 0, 0, 0}));
+    REQUIRE(with.materials[with.instances[5].material].is_emissive());
+    const Camera camera = test::mixed_scene_camera();
+    CHECK(hash_at(with, 1, camera, small_settings()) == hash_at(without, 1, camera, small_settings()));
+    CHECK(hash_at(with, 0, camera, small_settings()) != hash_at(without, 0, camera, small_settings()));
+}
+
 TEST_CASE("a step that changes nothing asks for nothing") {
     Messages messages;
     MovingScene moving(make_moving_scene(), 200, {}, messages);

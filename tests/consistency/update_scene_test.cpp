@@ -151,6 +151,8 @@ TEST_CASE("a change rebuilds no tree but those of what changed") {
         };
         const PreparedScene after = update_scene(before, scene, update, messages);
         CHECK(nodes_of(after) == nodes_of(before));
+        CHECK(before.lights.environment != nullptr);
+        CHECK(after.lights.environment == before.lights.environment);
     }
 }
 

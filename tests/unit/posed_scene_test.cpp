@@ -216,6 +216,32 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     CHECK(turned.positions[0] == Vec3{-1, 0, 0});
 }
 
+TEST_CASE("normals stay across their surface where a joint squeezes or mirrors it, and tangents along") {
+    Scene scene = make_scene();
+    Mesh& mesh = scene.meshes[0];
+    mesh.normals.assign(3, normalize(Vec3{1, 1, 0}));
+    mesh.tangents.assign(3, {0.70710678f, -0.70710678f, 0, 1});
+    scene.skins.push_back({.joints = {0}, .joint_from_mesh = {}});
+    scene.nodes[1].skin = 0;
+    scene.shapes.push_back({.mesh = 0,
+                            .node = 1,
+                            .skin = 0,
+                            .positions = mesh.positions,
+                            .normals = mesh.normals,
+                            .tangents = mesh.tangents,
+                            .joints_per_vertex = 1,
+                            .joints = {0, 0, 0},
+                            .weights = {1, 1, 1}});
+    scene.animations[0].channels = {channel(0, AnimatedPart::Scale, {0, 1, 2}, {1, 1, 1, 2, 1, 1, -2, 1, 1})};
+    PosedScene posed = pose(std::move(scene));
+    const Mesh& now = posed.scene().meshes[0];
+    posed.set_time(1);
+    CHECK(close(now.normals[0], normalize(Vec3{1, 2, 0})));
+    CHECK(close({now.tangents[0].x, now.tangents[0].y, 0}, normalize(Vec3{2, -1, 0})));
+    posed.set_time(2);
+    CHECK(close(now.normals[0], normalize(Vec3{-1, 2, 0})));
+}
+
 TEST_CASE("joints that mirror turn the triangles over, so that their fronts stay") {
     Scene scene = make_scene();
     Mesh& mesh = scene.meshes[0];
