@@ -15,7 +15,7 @@
 namespace pertev {
 namespace {
 
-void write(std::FILE* file, const std::string& text) {
+void write_now(std::FILE* file, const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), file); // main asks in the end whether stdout took everything
     std::fflush(file);
 }
@@ -36,7 +36,7 @@ void add_report_flags(CLI::App& verb, ReportFlags& flags) {
 Reporter::Reporter(const ReportFlags& flags) : flags_(flags), redraws_(is_drawn_on()) {
     if (is_silent() || redraws_) return;
     heartbeat_ = std::make_unique<Heartbeat>(std::chrono::seconds(10), [](double seconds, const std::string& work) {
-        write(stderr, fmt::format("{:.0f} s: {}\n", seconds, work));
+        write_now(stderr, fmt::format("{:.0f} s: {}\n", seconds, work));
     });
 }
 
@@ -64,7 +64,7 @@ void Reporter::say_messages() {
 void Reporter::say(const std::string& line) {
     if (is_silent()) return;
     end_progress();
-    write(stderr, line + '\n');
+    write_now(stderr, line + '\n');
 }
 
 void Reporter::progress(double share, const std::string& detail) {
@@ -72,7 +72,7 @@ void Reporter::progress(double share, const std::string& detail) {
     if (is_silent() || !redraws_) return;
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
-    write(stderr,
+    write_now(stderr,
           fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
     drawn_ = true;
 }
@@ -82,11 +82,11 @@ void Reporter::set_work(const std::string& work) {
 }
 
 void Reporter::event(const std::string& object) {
-    if (flags_.json) write(stdout, object + '\n');
+    if (flags_.json) write_now(stdout, object + '\n');
 }
 
 void Reporter::answer(const std::string& lines) {
-    if (!is_silent()) write(stdout, lines);
+    if (!is_silent()) write_now(stdout, lines);
 }
 
 void Reporter::output(const std::string& path, const std::string& why_not) {
@@ -96,7 +96,7 @@ void Reporter::output(const std::string& path, const std::string& why_not) {
 
 void Reporter::end_progress() {
     if (!drawn_) return;
-    write(stderr, "\n");
+    write_now(stderr, "\n");
     drawn_ = false;
 }
 

@@ -26,8 +26,6 @@ OpenOptions open_options(const SceneOptions& options) {
     return open;
 }
 
-} // namespace
-
 CameraChoice camera_choice(const SceneOptions& options) {
     CameraChoice choice;
     choice.camera = options.camera;

@@ -3,9 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "image/picture_hash.h"
+#include "render/update_scene.h"
 #include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -82,6 +84,45 @@ TEST_CASE("frame 30 has the same bytes on every device, by every body and batch,
             Session there(cuda, prepared, s.camera, settings);
             CHECK(hash_of_frames(there, s.camera, kFrames, {}) == expected);
         }
+    }
+}
+
+namespace {
+
+/// Ten frames in which the first instance that is not baked moves aside.
+Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves) {
+    Messages messages;
+    Scene scene = make_mixed_scene();
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto free = std::ranges::find(prepared.is_baked, false);
+    REQUIRE(free != prepared.is_baked.end());
+    SceneUpdate update;
+    update.moved_instances = {static_cast<uint32_t>(free - prepared.is_baked.begin())};
+    Session session(queue, prepared, mixed_scene_camera(), settings);
+    for (uint32_t k = 0; k < 10; ++k) {
+        if (k > 0 && moves) {
+            scene.instances[update.moved_instances[0]].world_from_local.translation.x += 0.03f;
+            prepared = update_scene(prepared, scene, update, messages);
+            session.update_scene(prepared, parts_of(update));
+        }
+        session.render_frame(k, {});
+    }
+    return picture_hash(session.frame().picture());
+}
+
+} // namespace
+
+TEST_CASE("frames of what moves have the same bytes on every device and by every body") {
+    Queue cpu = Queue::make_cpu();
+    const RenderSettings settings = frame_settings();
+    const Hash128 expected = hash_of_motion(cpu, settings, true);
+    CHECK(expected != hash_of_motion(cpu, settings, false));
+    RenderSettings wavefront = settings;
+    wavefront.body = PathBody::Wavefront;
+    CHECK(hash_of_motion(cpu, wavefront, true) == expected);
+    if (cuda_requested()) {
+        Queue cuda = make_cuda_queue();
+        CHECK(hash_of_motion(cuda, settings, true) == expected);
     }
 }
 

@@ -31,7 +31,7 @@ struct PathEstimate {
     std::vector<double> mean, variance_of_mean;
 };
 
-constexpr uint32_t kWidth = 24, kHeight = 16, kPixels = kWidth * kHeight;
+constexpr uint32_t kWidth = 24, kHeight = 16, kPartsPixels = kWidth * kHeight;
 constexpr uint32_t kRenders = 64; // the fewer, the less a variance is known: hence Student's t below
 
 PathEstimate estimate(LightStrategy strategy, uint32_t first_seed) {
@@ -46,14 +46,14 @@ PathEstimate estimate(LightStrategy strategy, uint32_t first_seed) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::queue_asked_for();
-    const std::size_t count = std::size_t(3) * kPixels + 3;
+    const std::size_t count = std::size_t(3) * kPartsPixels + 3;
     std::vector<double> sum(count), square_sum(count);
     for (uint32_t seed = 0; seed < kRenders; ++seed) {
         settings.path.seed = first_seed + seed;
         const RenderResult result = render_picture(queue, prepared, test::mixed_scene_camera(), settings);
         std::vector<double> values(result.picture.pixels.begin(), result.picture.pixels.end());
         values.resize(count);
-        for (std::size_t i = 0; i < 3 * kPixels; ++i) values[3 * kPixels + i % 3] += values[i] / kPixels;
+        for (std::size_t i = 0; i < 3 * kPartsPixels; ++i) values[3 * kPartsPixels + i % 3] += values[i] / kPartsPixels;
         for (std::size_t i = 0; i < count; ++i) {
             const double value = values[i];
             sum[i] += value;
@@ -98,9 +98,9 @@ double p_value(const PathEstimate& a, const PathEstimate& b) {
 
 /// Brighter in those pixels whose means are off by more than `least_error`, as those of the background are not.
 PathEstimate brightened(PathEstimate e, double factor, double least_error) {
-    for (std::size_t i = 0; i < 3 * kPixels; ++i) {
+    for (std::size_t i = 0; i < 3 * kPartsPixels; ++i) {
         if (!(std::sqrt(e.variance_of_mean[i]) > least_error * e.mean[i])) continue;
-        e.mean[3 * kPixels + i % 3] += (factor - 1) * e.mean[i] / kPixels;
+        e.mean[3 * kPartsPixels + i % 3] += (factor - 1) * e.mean[i] / kPartsPixels;
         e.mean[i] *= factor;
     }
     return e;

@@ -162,8 +162,8 @@ TEST_CASE("strips packed side by side decode to the very pixels of the picture p
             CHECK(strips.width == width);
             CHECK(strips.height == height);
             CHECK(strips.pixels == whole.pixels);
-            const std::vector<std::byte> half = encode_jpeg_strips(picture, quality, true);
-            CHECK(std::get<Rgba8Image>(decode_image(half, "half.jpg")).height == height);
+            const std::vector<std::byte> half_way = encode_jpeg_strips(picture, quality, true);
+            CHECK(std::get<Rgba8Image>(decode_image(half_way, "half_way.jpg")).height == height);
         }
     }
 }

@@ -44,6 +44,35 @@ TEST_CASE("a virtual point at no distance behind the surface moves as the surfac
     CHECK(abs(far.pixel.x - pixel.x) < 0.02f * abs(same.pixel.x - pixel.x) + 0.01f);
 }
 
+TEST_CASE("what has moved is looked for where it was") {
+    const Vec3 positions[] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+    const uint32_t indices[] = {0, 1, 2};
+    const MeshView mesh = {.positions = positions,
+                           .normals = nullptr,
+                           .tangents = nullptr,
+                           .uv = {},
+                           .colors = nullptr,
+                           .indices = indices};
+    InstanceView now = {}, before = {};
+    now.world_from_local.translation = {0.5f, 0, 0};
+    SceneView scene = {};
+    scene.instances = &now;
+    scene.meshes = &mesh;
+    Camera camera;
+    camera.world_from_camera = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
+    const CameraView view = make_camera_view(camera, 640, 360);
+    const FrameCameras cameras = {view, view, 640, 360};
+    const Float4 place = {float_of(0), float_of(0), 0.25f, 0.5f}; // the middle of the triangle's middle
+    const Vec2 centre = see_point(view, point_at(&now, &mesh, place)).pixel;
+    const Reprojection moved = reproject_surface(cameras, scene, {&before, &mesh}, centre, place);
+    const float pixels = 0.5f / (5 * view.half_width) * 0.5f * 640; // of half a metre at 5 m
+    CHECK(moved.pixel.x == doctest::Approx(centre.x - pixels).epsilon(1e-4));
+    CHECK(moved.pixel.y == doctest::Approx(centre.y));
+    CHECK(moved.depth == doctest::Approx(5));
+    const Reprojection still = reproject_surface(cameras, scene, {&now, &mesh}, centre, place);
+    CHECK(still.pixel.x == doctest::Approx(centre.x));
+}
+
 TEST_CASE("taps take what shows the same object at this depth with this normal, and nothing else") {
     constexpr uint32_t kWidth = 4, kHeight = 3;
     std::vector<Float4> normal(kWidth * kHeight, {0, 0, 1, 2});
