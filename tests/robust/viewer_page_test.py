@@ -155,6 +155,8 @@ class Page(unittest.TestCase):
         self.set_to("max_depth", 3)
         page.key("KeyT", "t")
         self.set_to("mode", "real time")
+        # The page has heard of it too: it takes pictures while another state is on its way.
+        page.until("document.querySelector('#setting-mode').value == 'real time'")
         page.key("KeyT", "t")
         self.set_to("mode", "reference")
         page.value("const f = document.querySelector('#setting-walk'); f.value = 'while-while';"

@@ -153,29 +153,25 @@ TEST_CASE("1000 frames in which instances of a large mesh and a lamp move copy l
     Mesh& large = scenes[0].meshes[0];
     large.positions = large.normals = sphere.positions;
     large.indices = sphere.indices;
-    Image& sky = scenes[0].environment->image;
-    sky = {512, 256, 3, std::vector<float>(std::size_t(512) * 256 * 3, 0.5f)};
-    sky.pixels[1000] = 40;
-    // A loop of places, each scene made of the one before.
-    constexpr int kPlaces = 8, kFrames = 1000;
-    SceneUpdate update;
-    update.moved_instances = {1, 5}; // 5: the lamp
+    scenes[0].environment->image = {512, 256, 3, std::vector<float>(std::size_t(512) * 256 * 3, 0.5f)};
+    scenes[0].environment->image.pixels[1000] = 40;
+    constexpr int kPlaces = 8, kFrames = 1000;              // a loop of places, each scene made of the one before
+    const SceneUpdate update = {.moved_instances = {1, 5}}; // 5: the lamp
     scenes.reserve(kPlaces);
-    std::vector<PreparedScene> prepared = {prepare_scene(scenes[0], {}, messages)};
+    std::vector<PreparedScene> prepared = {prepare_scene(scenes[0], prepare_options({}, queue.is_cuda()), messages)};
     while (scenes.size() < kPlaces) {
         Scene& scene = scenes.emplace_back(scenes.back());
         for (const uint32_t i : update.moved_instances) scene.instances[i].world_from_local.translation.x += 0.1f;
         prepared.push_back(update_scene(prepared.back(), scene, update, messages));
         CHECK(prepared.back().lights.environment == prepared[0].lights.environment);
     }
-    std::vector<Hash128> fresh; // on the CPU, of scenes that are prepared afresh
     RenderSettings settings = queued_settings();
     settings.width = 12, settings.height = 8;
+    std::vector<Hash128> fresh; // on the CPU, of scenes that are prepared afresh
     for (const Scene& scene : scenes) {
         Queue cpu = Queue::make_cpu();
-        PrepareOptions options;
-        options.centre = prepared[0].centre;
-        Session session(cpu, prepare_scene(scene, options, messages), camera_at(0), settings);
+        const PreparedScene afresh = prepare_scene(scene, {.centre = prepared[0].centre}, messages);
+        Session session(cpu, afresh, camera_at(0), settings);
         session.render(1);
         fresh.push_back(picture_hash(session.picture()));
     }
