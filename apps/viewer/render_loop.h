@@ -54,7 +54,7 @@ private:
     double frames_per_second_ = 0;
     double budget_s_ = 0.1;          // of the next picture at rest
     bool is_new_ = true;             // something was asked for since the last picture
-    bool is_done_ = false; // nothing is left to be rendered for this state
+    bool is_done_ = false;           // nothing is left to be rendered for this state
     std::optional<ShownFrame> last_; // without its pixels, but for their number
     std::vector<Save> saves_;
 };
