@@ -155,6 +155,7 @@ class Page(unittest.TestCase):
         self.set_to("max_depth", 3)
         page.key("KeyT", "t")
         self.set_to("mode", "real time")
+        page.until("document.querySelector('#setting-mode').value == 'real time'")  # it knows too, so T goes back
         page.key("KeyT", "t")
         self.set_to("mode", "reference")
         page.value("const f = document.querySelector('#setting-walk'); f.value = 'while-while';"
