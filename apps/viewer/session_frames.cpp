@@ -66,7 +66,8 @@ void SessionFrames::use(const RenderSettings& settings) {
     const RenderSettings before = session_.settings();
     try {
         session_.set_settings(settings);
-        if (settings.tracers != before.tracers) session_.cut(); // the picture stays, but its rays are to be seen at work
+        // The picture stays, but its rays are to be seen at work.
+        if (settings.tracers != before.tracers) session_.cut();
     } catch (const Error&) {
         RenderSettings as_before = settings;
         as_before.tracers = before.tracers;
