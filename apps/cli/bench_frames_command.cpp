@@ -1,6 +1,8 @@
 // pertev bench frames: how long a frame in real time takes while the camera moves, with reconstruction and tone
 // mapping, and how much of that the reconstruction is.
 
+#include <optional>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -96,6 +98,28 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
     return figures;
 }
 
+/// How like the last frame is to a picture of many samples of the same view; means over channels and pixels.
+struct Likeness {
+    double flip = 0, flip_of_sample = 0; // HDR-FLIP of the frame, and of its sample alone
+    double mean = 0, reference_mean = 0;
+};
+
+/// The frames begin anew after it.
+Likeness compare_last(Session& session, uint32_t samples, Reporter& reporter) {
+    const Image last = session.frame().picture();
+    session.render(1);
+    const Image noisy = session.picture();
+    session.cut();
+    reporter.set_work("rendering the reference");
+    session.render(samples, [&](const RenderProgress& now) {
+        reporter.progress(static_cast<double>(now.samples_done) / now.samples, "reference");
+        return !interrupted();
+    });
+    throw_if_interrupted();
+    const Image reference = session.picture();
+    return {hdr_flip(last, reference).mean, hdr_flip(noisy, reference).mean, mean_light(last), mean_light(reference)};
+}
+
 int bench_frames(const FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     Messages& messages = reporter.messages();
@@ -121,28 +145,19 @@ int bench_frames(const FramesFlags& flags) {
     const FrameFigures figures =
         measure(session, *queue, flags, length(bounds.hi - bounds.lo), exposure, tone_map, reporter);
     const std::string hash = picture_hash(session.frame().picture()).hex();
-    if (flags.reference > 0) {
-        const Image last = session.frame().picture();
-        session.render(1);
-        const Image noisy = session.picture();
-        session.cut();
-        reporter.set_work("rendering the reference");
-        session.render(flags.reference);
-        const Image reference = session.picture();
-        reporter.answer(
-            fmt::format("last frame, HDR-FLIP against {} spp: {:.4f}; its sample alone {:.4f}; mean {:.5f} of {:.5f}\n",
-                        flags.reference, hdr_flip(last, reference).mean, hdr_flip(noisy, reference).mean, mean_light(last),
-                        mean_light(reference)));
-    }
+    std::optional<Likeness> likeness;
+    if (flags.reference > 0) likeness = compare_last(session, flags.reference, reporter);
     reporter.end_progress();
     const double rays_a_second = millions_a_second(figures.rays.total(), figures.seconds);
     if (reporter.json()) {
+        const auto part = [&](double Likeness::*of) { return likeness ? json_number(*likeness.*of) : "null"; };
         reporter.event(fmt::format(
-            R"({{"event":"frames","scene":{},"device":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"picture":"{}"}})",
+            R"({{"event":"frames","scene":{},"device":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
             json_string(flags.render.scene.scene), json_string(queue->device_name()), settings.width, settings.height,
             flags.render.max_depth, flags.frames, flags.still, json_number(figures.whole.median),
             json_number(figures.whole.least), json_number(figures.whole.greatest),
-            json_number(figures.reconstruction.median), rays_a_second, hash));
+            json_number(figures.reconstruction.median), rays_a_second, part(&Likeness::flip),
+            part(&Likeness::flip_of_sample), part(&Likeness::mean), part(&Likeness::reference_mean), hash));
         return 0;
     }
     reporter.answer(fmt::format(
@@ -152,6 +167,11 @@ int bench_frames(const FramesFlags& flags) {
         flags.frames, flags.still ? "still" : "moving", figures.whole.median * 1e3, figures.whole.least * 1e3,
         figures.whole.greatest * 1e3, 1 / figures.whole.median, figures.reconstruction.median * 1e3, rays_a_second,
         hash));
+    if (likeness) {
+        reporter.answer(fmt::format(
+            "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; mean {:.5f} of {:.5f}\n",
+            flags.reference, likeness->flip, likeness->flip_of_sample, likeness->mean, likeness->reference_mean));
+    }
     return 0;
 }
 
@@ -164,6 +184,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
     flags->render.max_depth = 4;
     add_scene_options(verb, flags->render.scene);
     add_light_path_flags(verb, flags->render, "Picture");
+    verb.remove_option(verb.get_option("--spp")); // a frame has one
     verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
     verb.add_option("--frames", flags->frames, "of the sequence; the first two are not timed")
         ->type_name("N")

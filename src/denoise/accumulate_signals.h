@@ -43,8 +43,8 @@ struct AccumulateSignals {
         const Float4 diffuse = limited(signals.diffuse, pixel), gloss = limited(signals.gloss, pixel);
         Float4 recent = {diffuse.x, diffuse.y, diffuse.z, luminance(rgb_of(gloss))};
         Vec2 squares = {square(luminance(rgb_of(diffuse))), square(recent.w)};
-        const Taps& of_gloss = mirrored.sum > kEnough ? mirrored : taps;
-        if (taps.sum > kEnough) {
+        const Taps& of_gloss = mirrored.sum > kEnoughWeight ? mirrored : taps;
+        if (taps.sum > kEnoughWeight) {
             const Float4 mean = mean_of_taps(taps, cameras, before.diffuse);
             const float frames = min(mean.w + 1.0f, static_cast<float>(longest));
             now.diffuse[pixel] = with_w(lerp(rgb_of(mean), rgb_of(diffuse), 1.0f / frames), frames);
@@ -56,7 +56,7 @@ struct AccumulateSignals {
         } else {
             now.diffuse[pixel] = with_w(rgb_of(diffuse), 1);
         }
-        if (of_gloss.sum > kEnough) {
+        if (of_gloss.sum > kEnoughWeight) {
             const Float4 mean = mean_of_taps(of_gloss, cameras, before.gloss);
             const float frames = min(mean.w + 1.0f, static_cast<float>(longest));
             now.gloss[pixel] = with_w(lerp(rgb_of(mean), rgb_of(gloss), 1.0f / frames), frames);
@@ -69,7 +69,6 @@ struct AccumulateSignals {
     }
 
 private:
-    static constexpr float kEnough = 0.01f; // weight of taps that fit
     static constexpr float kFirefly = 64;
     static constexpr float kMirrors = 0.09f; // GGX width under which reflections move by themselves
 

@@ -16,6 +16,8 @@ struct LimitHistory {
     uint32_t width, height;
     bool limits;
     static constexpr float kFewFrames = 4;
+    /// Where few samples bring all the light, most pixels have not met enough of them to know how much they stray.
+    static constexpr float kTails = 4;
     static constexpr float kUnknown = 1e6f; // a variance that lets the filter take all that guides allow
 
     HD void operator()(uint32_t i) const {
@@ -108,7 +110,7 @@ private:
     /// Of a mean over mean.w frames. Few say little of their own spread.
     HD float variance(float square_mean, Float4 mean, float over_neighbours) const {
         if (mean.w < kFewFrames) return over_neighbours * (kFewFrames / max(mean.w, 1.0f));
-        return max(square_mean - square(luminance(rgb_of(mean))), 0.0f) / mean.w;
+        return kTails * max(square_mean - square(luminance(rgb_of(mean))), 0.0f) / mean.w;
     }
 };
 

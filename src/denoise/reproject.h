@@ -10,6 +10,9 @@
 
 namespace pertev {
 
+/// Of taps that fit, below which they tell nothing.
+inline constexpr float kEnoughWeight = 0.01f;
+
 /// Of the frame before.
 struct Reprojection {
     Vec2 pixel;  // place of a pixel's centre
@@ -56,28 +59,37 @@ struct Taps {
     float sum;
 };
 
-/// Which of the four have seen `object` at about this depth and with about this normal. `depth` <= 0: at any.
+/// Which of the four have seen `object` at about this depth and with about this normal; where none has, the nearest of
+/// the pixels around, as along an edge a pixel sees now one side and now the other. `depth` <= 0: at any.
 HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras, Vec2 pixel, float depth, Vec3 normal,
                          uint32_t object) {
     Taps taps = {0, {0, 0, 0, 0}, 0};
-    const float x = pixel.x - 0.5f, y = pixel.y - 0.5f, width = static_cast<float>(cameras.width),
-                height = static_cast<float>(cameras.height);
-    if (!(x > -1 && y > -1 && x < width && y < height)) return taps;
-    const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;
-    const int column = to_int(left, -1, static_cast<int>(cameras.width)),
-              row = to_int(top, -1, static_cast<int>(cameras.height));
-    taps.first = static_cast<uint32_t>(row * static_cast<int>(cameras.width) + column);
-    for (int k = 0; k < 4; ++k) {
-        const int px = column + (k & 1), py = row + (k >> 1);
-        if (px < 0 || py < 0 || px >= static_cast<int>(cameras.width) || py >= static_cast<int>(cameras.height))
-            continue;
-        const uint32_t at = static_cast<uint32_t>(py) * cameras.width + static_cast<uint32_t>(px);
+    const int w = static_cast<int>(cameras.width), h = static_cast<int>(cameras.height);
+    const float x = pixel.x - 0.5f, y = pixel.y - 0.5f;
+    if (!(x > -1 && y > -1 && x < static_cast<float>(w) && y < static_cast<float>(h))) return taps;
+    const auto fits = [&](int px, int py) {
+        if (px < 0 || py < 0 || px >= w || py >= h) return false;
+        const uint32_t at = static_cast<uint32_t>(py * w + px);
+        if (before.object[at] != object) return false;
+        if (!(depth > 0)) return true;
         const Float4 then = before.normal[at];
-        if (before.object[at] != object) continue;
-        if (depth > 0 && !(abs(then.w - depth) <= 0.05f * depth && dot(vec3_of(then), normal) > 0.5f)) continue;
+        return abs(then.w - depth) <= 0.05f * depth && dot(vec3_of(then), normal) > 0.5f;
+    };
+    const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;
+    const int column = to_int(left, -1, w), row = to_int(top, -1, h);
+    taps.first = static_cast<uint32_t>(row * w + column);
+    for (int k = 0; k < 4; ++k) {
+        if (!fits(column + (k & 1), row + (k >> 1))) continue;
         const float weight = ((k & 1) != 0 ? in_x : 1.0f - in_x) * ((k >> 1) != 0 ? in_y : 1.0f - in_y);
         taps.weights[k] = weight;
         taps.sum += weight;
+    }
+    if (taps.sum > kEnoughWeight) return taps;
+    const int near_x = column + (in_x < 0.5f ? 0 : 1), near_y = row + (in_y < 0.5f ? 0 : 1);
+    for (int k = 0; k < 8; ++k) { // the four beside it, then the corners
+        const int dx = k < 4 ? (k == 0) - (k == 1) : 2 * (k & 1) - 1, dy = k < 4 ? (k == 2) - (k == 3) : (k & 2) - 1;
+        if (!fits(near_x + dx, near_y + dy)) continue;
+        return {static_cast<uint32_t>((near_y + dy) * w + near_x + dx), {1, 0, 0, 0}, 1};
     }
     return taps;
 }

@@ -117,6 +117,22 @@ class Bench(CliTest):
         self.assertGreater(fine["ratio"], 1.5)
         self.assertLess(abs(fine["mean"] / fine["mean_independent"] - 1), 0.05)
 
+    def test_frames_are_the_same_again_and_like_the_picture_of_many_samples(self):
+        line = ["bench", "frames", "cornell-box", "--device", "cpu", "--size", "48x36", "--frames", "6"]
+        made = [self.succeed(*line, "--json").events("frames")[0] for _ in range(2)]
+        self.assertEqual(made[0]["picture"], made[1]["picture"])
+        self.assertGreater(made[0]["median_seconds"], made[0]["reconstruction_seconds"])
+        self.assertIsNone(made[0]["hdr_flip"])
+        with tempfile.TemporaryDirectory() as folder:
+            still = self.succeed(*line, "--still", "--reference", "64", "--write", folder, "--json").events("frames")[0]
+            self.assertEqual(sorted(os.listdir(folder)), [f"frame-{k:04}.png" for k in range(6)])
+        self.assertNotEqual(still["picture"], made[0]["picture"])
+        self.assertLess(still["hdr_flip"], 0.7 * still["hdr_flip_of_sample"])
+        self.assertGreater(still["reference_mean"], still["mean"])  # in so small a picture the lamp is all edge
+        self.assertRegex(self.succeed(*line, "--reference", "4").stdout, r"ms a frame .*\nHDR-FLIP of the last frame against 4 spp")
+        self.refuse(2, *line, "--spp", "4", says=["--spp"])
+        self.refuse(6, *line, "--write", "/nowhere/at/all", says=["/nowhere/at/all"])
+
     def test_noise_refuses_what_it_cannot_measure_before_it_reads(self):
         for flags, says in [("--seeds 1", "--seeds"), ("--seeds 1025", "--seeds"), ("--keep 0", "--keep"),
                             ("--keep 101", "--keep"), ("--size 0x0", "--size 0x0"), ("--spp 0", "--spp")]:

@@ -100,4 +100,8 @@ TEST_CASE("taps take what shows the same object at this depth with this normal, 
     const Taps one = taps_at({2, 1.5f});
     CHECK(one.sum == doctest::Approx(0.5f));
     CHECK(mean_of_taps(one, cameras, values.data()).x == doctest::Approx(6));
+    object[6] = 9;
+    const Taps beside = taps_at({1.75f, 1.5f}); // nearest is 5, of whose neighbours 4 comes first after 6
+    CHECK(beside.sum == 1);
+    CHECK(mean_of_taps(beside, cameras, values.data()).x == doctest::Approx(4));
 }
