@@ -91,12 +91,6 @@ RenderSettings job_settings(const BenchFlags& flags) {
     return settings;
 }
 
-double mean_of(const Image& image) {
-    double sum = 0;
-    for (const float value : image.pixels) sum += static_cast<double>(value);
-    return sum / static_cast<double>(image.pixels.size());
-}
-
 int bench_job(const BenchFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
@@ -202,7 +196,7 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     figures.tree_bytes_per_triangle =
         static_cast<double>(tree_bytes(prepared)) / static_cast<double>(std::max<uint64_t>(prepared.triangles, 1));
 
-    const Camera camera = choose_camera({}, scene, aspect_of(settings.width, settings.height), messages);
+    const Camera camera = choose_camera(CameraChoice{}, scene, aspect_of(settings.width, settings.height), messages);
     {
         Session warm_up(queue, cached, camera, settings); // whose trees are not those that are yet to be converted
         render_anew(warm_up, 1);

@@ -49,13 +49,6 @@ Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
     return moved(first, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k});
 }
 
-/// Of all channels and pixels.
-double mean_light(const Image& picture) {
-    double sum = 0;
-    for (const float value : picture.pixels) sum += static_cast<double>(value);
-    return sum / static_cast<double>(picture.pixels.size());
-}
-
 struct FrameFigures {
     RunTimes whole, reconstruction;
     RayCounts rays; // of all frames
@@ -88,9 +81,7 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
         whole.push_back(timer.seconds());
         reconstruction.push_back(session.frame().seconds());
-        const RayCounts rays = session.frame_rays();
-        figures.rays = {figures.rays.camera + rays.camera, figures.rays.bounce + rays.bounce,
-                        figures.rays.shadow + rays.shadow};
+        figures.rays = figures.rays + session.frame_rays();
         figures.seconds += whole.back();
     }
     figures.whole = summarize_runs(whole);
@@ -117,33 +108,19 @@ Likeness compare_last(Session& session, uint32_t samples, Reporter& reporter) {
     });
     throw_if_interrupted();
     const Image reference = session.picture();
-    return {hdr_flip(last, reference).mean, hdr_flip(noisy, reference).mean, mean_light(last), mean_light(reference)};
+    return {hdr_flip(last, reference).mean, hdr_flip(noisy, reference).mean, mean_of(last), mean_of(reference)};
 }
 
 int bench_frames(const FramesFlags& flags) {
     Reporter reporter(flags.render.report);
-    Messages& messages = reporter.messages();
-    parse_size("--size", flags.render.size); // before anything is read
-    check_scene_options(flags.render.scene);
-    listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.render.machine, messages);
-    reporter.say_messages();
-    reporter.set_work(fmt::format("loading {}", flags.render.scene.scene));
-    const Scene scene = load_scene(flags.render.scene, messages);
-    const RenderSettings settings = render_settings(flags.render, scene);
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const Camera camera = choose_camera(flags.render.scene, scene, aspect, messages);
-    throw_if_interrupted();
-    reporter.set_work("building trees");
-    const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    reporter.say_messages();
+    const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
+    const auto& [queue, scene, settings, camera, prepared] = *benched;
     Session session(*queue, prepared, camera, settings);
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
     session.cut();
-    const Bounds3 bounds = bounds_of(scene);
     const FrameFigures figures =
-        measure(session, *queue, flags, length(bounds.hi - bounds.lo), exposure, tone_map, reporter);
+        measure(session, *queue, flags, length(bounds_of(scene).size()), exposure, tone_map, reporter);
     const std::string hash = picture_hash(session.frame().picture()).hex();
     std::optional<Likeness> likeness;
     if (flags.reference > 0) likeness = compare_last(session, flags.reference, reporter);

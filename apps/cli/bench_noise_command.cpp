@@ -109,21 +109,8 @@ void print(const NoiseFlags& flags, const RenderSettings& settings, const Queue&
 
 int bench_noise(const NoiseFlags& flags) {
     Reporter reporter(flags.render.report);
-    Messages& messages = reporter.messages();
-    parse_size("--size", flags.render.size); // before anything is read
-    check_scene_options(flags.render.scene);
-    listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.render.machine, messages);
-    reporter.say_messages();
-    reporter.set_work(fmt::format("loading {}", flags.render.scene.scene));
-    const Scene scene = load_scene(flags.render.scene, messages);
-    const RenderSettings settings = render_settings(flags.render, scene);
-    const Camera camera =
-        choose_camera(flags.render.scene, scene, aspect_of(settings.width, settings.height), messages);
-    throw_if_interrupted();
-    reporter.set_work("building trees");
-    const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    reporter.say_messages();
+    const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
+    const auto& [queue, scene, settings, camera, prepared] = *benched;
 
     throw_if_interrupted();
     reporter.set_work("warming up"); // clocks, caches, the driver's first launch

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/interrupt.h"
+#include "apps/cli/parse_values.h"
 #include "base/error.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
@@ -24,6 +26,31 @@ void check_record_scene(const std::string& name) {
     const RecordScene* const record = find_record_scene(name);
     if (record == nullptr) return check_bench_scene(name, "sponza, bunny or forest nor ");
     if (record->file != nullptr) record_file(*record, public_scenes_folder());
+}
+
+double mean_of(const Image& image) {
+    double sum = 0;
+    for (const float value : image.pixels) sum += static_cast<double>(value);
+    return sum / static_cast<double>(image.pixels.size());
+}
+
+std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Reporter& reporter) {
+    Messages& messages = reporter.messages();
+    parse_size("--size", flags.size); // before anything is read
+    check_scene_options(flags.scene);
+    listen_for_interrupt();
+    auto benched = std::make_unique<BenchedScene>();
+    benched->queue = take_machine(flags.machine, messages);
+    reporter.say_messages();
+    reporter.set_work(fmt::format("loading {}", flags.scene.scene));
+    benched->scene = load_scene(flags.scene, messages);
+    const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
+    benched->camera = choose_camera(flags.scene, benched->scene, aspect_of(settings.width, settings.height), messages);
+    throw_if_interrupted();
+    reporter.set_work("building trees");
+    benched->prepared = prepare_scene(benched->scene, {}, messages);
+    reporter.say_messages();
+    return benched;
 }
 
 void refuse_flags_before(const CLI::App& verb) {

@@ -5,8 +5,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+
+#include "apps/cli/render_flags.h"
+#include "device/queue.h"
+#include "render/prepare_scene.h"
 
 namespace CLI {
 class App;
@@ -30,6 +35,22 @@ inline std::filesystem::path public_scenes_folder() {
 void check_bench_scene(const std::string& name, std::string_view others = "");
 /// The same where scenes of the record may be named too (lab/record_scenes.h).
 void check_record_scene(const std::string& name);
+
+/// Of all channels and pixels.
+double mean_of(const Image& image);
+
+/// What a benchmark of one scene begins with.
+struct BenchedScene {
+    std::unique_ptr<Queue> queue;
+    Scene scene;
+    RenderSettings settings;
+    Camera camera;
+    PreparedScene prepared; // points to `scene`
+};
+
+/// The device, then the scene that flags name, seen and lit as they say, with its trees. Says what there is to say on
+/// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
+std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Reporter& reporter);
 
 /// Throws Error(BadInput) for a flag of `bench` itself before the name of this verb of it, which would not see it.
 void refuse_flags_before(const CLI::App& verb);

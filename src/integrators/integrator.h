@@ -18,6 +18,9 @@ struct RayCounts {
     uint64_t camera = 0, bounce = 0, shadow = 0;
     uint64_t total() const { return camera + bounce + shadow; }
 };
+inline RayCounts operator+(const RayCounts& a, const RayCounts& b) {
+    return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
+}
 
 class Integrator {
 public:
@@ -29,8 +32,8 @@ public:
     virtual void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) = 0;
 
     /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
-    /// that is done. A film view of a noisy frame (render/noisy_frame.h) takes one sample alone. A sample is a function of the picture, the settings and its number alone, so work may be split any
-    /// way. Throws Error(DeviceFault).
+    /// that is done. A film view of a noisy frame (render/noisy_frame.h) takes one sample alone. A sample is a function
+    /// of the picture, the settings and its number alone, so work may be split any way. Throws Error(DeviceFault).
     virtual void render(uint32_t first, uint32_t count, const FilmView& film) = 0;
 
     /// Where it can, render() returns at once when `*flag` is true, and the film is then to be thrown away. Null:

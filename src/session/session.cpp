@@ -23,10 +23,6 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
     return std::min(left, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0)));
 }
 
-RayCounts operator+(const RayCounts& a, const RayCounts& b) {
-    return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
-}
-
 bool same_film(const Film& film, const RenderSettings& settings) {
     return film.width() == settings.width && film.height() == settings.height && film.view().aovs == settings.aovs;
 }

@@ -18,15 +18,6 @@ using namespace pertev;
 
 namespace {
 
-RenderSettings small_settings() {
-    RenderSettings settings;
-    settings.width = 24, settings.height = 16;
-    settings.samples = 2;
-    settings.path.max_depth = 4;
-    settings.aovs = kAovNormal | kAovDepth | kAovIds;
-    return settings;
-}
-
 AnimationChannel channel(uint32_t target, AnimatedPart part, Interpolation interpolation, std::vector<float> times,
                          std::vector<float> values) {
     return {target, part, interpolation, std::move(times), std::move(values)};
@@ -132,7 +123,7 @@ void check_steps(const Scene& rest, const std::vector<double>& times, const Came
 TEST_CASE("a time that is stepped to gives the picture of one that is prepared afresh") {
     // 1: an instance is hidden; 2 to 3: one of a shared mesh is so squeezed that it is baked, and others with it anew.
     check_steps(make_moving_scene(), {0, 0.5, 1, 1.5, 2, 2.5, 3.25, 1, 100, 0}, test::mixed_scene_camera(),
-                small_settings());
+                test::layered_settings());
 }
 
 TEST_CASE("what is squeezed past the limit of baking is baked at that time alone") {
@@ -164,8 +155,8 @@ TEST_CASE("what a scale of 0 hides is not there: it is not seen, throws no shado
         channel(0, AnimatedPart::Scale, Interpolation::Step, {0, 1}, {1, 1, 1, 0, 0, 0}));
     REQUIRE(with.materials[with.instances[5].material].is_emissive());
     const Camera camera = test::mixed_scene_camera();
-    CHECK(hash_at(with, 1, camera, small_settings()) == hash_at(without, 1, camera, small_settings()));
-    CHECK(hash_at(with, 0, camera, small_settings()) != hash_at(without, 0, camera, small_settings()));
+    CHECK(hash_at(with, 1, camera, test::layered_settings()) == hash_at(without, 1, camera, test::layered_settings()));
+    CHECK(hash_at(with, 0, camera, test::layered_settings()) != hash_at(without, 0, camera, test::layered_settings()));
 }
 
 TEST_CASE("a step that changes nothing asks for nothing") {
@@ -183,7 +174,7 @@ TEST_CASE("a step after one that failed is whole") {
     Messages messages;
     Queue cpu = Queue::make_cpu();
     const Camera camera = test::mixed_scene_camera();
-    const RenderSettings settings = small_settings();
+    const RenderSettings settings = test::layered_settings();
     MovingScene moving(rest, 0, {}, messages);
     Session session(cpu, moving.prepared(), camera, settings);
     CHECK_THROWS_AS(moving.set_time(5, messages), Error);
@@ -205,6 +196,6 @@ TEST_CASE("Khronos' animated models give the same pictures stepped to as afresh"
         const Camera camera = choose_camera({}, rest, 1.5f, messages);
         std::vector<double> times = {0.4, 1, 0.9};
         if (rest.animations.empty()) times.resize(1);
-        check_steps(rest, times, camera, small_settings());
+        check_steps(rest, times, camera, test::layered_settings());
     }
 }

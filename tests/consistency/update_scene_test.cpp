@@ -14,15 +14,6 @@ using namespace pertev;
 
 namespace {
 
-RenderSettings update_settings() {
-    RenderSettings settings;
-    settings.width = 24, settings.height = 16;
-    settings.samples = 2;
-    settings.path.max_depth = 4;
-    settings.aovs = kAovNormal | kAovDepth | kAovIds;
-    return settings;
-}
-
 PreparedScene prepare_afresh(const Scene& scene, Vec3 centre) {
     Messages messages;
     PrepareOptions options;
@@ -73,7 +64,7 @@ std::vector<Step> steps() {
 TEST_CASE("an updated scene gives the picture of one prepared afresh, by every structure and walk") {
     Messages messages;
     Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
-    RenderSettings settings = update_settings();
+    RenderSettings settings = test::layered_settings();
     const Camera camera = test::mixed_scene_camera();
     std::vector<Hash128> fresh; // after each step
     Scene changed = test::make_mixed_scene();
@@ -169,6 +160,7 @@ TEST_CASE("where a change would have other instances baked, all is prepared anew
     CHECK(updated.centre == before.centre);
     Queue cpu = Queue::make_cpu();
     const Camera camera = test::mixed_scene_camera();
-    CHECK(test::render_hash(render_picture(cpu, updated, camera, update_settings())) ==
-          test::render_hash(render_picture(cpu, prepare_afresh(after, before.centre), camera, update_settings())));
+    CHECK(
+        test::render_hash(render_picture(cpu, updated, camera, test::layered_settings())) ==
+        test::render_hash(render_picture(cpu, prepare_afresh(after, before.centre), camera, test::layered_settings())));
 }

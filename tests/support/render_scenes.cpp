@@ -156,6 +156,15 @@ RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, cons
     return render_picture(queue, prepare_scene(scene, prepare, messages), camera, settings);
 }
 
+RenderSettings layered_settings() {
+    RenderSettings settings;
+    settings.width = 24, settings.height = 16;
+    settings.samples = 2;
+    settings.path.max_depth = 4;
+    settings.aovs = kAovNormal | kAovDepth | kAovIds;
+    return settings;
+}
+
 void add_picture(Hasher& hasher, const RenderResult& result) {
     hasher.add_value(picture_hash(result.picture).high);
     hasher.add_value(picture_hash(result.picture).low);

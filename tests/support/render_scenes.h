@@ -31,6 +31,9 @@ Queue queue_asked_for();
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare = {});
 
+/// Of a small picture with layers, by which scenes before and after a change are compared.
+RenderSettings layered_settings();
+
 /// All that a render shows: its picture, its layers and its ids.
 void add_picture(Hasher& hasher, const RenderResult& result);
 Hash128 render_hash(const RenderResult& result);

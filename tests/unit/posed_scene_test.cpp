@@ -27,6 +27,22 @@ Mesh triangle() {
     return mesh;
 }
 
+/// The first mesh, as it is, by a skin whose one joint is node 0.
+void hang_on_first_node(Scene& scene) {
+    const Mesh& mesh = scene.meshes[0];
+    scene.skins.push_back({.joints = {0}, .joint_from_mesh = {}});
+    scene.nodes[1].skin = 0;
+    scene.shapes.push_back({.mesh = 0,
+                            .node = 1,
+                            .skin = 0,
+                            .positions = mesh.positions,
+                            .normals = mesh.normals,
+                            .tangents = mesh.tangents,
+                            .joints_per_vertex = 1,
+                            .joints = {0, 0, 0},
+                            .weights = {1, 1, 1}});
+}
+
 AnimationChannel channel(uint32_t target, AnimatedPart part, std::vector<float> times, std::vector<float> values) {
     AnimationChannel channel;
     channel.target = target;
@@ -221,17 +237,7 @@ TEST_CASE("normals stay across their surface where a joint squeezes or mirrors i
     Mesh& mesh = scene.meshes[0];
     mesh.normals.assign(3, normalize(Vec3{1, 1, 0}));
     mesh.tangents.assign(3, {0.70710678f, -0.70710678f, 0, 1});
-    scene.skins.push_back({.joints = {0}, .joint_from_mesh = {}});
-    scene.nodes[1].skin = 0;
-    scene.shapes.push_back({.mesh = 0,
-                            .node = 1,
-                            .skin = 0,
-                            .positions = mesh.positions,
-                            .normals = mesh.normals,
-                            .tangents = mesh.tangents,
-                            .joints_per_vertex = 1,
-                            .joints = {0, 0, 0},
-                            .weights = {1, 1, 1}});
+    hang_on_first_node(scene);
     scene.animations[0].channels = {channel(0, AnimatedPart::Scale, {0, 1, 2}, {1, 1, 1, 2, 1, 1, -2, 1, 1})};
     PosedScene posed = pose(std::move(scene));
     const Mesh& now = posed.scene().meshes[0];
@@ -244,17 +250,7 @@ TEST_CASE("normals stay across their surface where a joint squeezes or mirrors i
 
 TEST_CASE("joints that mirror turn the triangles over, so that their fronts stay") {
     Scene scene = make_scene();
-    Mesh& mesh = scene.meshes[0];
-    scene.skins.push_back({.joints = {0}, .joint_from_mesh = {}});
-    scene.nodes[1].skin = 0;
-    scene.shapes.push_back({.mesh = 0,
-                            .node = 1,
-                            .skin = 0,
-                            .positions = mesh.positions,
-                            .normals = mesh.normals,
-                            .joints_per_vertex = 1,
-                            .joints = {0, 0, 0},
-                            .weights = {1, 1, 1}});
+    hang_on_first_node(scene);
     scene.animations[0].channels = {channel(0, AnimatedPart::Scale, {0, 1, 2}, {1, 1, 1, 0, 0, 0, -1, 1, 1})};
     PosedScene posed = pose(std::move(scene));
     const SceneUpdate update = posed.set_time(2);
