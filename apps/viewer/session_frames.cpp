@@ -127,7 +127,10 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     const double reconstruction_s = session_.frame().seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
-    frame.image = session_.frame().display(request.view.display.tone_map, request.view.display.exposure_stops);
+    const uint8_t* const shown =
+        session_.frame().display(request.view.display.tone_map, request.view.display.exposure_stops);
+    const Reconstruction& of = session_.frame();
+    frame.image = {of.width(), of.height(), {shown, shown + std::size_t(4) * of.width() * of.height()}};
     frame.stages = {{"render", 1e3 * frame.render_s},
                     {"reconstruction", 1e3 * reconstruction_s},
                     {"tone map", 1e3 * display.seconds()}};

@@ -17,52 +17,57 @@ struct AccumulateSignals {
     PreviousScene scene_before;
     FrameCameras cameras;
     HistoryView now, before;
+    Vec2* was_at;     // pixel of the frame before that showed the same; not written at a cut
     uint32_t longest; // frames of a mean
     bool limit_fireflies;
+    bool has_gloss;                     // false: that signal is black everywhere and neither read nor written
     bool has_history;                   // false at a cut
     static constexpr float kRecent = 4; // frames of the recent mean
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = tiled_pixel(i, cameras.width, cameras.height);
-        const uint32_t object = now.object[pixel];
-        if (object == kNoHit) return forget(pixel);
-        const Vec2 centre = {static_cast<float>(pixel % cameras.width) + 0.5f,
-                             static_cast<float>(pixel / cameras.width) + 0.5f};
+        const PixelPlace at = tiled_place(i, cameras.width, cameras.height);
+        const uint32_t pixel = at.y * cameras.width + at.x;
+        const Float4 guide = now.guide[pixel];
+        const uint32_t object = object_of(guide);
+        const Vec2 centre = {static_cast<float>(at.x) + 0.5f, static_cast<float>(at.y) + 0.5f};
+        if (object == kNoHit) {
+            if (has_history) was_at[pixel] = reproject_sky(cameras, centre);
+            return forget(pixel);
+        }
         Taps taps = {}, mirrored = {};
         if (has_history) {
-            const Float4 normal = now.normal[pixel];
-            const Reprojection at = reproject_surface(cameras, scene, scene_before, centre, frame.place[pixel]);
-            taps = find_taps(before, cameras, at.pixel, max(at.depth, 1e-20f), vec3_of(normal), object);
-            const float alpha = frame.albedo[pixel].w;
-            if (alpha < kMirrors) {
-                const float distance = frame.gloss[pixel].w;
-                const Reprojection behind = reproject_virtual(cameras, centre, normal.w, min(distance, 1e6f));
-                mirrored = find_taps(before, cameras, behind.pixel, 0, vec3_of(normal), object);
+            const Vec3 normal = normal_of(guide);
+            const Reprojection then = reproject_surface(cameras, scene, scene_before, centre, frame.place[pixel]);
+            was_at[pixel] = then.pixel;
+            taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, object);
+            if (has_gloss && alpha_of(guide) < kMirrors) {
+                const float distance = min(frame.gloss[pixel].w, 1e6f);
+                const Reprojection behind = reproject_virtual(cameras, centre, depth_of(guide), distance);
+                mirrored = find_taps(before, cameras, behind.pixel, 0, normal, object);
             }
         }
-        const Float4 diffuse = limited(signals.diffuse, pixel), gloss = limited(signals.gloss, pixel);
-        Float4 recent = {diffuse.x, diffuse.y, diffuse.z, luminance(rgb_of(gloss))};
-        Vec2 squares = {square(luminance(rgb_of(diffuse))), square(recent.w)};
-        const Taps& of_gloss = mirrored.sum > kEnoughWeight ? mirrored : taps;
-        if (taps.sum > kEnoughWeight) {
-            const Float4 mean = mean_of_taps(taps, cameras, before.diffuse);
-            const float frames = min(mean.w + 1.0f, static_cast<float>(longest));
-            now.diffuse[pixel] = with_w(lerp(rgb_of(mean), rgb_of(diffuse), 1.0f / frames), frames);
+        const Float4 diffuse = limited(signals.diffuse, at);
+        Float4 recent = diffuse;
+        recent.w = 0;
+        Vec2 squares = {square(fused_luminance(rgb_of(diffuse))), 0};
+        if (has_gloss) {
+            const Float4 gloss = limited(signals.gloss, at);
+            recent.w = fused_luminance(rgb_of(gloss));
+            squares.y = square(recent.w);
+            const Taps& of_gloss = mirrored.sum > kEnoughWeight ? mirrored : taps;
+            now.gloss[pixel] = gone_on(of_gloss, before.gloss, gloss);
+            const float frames = now.gloss[pixel].w;
+            if (frames > 1)
+                squares.y = lerp(mean_of_taps(of_gloss, cameras, before.squares).y, squares.y, 1.0f / frames);
+        }
+        const Float4 mean = gone_on(taps, before.diffuse, diffuse);
+        now.diffuse[pixel] = mean;
+        if (mean.w > 1) {
+            squares.x = lerp(mean_of_taps(taps, cameras, before.squares).x, squares.x, 1.0f / mean.w);
             const Float4 recently = mean_of_taps(taps, cameras, before.recent);
-            const float share = 1.0f / min(frames, kRecent);
+            const float share = 1.0f / min(mean.w, kRecent);
             recent = {lerp(recently.x, recent.x, share), lerp(recently.y, recent.y, share),
                       lerp(recently.z, recent.z, share), lerp(recently.w, recent.w, share)};
-            squares.x = lerp(mean_of_taps(taps, cameras, before.squares).x, squares.x, 1.0f / frames);
-        } else {
-            now.diffuse[pixel] = with_w(rgb_of(diffuse), 1);
-        }
-        if (of_gloss.sum > kEnoughWeight) {
-            const Float4 mean = mean_of_taps(of_gloss, cameras, before.gloss);
-            const float frames = min(mean.w + 1.0f, static_cast<float>(longest));
-            now.gloss[pixel] = with_w(lerp(rgb_of(mean), rgb_of(gloss), 1.0f / frames), frames);
-            squares.y = lerp(mean_of_taps(of_gloss, cameras, before.squares).y, squares.y, 1.0f / frames);
-        } else {
-            now.gloss[pixel] = with_w(rgb_of(gloss), 1);
         }
         now.squares[pixel] = squares;
         now.recent[pixel] = recent;
@@ -73,25 +78,35 @@ private:
     static constexpr float kMirrors = 0.09f; // GGX width under which reflections move by themselves
 
     HD void forget(uint32_t pixel) const {
-        now.diffuse[pixel] = now.gloss[pixel] = now.recent[pixel] = {0, 0, 0, 0};
+        now.diffuse[pixel] = now.recent[pixel] = {0, 0, 0, 0};
+        if (has_gloss) now.gloss[pixel] = {0, 0, 0, 0};
         now.squares[pixel] = {0, 0};
+    }
+
+    /// The mean of the signal that the taps hold, with this frame's; its w: frames.
+    HD Float4 gone_on(const Taps& taps, const Float4* signal, Float4 sample) const {
+        if (!(taps.sum > kEnoughWeight)) return with_w(rgb_of(sample), 1);
+        const Float4 mean = mean_of_taps(taps, cameras, signal);
+        const float frames = min(mean.w + 1.0f, static_cast<float>(longest));
+        return with_w(lerp(rgb_of(mean), rgb_of(sample), 1.0f / frames), frames);
     }
 
     /// The sample, no brighter than kFirefly times the brightest of its eight neighbours. Of one sample a pixel most
     /// see no light at all, so that less than this would take much of what is real.
-    HD Float4 limited(const Float4* signal, uint32_t pixel) const {
-        const Float4 own = signal[pixel];
-        if (!limit_fireflies) return own;
+    HD Float4 limited(const Float4* signal, PixelPlace at) const {
         const int width = static_cast<int>(cameras.width), height = static_cast<int>(cameras.height);
-        const int x = static_cast<int>(pixel % cameras.width), y = static_cast<int>(pixel / cameras.width);
+        const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
+        const Float4 own = signal[y * width + x];
+        if (!limit_fireflies) return own;
+        // At an edge of the picture the neighbour of the other side stands for the one that is not there.
+        const int columns[3] = {held(x, x > 0 ? -1 : 1, width), x, held(x, x + 1 < width ? 1 : -1, width)};
+        const int rows[3] = {held(y, y > 0 ? -1 : 1, height), y, held(y, y + 1 < height ? 1 : -1, height)};
         float brightest = 0;
-        for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-                if ((dx == 0 && dy == 0) || x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
-                brightest = max(brightest, luminance(rgb_of(signal[(y + dy) * width + x + dx])));
-            }
+        for (int k = 0; k < 9; ++k) {
+            if (k == 4) continue;
+            brightest = max(brightest, fused_luminance(rgb_of(signal[rows[k / 3] * width + columns[k % 3]])));
         }
-        const float light = luminance(rgb_of(own)), most = kFirefly * brightest;
+        const float light = fused_luminance(rgb_of(own)), most = kFirefly * brightest;
         if (!(light > most) || !(brightest > 0)) return own;
         return with_w((most / light) * rgb_of(own), 0);
     }

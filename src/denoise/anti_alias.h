@@ -6,101 +6,88 @@
 // Sources: Karis, "High Quality Temporal Supersampling", SIGGRAPH 2014 (weights by 1 / (1 + luminance), colours in
 // YCoCg); Salvi, "An Excursion in Temporal Supersampling", GDC 2016 (limits by mean and deviation).
 
-#include "denoise/reproject.h"
+#include "denoise/shown_color.h"
 #include "image/tone_map.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {
 
 struct AntiAlias {
-    NoisyFrameView frame;
     const Float4* picture; // ComposePicture's
-    SceneView scene;
-    PreviousScene scene_before;
-    FrameCameras cameras;
-    HistoryView now, before;
+    const Vec2* was_at;    // AccumulateSignals'
+    const Float4* before;  // HistoryView's shown, of the frame before
+    Float4* shown;
+    uint32_t width, height;
     bool has_history;
     static constexpr float kNew = 0.1f; // share of the present frame
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = tiled_pixel(i, cameras.width, cameras.height);
+        const PixelPlace at = tiled_place(i, width, height);
+        const uint32_t pixel = at.y * width + at.x;
         const Rgb own = rgb_of(picture[pixel]);
-        now.shown[pixel] = with_w(has_history ? with_history(pixel, own) : own, 0);
+        shown[pixel] = with_w(has_history ? with_history(at, own) : own, 0);
     }
 
 private:
     struct Colors {
-        Rgb mean, deviation; // of YCoCg of compressed colours
-        uint32_t nearest;    // pixel of least depth: edges move with what is before
+        Rgb mean, deviation;
+        PixelPlace nearest; // pixel of least depth: edges move with what is before
     };
 
-    HD Rgb with_history(uint32_t pixel, Rgb own) const {
-        const Colors around = look_around(pixel);
-        const Vec2 centre = {static_cast<float>(pixel % cameras.width) + 0.5f,
-                             static_cast<float>(pixel / cameras.width) + 0.5f};
-        const uint32_t from = around.nearest;
-        const Vec2 of_nearest = {static_cast<float>(from % cameras.width) + 0.5f,
-                                 static_cast<float>(from / cameras.width) + 0.5f};
-        const Vec2 moved = now.object[from] == kNoHit
-                               ? reproject_sky(cameras, of_nearest)
-                               : reproject_surface(cameras, scene, scene_before, of_nearest, frame.place[from]).pixel;
-        const Vec2 then = centre + (moved - of_nearest);
-        const float width = static_cast<float>(cameras.width), height = static_cast<float>(cameras.height);
-        if (!(then.x >= 0 && then.y >= 0 && then.x < width && then.y < height)) return own;
-        const Rgb old = to_ycocg(sample(then));
-        const Rgb held = {within(old.r, around.mean.r, around.deviation.r),
-                          within(old.g, around.mean.g, around.deviation.g),
-                          within(old.b, around.mean.b, around.deviation.b)};
-        return expand(from_ycocg(lerp(held, to_ycocg(compress(own)), kNew)));
+    HD Rgb with_history(PixelPlace at, Rgb own) const {
+        const Colors around = look_around(at);
+        const PixelPlace nearest = around.nearest;
+        const Vec2 moved = was_at[nearest.y * width + nearest.x];
+        const Vec2 then = {moved.x + static_cast<float>(static_cast<int>(at.x) - static_cast<int>(nearest.x)),
+                           moved.y + static_cast<float>(static_cast<int>(at.y) - static_cast<int>(nearest.y))};
+        if (!(then.x >= 0 && then.y >= 0 && then.x < static_cast<float>(width) && then.y < static_cast<float>(height)))
+            return own;
+        const Rgb old = sample(then);
+        const Rgb limited = {within(old.r, around.mean.r, around.deviation.r),
+                             within(old.g, around.mean.g, around.deviation.g),
+                             within(old.b, around.mean.b, around.deviation.b)};
+        return lerp(limited, own, kNew);
     }
 
-    HD Colors look_around(uint32_t pixel) const {
-        const int w = static_cast<int>(cameras.width), h = static_cast<int>(cameras.height);
-        const int x = static_cast<int>(pixel % cameras.width), y = static_cast<int>(pixel / cameras.width);
+    HD Colors look_around(PixelPlace at) const {
         Rgb sum = {0, 0, 0}, squares = {0, 0, 0};
-        float count = 0, least = kInfinity;
-        Colors colors = {{}, {}, pixel};
-        for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-                if (x + dx < 0 || y + dy < 0 || x + dx >= w || y + dy >= h) continue;
-                const uint32_t at = static_cast<uint32_t>((y + dy) * w + x + dx);
-                const Float4 there = picture[at];
-                const Rgb c = to_ycocg(compress(rgb_of(there)));
-                sum += c;
-                squares += c * c;
-                count += 1;
-                if (there.w < least) {
-                    least = there.w;
-                    colors.nearest = at;
-                }
+        float least = kInfinity;
+        Colors colors = {{}, {}, at};
+        for (int k = 0; k < 9; ++k) {
+            const int x = held(static_cast<int>(at.x), k % 3 - 1, static_cast<int>(width)),
+                      y = held(static_cast<int>(at.y), k / 3 - 1, static_cast<int>(height));
+            const Float4 there = picture[y * static_cast<int>(width) + x];
+            const Rgb c = rgb_of(there);
+            sum += c;
+            squares = {fma(c.r, c.r, squares.r), fma(c.g, c.g, squares.g), fma(c.b, c.b, squares.b)};
+            if (there.w < least) {
+                least = there.w;
+                colors.nearest = {static_cast<uint32_t>(x), static_cast<uint32_t>(y)};
             }
         }
-        colors.mean = (1.0f / count) * sum;
-        const Rgb spread = (1.0f / count) * squares - colors.mean * colors.mean;
+        colors.mean = (1.0f / 9.0f) * sum;
+        const Rgb spread = (1.0f / 9.0f) * squares - colors.mean * colors.mean;
         colors.deviation = {safe_sqrt(spread.r), safe_sqrt(spread.g), safe_sqrt(spread.b)};
         return colors;
     }
 
-    /// Of the picture shown before, compressed: light beside a lamp would fall below nothing else. By Catmull-Rom
-    /// splines without their corners (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which blurs less than straight lines;
-    /// never negative.
+    /// Of the picture shown before. By Catmull-Rom splines (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which blurs less
+    /// than straight lines.
     HD Rgb sample(Vec2 place) const {
         const float x = place.x - 0.5f, y = place.y - 0.5f, left = floor(x), top = floor(y);
         const Weights wx = spline(x - left), wy = spline(y - top);
-        const int column = to_int(left, 0, static_cast<int>(cameras.width)),
-                  row = to_int(top, 0, static_cast<int>(cameras.height));
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int column = to_int(left, -1, w), row = to_int(top, -1, h);
+        int columns[4];
+        for (int k = 0; k < 4; ++k) columns[k] = held(column, k - 1, w);
         Rgb sum = {0, 0, 0};
         for (int j = 0; j < 4; ++j) {
-            Rgb line = {0, 0, 0};
-            for (int k = 0; k < 4; ++k) line += wx.of[k] * compressed_at(column + k - 1, row + j - 1);
-            sum += wy.of[j] * line;
+            const Float4* const line = before + held(row, j - 1, h) * w;
+            Rgb of_line = {0, 0, 0};
+            for (int k = 0; k < 4; ++k) of_line = add_scaled(of_line, wx.of[k], rgb_of(line[columns[k]]));
+            sum = add_scaled(sum, wy.of[j], of_line);
         }
-        return {max(sum.r, 0.0f), max(sum.g, 0.0f), max(sum.b, 0.0f)};
-    }
-    HD Rgb compressed_at(int x, int y) const {
-        const int px = clamp(x, 0, static_cast<int>(cameras.width) - 1),
-                  py = clamp(y, 0, static_cast<int>(cameras.height) - 1);
-        return compress(rgb_of(before.shown[py * static_cast<int>(cameras.width) + px]));
+        return sum;
     }
     struct Weights {
         float of[4];
@@ -114,27 +101,17 @@ private:
     HD static float within(float x, float mean, float deviation) {
         return clamp(x, mean - deviation, mean + deviation);
     }
-    /// Bright colours count less, so that one of them does not stand for a pixel's edge.
-    HD static Rgb compress(Rgb c) { return (1.0f / (1.0f + luminance(c))) * c; }
-    HD static Rgb expand(Rgb c) { return (1.0f / max(1.0f - luminance(c), 1e-4f)) * c; }
-    HD static Rgb to_ycocg(Rgb c) {
-        return {0.25f * c.r + 0.5f * c.g + 0.25f * c.b, 0.5f * (c.r - c.b), 0.5f * c.g - 0.25f * (c.r + c.b)};
-    }
-    HD static Rgb from_ycocg(Rgb c) {
-        const float low = c.r - c.b;
-        return {max(low + c.g, 0.0f), max(c.r + c.b, 0.0f), max(low - c.g, 0.0f)};
-    }
 };
 
 /// What a display shows of a reconstructed picture.
 struct ShowPicture {
-    const Float4* picture;
+    const Float4* picture; // ShownColor
     ToneMap kind;
     float scale;     // of light, before it is tone-mapped
     uint8_t* pixels; // [pixels * 4]
 
     HD void operator()(uint32_t i) const {
-        tone_map_pixel(rgb_of(picture[i]), 1.0f, kind, scale, pixels + 4 * uint64_t(i));
+        tone_map_pixel(light_of_shown(rgb_of(picture[i])), 1.0f, kind, scale, pixels + 4 * uint64_t(i));
     }
 };
 

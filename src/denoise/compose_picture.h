@@ -2,20 +2,20 @@
 
 // Fifth stage: the signals, given back the surfaces' own colours, with what the camera met itself.
 
-#include "denoise/reconstruction_view.h"
+#include "denoise/shown_color.h"
 
 namespace pertev {
 
 struct ComposePicture {
     NoisyFrameView frame;
     SignalsView signals;
-    Float4* picture; // rgb, W/(sr m2); w: depth, metres
+    Float4* picture; // ShownColor; w: depth, metres
 
     HD void operator()(uint32_t i) const {
-        const Rgb scattered = rgb_of(signals.diffuse[i]) * divisor_of(rgb_of(frame.albedo[i])) +
-                              rgb_of(signals.gloss[i]) * divisor_of(rgb_of(frame.gloss[i]));
-        const Rgb met = frame.light[i].w != 0 ? rgb_of(frame.emission[i]) : Rgb{0, 0, 0};
-        picture[i] = with_w(met + scattered, frame.normal[i].w);
+        Rgb light = frame.light[i].w != 0 ? rgb_of(frame.emission[i]) : Rgb{0, 0, 0};
+        light += rgb_of(signals.diffuse[i]) * divisor_of(rgb_of(frame.albedo[i]));
+        if (frame.splits_light()) light += rgb_of(signals.gloss[i]) * divisor_of(rgb_of(frame.gloss[i]));
+        picture[i] = with_w(shown_color(light), frame.normal[i].w);
     }
 };
 

@@ -15,27 +15,35 @@ struct LimitHistory {
     SignalsView out; // means with their variance
     uint32_t width, height;
     bool limits;
+    bool has_gloss; // AccumulateSignals'
     static constexpr float kFewFrames = 4;
     /// Where few samples bring all the light, most pixels have not met enough of them to know how much they stray.
     static constexpr float kTails = 4;
     static constexpr float kUnknown = 1e6f; // a variance that lets the filter take all that guides allow
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = tiled_pixel(i, width, height);
-        if (now.object[pixel] == kNoHit) {
-            out.diffuse[pixel] = out.gloss[pixel] = {0, 0, 0, 0};
+        const PixelPlace at = tiled_place(i, width, height);
+        const uint32_t pixel = at.y * width + at.x;
+        const Float4 guide = now.guide[pixel];
+        if (object_of(guide) == kNoHit) {
+            out.diffuse[pixel] = {0, 0, 0, 0};
+            if (has_gloss) out.gloss[pixel] = {0, 0, 0, 0};
             return;
         }
-        Float4 diffuse = now.diffuse[pixel], gloss = now.gloss[pixel];
+        Float4 diffuse = now.diffuse[pixel];
         const Vec2 squares = now.squares[pixel];
-        const Neighbours around = look_around(pixel);
+        const Neighbours around = look_around(at, guide);
         if (limits) {
             diffuse = limit(diffuse, around, deviation_of_frames(squares.x, diffuse));
-            gloss = limit_gloss(gloss, around, deviation_of_frames(squares.y, gloss));
             now.diffuse[pixel] = diffuse;
-            now.gloss[pixel] = gloss;
         }
         out.diffuse[pixel] = with_w(rgb_of(diffuse), variance(squares.x, diffuse, around.variance));
+        if (!has_gloss) return;
+        Float4 gloss = now.gloss[pixel];
+        if (limits) {
+            gloss = limit_gloss(gloss, around, deviation_of_frames(squares.y, gloss));
+            now.gloss[pixel] = gloss;
+        }
         out.gloss[pixel] =
             with_w(rgb_of(gloss),
                    variance(squares.y, gloss, around.variance == kUnknown ? kUnknown : square(around.gloss_deviation)));
@@ -49,29 +57,32 @@ private:
         float variance; // of the luminance; kUnknown where too few pixels are alike
     };
 
-    HD Neighbours look_around(uint32_t pixel) const {
+    /// Thirteen of the 25 about the pixel, as on a chessboard: neighbours two apart say as much, for half of the price.
+    HD Neighbours look_around(PixelPlace at, Float4 guide) const {
         const int w = static_cast<int>(width), h = static_cast<int>(height);
-        const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
-        const Vec3 normal = vec3_of(now.normal[pixel]);
-        const uint32_t object = now.object[pixel];
+        int columns[5], rows[5];
+        for (int k = 0; k < 5; ++k) {
+            columns[k] = held(static_cast<int>(at.x), k - 2, w);
+            rows[k] = held(static_cast<int>(at.y), k - 2, h) * w;
+        }
+        const Vec3 normal = normal_of(guide);
+        const uint32_t object = object_of(guide);
         Rgb sum = {0, 0, 0}, squares = {0, 0, 0};
         float gloss = 0, gloss_squares = 0, light = 0, light_squares = 0, count = 0;
-        for (int dy = -2; dy <= 2; ++dy) {
-            for (int dx = -2; dx <= 2; ++dx) {
-                if (x + dx < 0 || y + dy < 0 || x + dx >= w || y + dy >= h) continue;
-                const uint32_t at = static_cast<uint32_t>((y + dy) * w + x + dx);
-                if (now.object[at] != object || !(dot(vec3_of(now.normal[at]), normal) > 0.9f)) continue;
-                const Float4 recent = now.recent[at];
-                const Rgb c = rgb_of(recent);
-                sum += c;
-                squares += c * c;
-                gloss += recent.w;
-                gloss_squares += recent.w * recent.w;
-                const float l = luminance(c);
-                light += l;
-                light_squares += l * l;
-                count += 1;
-            }
+        for (int k = 0; k < 25; k += 2) {
+            const int tap = rows[k / 5] + columns[k % 5];
+            const Float4 there = now.guide[tap];
+            if (object_of(there) != object || !(fused_dot(normal_of(there), normal) > 0.9f)) continue;
+            const Float4 recent = now.recent[tap];
+            const Rgb c = rgb_of(recent);
+            sum += c;
+            squares = {fma(c.r, c.r, squares.r), fma(c.g, c.g, squares.g), fma(c.b, c.b, squares.b)};
+            gloss += recent.w;
+            gloss_squares = fma(recent.w, recent.w, gloss_squares);
+            const float l = fused_luminance(c);
+            light += l;
+            light_squares = fma(l, l, light_squares);
+            count += 1;
         }
         const float inv = 1.0f / max(count, 1.0f);
         Neighbours n;
@@ -80,13 +91,13 @@ private:
         n.deviation = {safe_sqrt(spread.r), safe_sqrt(spread.g), safe_sqrt(spread.b)};
         n.gloss_mean = inv * gloss;
         n.gloss_deviation = safe_sqrt(inv * gloss_squares - n.gloss_mean * n.gloss_mean);
-        n.variance = count < 6 ? kUnknown : max(inv * light_squares - square(inv * light), 0.0f);
+        n.variance = count < 4 ? kUnknown : max(inv * light_squares - square(inv * light), 0.0f);
         return n;
     }
 
     /// Of the luminance of single frames about their mean.
     HD static float deviation_of_frames(float square_mean, Float4 mean) {
-        return safe_sqrt(square_mean - square(luminance(rgb_of(mean))));
+        return safe_sqrt(square_mean - square(fused_luminance(rgb_of(mean))));
     }
     /// Recent frames stray too: their mean over some twenty pixels by a tenth of the deviation of single ones. Five
     /// times that is allowed, or what few bright samples brought would be lost wherever the last frames had none.
@@ -102,7 +113,7 @@ private:
     }
     HD Float4 limit_gloss(Float4 mean, const Neighbours& around, float of_frames) const {
         if (!(mean.w > kFewFrames)) return mean;
-        const float light = luminance(rgb_of(mean)),
+        const float light = fused_luminance(rgb_of(mean)),
                     held = within(light, around.gloss_mean, around.gloss_deviation, of_frames);
         if (held == light) return mean;
         return light > 0 ? with_w((held / light) * rgb_of(mean), mean.w) : with_w(grey(max(held, 0.0f)), mean.w);
@@ -110,7 +121,7 @@ private:
     /// Of a mean over mean.w frames. Few say little of their own spread.
     HD float variance(float square_mean, Float4 mean, float over_neighbours) const {
         if (mean.w < kFewFrames) return over_neighbours * (kFewFrames / max(mean.w, 1.0f));
-        return kTails * max(square_mean - square(luminance(rgb_of(mean))), 0.0f) / mean.w;
+        return kTails * max(square_mean - square(fused_luminance(rgb_of(mean))), 0.0f) / mean.w;
     }
 };
 

@@ -13,6 +13,7 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kOfHistory = 5, kOfSignals = 2; // arrays of Float4
+constexpr std::size_t kNarrowArrays = 3;              // of Vec2: squares of both histories, places in the frame before
 constexpr std::size_t kWideArrays = 2 * kOfHistory + 2 * kOfSignals;
 
 } // namespace
@@ -20,23 +21,17 @@ constexpr std::size_t kWideArrays = 2 * kOfHistory + 2 * kOfSignals;
 Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
     : queue_(&queue), width_(width), height_(height), timer_(queue),
       wide_(queue, kWideArrays * width * height, "reconstruction"),
-      squares_(queue, std::size_t(2) * width * height, "reconstruction"),
-      objects_(queue, std::size_t(2) * width * height, "reconstruction") {}
+      narrow_(queue, kNarrowArrays * width * height, "reconstruction") {}
 
 std::size_t Reconstruction::predicted_bytes(uint32_t width, uint32_t height) {
-    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + 2 * (sizeof(Vec2) + sizeof(uint32_t)));
+    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + kNarrowArrays * sizeof(Vec2));
 }
 
 HistoryView Reconstruction::history(uint32_t frame) const {
     const std::size_t pixels = std::size_t(width_) * height_, which = frame % 2;
     Float4* const wide = wide_.data() + which * kOfHistory * pixels;
-    return {wide,
-            objects_.data() + which * pixels,
-            wide + pixels,
-            wide + 2 * pixels,
-            squares_.data() + which * pixels,
-            wide + 3 * pixels,
-            wide + 4 * pixels};
+    return {
+        wide, wide + pixels, wide + 2 * pixels, narrow_.data() + which * pixels, wide + 3 * pixels, wide + 4 * pixels};
 }
 
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
@@ -51,22 +46,24 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     SignalsView a = {signals, signals + pixels},
                 b = {signals + 2 * std::size_t(pixels), signals + 3 * std::size_t(pixels)};
 
+    Vec2* const was_at = narrow_.data() + 2 * std::size_t(pixels);
+
     timer_.start();
     launch(*queue_, "split_signals", pixels, SplitSignals{noisy, a, now});
     launch(*queue_, "accumulate_signals", pixels,
-           AccumulateSignals{noisy, a, scene, scene_before, cameras, now, before, settings.history,
-                             settings.limit_fireflies, has_history});
-    launch(*queue_, "limit_history", pixels, LimitHistory{now, b, width_, height_, settings.limit_history});
+           AccumulateSignals{noisy, a, scene, scene_before, cameras, now, before, was_at, settings.history,
+                             settings.limit_fireflies, has_gloss, has_history});
+    launch(*queue_, "limit_history", pixels, LimitHistory{now, b, width_, height_, settings.limit_history, has_gloss});
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{now.normal, now.object, noisy.albedo, b, a, camera, width_, height_, 1 << pass, has_gloss});
+               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, has_gloss});
         std::swap(a, b);
     }
     Float4* const picture = settings.anti_alias ? a.diffuse : now.shown;
     launch(*queue_, "compose_picture", pixels, ComposePicture{noisy, b, picture});
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", pixels,
-               AntiAlias{noisy, picture, scene, scene_before, cameras, now, before, has_history});
+               AntiAlias{picture, was_at, before.shown, now.shown, width_, height_, has_history});
     }
     timer_.stop();
     last_camera_ = camera;
@@ -80,21 +77,23 @@ Image Reconstruction::picture() const {
     queue_->copy_to_host(shown.data(), history(frames_).shown, pixels * sizeof(Float4));
     Image image{width_, height_, 3, {}};
     image.pixels.reserve(3 * pixels);
-    for (const Float4& p : shown) image.pixels.insert(image.pixels.end(), {p.x, p.y, p.z});
+    for (const Float4& p : shown) {
+        const Rgb light = light_of_shown(rgb_of(p));
+        image.pixels.insert(image.pixels.end(), {light.r, light.g, light.b});
+    }
     return image;
 }
 
-Rgba8Image Reconstruction::display(ToneMap tone_map, float exposure_stops) const {
+const uint8_t* Reconstruction::display(ToneMap tone_map, float exposure_stops) {
     PERTEV_CHECK(frames_ > 0);
     const uint32_t pixels = width_ * height_;
+    if (display_ == nullptr) display_ = queue_->make_host_copy(std::size_t(4) * pixels);
     auto* const bytes =
         reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(pixels)); // signals' room
     launch(*queue_, "show_picture", pixels,
            ShowPicture{history(frames_).shown, tone_map, exposure_scale(exposure_stops), bytes});
-    Rgba8Image image{width_, height_, {}};
-    image.pixels.resize(std::size_t(pixels) * 4);
-    queue_->copy_to_host(image.pixels.data(), bytes, image.pixels.size());
-    return image;
+    display_->take(bytes);
+    return static_cast<const uint8_t*>(queue_->wait(*display_));
 }
 
 } // namespace pertev

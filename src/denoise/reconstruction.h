@@ -8,6 +8,8 @@
 // Source: Schied et al., "Spatiotemporal Variance-Guided Filtering: Real-Time Reconstruction for Path-Traced Global
 // Illumination", HPG 2017.
 
+#include <memory>
+
 #include "denoise/reconstruction_settings.h"
 #include "denoise/reconstruction_view.h"
 #include "device/device_timer.h"
@@ -38,8 +40,8 @@ public:
     double seconds() const { return timer_.seconds(); }
     /// RGB, linear, of the last frame.
     Image picture() const;
-    /// The same as a display shows it, times 2^exposure_stops.
-    Rgba8Image display(ToneMap tone_map, float exposure_stops) const;
+    /// The same as a display shows it, times 2^exposure_stops: RGBA, [height * width * 4], until the next call.
+    const uint8_t* display(ToneMap tone_map, float exposure_stops);
 
 private:
     HistoryView history(uint32_t frame) const;
@@ -48,9 +50,9 @@ private:
     uint32_t width_, height_, frames_ = 0;
     CameraView last_camera_ = {};
     DeviceTimer timer_;
-    Buffer<Float4> wide_;  // arrays of Float4, of both histories and of signals
-    Buffer<Vec2> squares_; // of both histories
-    Buffer<uint32_t> objects_;
+    Buffer<Float4> wide_; // arrays of Float4, of both histories and of signals
+    Buffer<Vec2> narrow_;
+    std::unique_ptr<HostCopy> display_; // none before it is asked for
 };
 
 } // namespace pertev

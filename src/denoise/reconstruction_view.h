@@ -20,14 +20,44 @@ namespace pertev {
 
 /// Of a frame, all that the next one asks of it.
 struct HistoryView {
-    Float4* normal;   // NoisyFrameView's
-    uint32_t* object; // instance; kNoHit: nothing
-    Float4* diffuse;  // mean of the signal over the frames that saw this place; their number
-    Float4* gloss;    // the same of the other signal
-    Vec2* squares;    // mean square of the luminances of both
-    Float4* recent;   // the same means over few frames: rgb diffuse, luminance of the other
-    Float4* shown;    // rgb of the reconstructed picture; unused
+    Float4* guide;   // packed Guide
+    Float4* diffuse; // mean of the signal over the frames that saw this place; their number
+    Float4* gloss;   // the same of the other signal
+    Vec2* squares;   // mean square of the luminances of both
+    Float4* recent;  // the same means over few frames: rgb diffuse, luminance of the other
+    Float4* shown;   // the reconstructed picture as ShownColor; unused
 };
+
+/// What a pixel shows, as far as the filters ask.
+struct Guide {
+    Vec3 normal;     // unit but for 2^-15, on the camera's side; 0 where nothing was met
+    float alpha;     // GGX width of the sharpest lobe that is not diffuse, 1 without one
+    float depth;     // along the camera's axis, metres
+    uint32_t object; // instance; kNoHit: nothing
+};
+
+/// Sixteen bytes: a guide is read for each tap of each filter.
+HD inline Float4 pack(const Guide& g) {
+    const auto bits = [](float x, float scale, float zero) {
+        return static_cast<uint32_t>(clamp(fma(x, scale, zero + 0.5f), 0.0f, 65535.0f));
+    };
+    const uint32_t x = bits(g.normal.x, 32767, 32767), y = bits(g.normal.y, 32767, 32767),
+                   z = bits(g.normal.z, 32767, 32767), alpha = bits(g.alpha, 65535, 0);
+    return {float_of(x | y << 16), float_of(z | alpha << 16), g.depth, float_of(g.object)};
+}
+HD inline uint32_t object_of(Float4 packed) { return bits_of(packed.w); }
+HD inline float depth_of(Float4 packed) { return packed.z; }
+/// 2^23 + n is the float whose lowest bits are n: cheaper than a conversion.
+HD inline Vec3 normal_of(Float4 packed) {
+    constexpr uint32_t k2To23 = 0x4b000000;
+    constexpr float kZero = 8388608.0f + 32767.0f, kScale = 1.0f / 32767.0f;
+    const uint32_t xy = bits_of(packed.x), z = bits_of(packed.y);
+    return {kScale * (float_of(k2To23 | (xy & 0xffff)) - kZero), kScale * (float_of(k2To23 | xy >> 16) - kZero),
+            kScale * (float_of(k2To23 | (z & 0xffff)) - kZero)};
+}
+HD inline float alpha_of(Float4 packed) {
+    return (1.0f / 65535.0f) * (float_of(0x4b000000 | bits_of(packed.y) >> 16) - 8388608.0f);
+}
 
 /// Both signals, each with the variance of its mean's luminance.
 struct SignalsView {
@@ -45,6 +75,16 @@ struct FrameCameras {
     CameraView now, before;
     uint32_t width, height; // pixels, of both frames
 };
+
+// Sums of products in one rounding each, which is also one instruction each.
+HD inline float fused_dot(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+HD inline float fused_luminance(Rgb c) { return fma(0.2126f, c.r, fma(0.7152f, c.g, 0.0722f * c.b)); }
+HD inline Rgb add_scaled(Rgb sum, float scale, Rgb c) {
+    return {fma(scale, c.r, sum.r), fma(scale, c.g, sum.g), fma(scale, c.b, sum.b)};
+}
+
+/// `x + offset` held within [0, count).
+HD inline int held(int x, int offset, int count) { return clamp(x + offset, 0, count - 1); }
 
 HD inline Rgb rgb_of(Float4 a) { return {a.x, a.y, a.z}; }
 HD inline Vec3 vec3_of(Float4 a) { return {a.x, a.y, a.z}; }

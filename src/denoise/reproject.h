@@ -31,8 +31,11 @@ HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, F
 /// is taken to move as it does.
 HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
                                          const PreviousScene& before, Vec2 centre, Float4 place) {
-    const SeenPoint now = see_point(cameras.now, point_at(scene.instances, scene.meshes, place));
-    const SeenPoint then = see_point(cameras.before, point_at(before.instances, before.meshes, place));
+    const Vec3 point = point_at(scene.instances, scene.meshes, place);
+    const bool is_still = before.instances == scene.instances && before.meshes == scene.meshes;
+    const SeenPoint now = see_point(cameras.now, point);
+    const SeenPoint then =
+        see_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, place));
     return {centre + (then.pixel - now.pixel), then.depth};
 }
 
@@ -55,8 +58,8 @@ HD inline Vec2 reproject_sky(const FrameCameras& cameras, Vec2 centre) {
 /// Up to four pixels of the frame before about a place, with their weights; their sum is 0 where none fits.
 struct Taps {
     uint32_t first;   // upper left pixel, which need not fit
-    float weights[4]; // of it, its right neighbour, the two below
-    float sum;
+    float weights[4]; // of it, its right neighbour, the two below; of enough weight: their sum is 1
+    float sum;        // of weights, before they were divided by it
 };
 
 /// Which of the four have seen `object` at about this depth and with about this normal; where none has, the nearest of
@@ -69,11 +72,10 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
     if (!(x > -1 && y > -1 && x < static_cast<float>(w) && y < static_cast<float>(h))) return taps;
     const auto fits = [&](int px, int py) {
         if (px < 0 || py < 0 || px >= w || py >= h) return false;
-        const uint32_t at = static_cast<uint32_t>(py * w + px);
-        if (before.object[at] != object) return false;
+        const Float4 then = before.guide[py * w + px];
+        if (object_of(then) != object) return false;
         if (!(depth > 0)) return true;
-        const Float4 then = before.normal[at];
-        return abs(then.w - depth) <= 0.05f * depth && dot(vec3_of(then), normal) > 0.5f;
+        return abs(depth_of(then) - depth) <= 0.05f * depth && fused_dot(normal_of(then), normal) > 0.5f;
     };
     const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;
     const int column = to_int(left, -1, w), row = to_int(top, -1, h);
@@ -84,7 +86,11 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
         taps.weights[k] = weight;
         taps.sum += weight;
     }
-    if (taps.sum > kEnoughWeight) return taps;
+    if (taps.sum > kEnoughWeight) {
+        const float inv = 1.0f / taps.sum;
+        for (float& weight : taps.weights) weight *= inv;
+        return taps;
+    }
     const int near_x = column + (in_x < 0.5f ? 0 : 1), near_y = row + (in_y < 0.5f ? 0 : 1);
     for (int k = 0; k < 8; ++k) { // the four beside it, then the corners
         const int dx = k < 4 ? (k == 0) - (k == 1) : 2 * (k & 1) - 1, dy = k < 4 ? (k == 2) - (k == 3) : (k & 2) - 1;
@@ -105,16 +111,16 @@ HD inline Float4 mean_of_taps(const Taps& taps, const FrameCameras& cameras, con
     for (int k = 0; k < 4; ++k) {
         if (!(taps.weights[k] > 0)) continue;
         const Float4 value = values[tap_pixel(taps, cameras, k)];
-        const float weight = taps.weights[k] / taps.sum;
-        mean = {mean.x + weight * value.x, mean.y + weight * value.y, mean.z + weight * value.z,
-                mean.w + weight * value.w};
+        const float weight = taps.weights[k];
+        mean = {fma(weight, value.x, mean.x), fma(weight, value.y, mean.y), fma(weight, value.z, mean.z),
+                fma(weight, value.w, mean.w)};
     }
     return mean;
 }
 HD inline Vec2 mean_of_taps(const Taps& taps, const FrameCameras& cameras, const Vec2* values) {
     Vec2 mean = {0, 0};
     for (int k = 0; k < 4; ++k) {
-        if (taps.weights[k] > 0) mean = mean + (taps.weights[k] / taps.sum) * values[tap_pixel(taps, cameras, k)];
+        if (taps.weights[k] > 0) mean = mean + taps.weights[k] * values[tap_pixel(taps, cameras, k)];
     }
     return mean;
 }

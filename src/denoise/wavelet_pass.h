@@ -12,48 +12,53 @@
 namespace pertev {
 
 struct WaveletPass {
-    const Float4* normal; // HistoryView's, of the present frame
-    const uint32_t* object;
-    const Float4* albedo; // NoisyFrameView's
+    const Float4* guide; // HistoryView's, of the present frame
     SignalsView from, to;
     CameraView camera;
     uint32_t width, height;
     int step;       // pixels between taps
-    bool has_gloss; // false: that signal is black everywhere
+    bool has_gloss; // AccumulateSignals'
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = tiled_pixel(i, width, height);
-        const Float4 diffuse = from.diffuse[pixel], gloss = has_gloss ? from.gloss[pixel] : Float4{0, 0, 0, 0};
-        const uint32_t own = object[pixel];
-        if (own == kNoHit) {
+        const PixelPlace at = tiled_place(i, width, height);
+        const uint32_t pixel = at.y * width + at.x;
+        const Float4 own = guide[pixel], diffuse = from.diffuse[pixel],
+                     gloss = has_gloss ? from.gloss[pixel] : Float4{0, 0, 0, 0};
+        if (object_of(own) == kNoHit) {
             to.diffuse[pixel] = diffuse;
             if (has_gloss) to.gloss[pixel] = gloss;
             return;
         }
-        const int w = static_cast<int>(width), h = static_cast<int>(height);
-        const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
-        const Float4 here = normal[pixel];
-        const Vec3 n = vec3_of(here);
-        const Plane plane(camera, n, here.w, x, y, step);
-        const float alpha = albedo[pixel].w;
+        // Of rows and columns of the three by three taps; at the picture's edges some are the same.
+        const Vec3 normal = normal_of(own);
+        const Plane plane(camera, normal, depth_of(own), static_cast<int>(at.x), static_cast<int>(at.y), step);
+        int columns[3], rows[3];
+        float on_columns[3], on_rows[3];
+        for (int k = 0; k < 3; ++k) {
+            const int x = held(static_cast<int>(at.x), (k - 1) * step, static_cast<int>(width)),
+                      y = held(static_cast<int>(at.y), (k - 1) * step, static_cast<int>(height));
+            columns[k] = x;
+            rows[k] = y * static_cast<int>(width);
+            on_columns[k] = plane.on_column(x);
+            on_rows[k] = plane.on_row(y);
+        }
+        const float alpha = alpha_of(own);
         // What bends reflections away, and what tells them from their neighbours by themselves.
         const float bend_of_gloss = 64.0f + 8.0f / max(alpha, 0.002f),
                     narrow = static_cast<float>(step) / (1.0f + square(64.0f * alpha));
-        Sum of_diffuse(diffuse, deviation_of(from.diffuse, x, y));
-        Sum of_gloss(gloss, has_gloss ? deviation_of(from.gloss, x, y) : 0.0f);
-        for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-                const int px = x + dx * step, py = y + dy * step;
-                if ((dx == 0 && dy == 0) || px < 0 || py < 0 || px >= w || py >= h) continue;
-                const uint32_t tap = static_cast<uint32_t>(py * w + px);
-                if (object[tap] != own) continue;
-                const Float4 there = normal[tap];
-                const float bend = max(1.0f - dot(vec3_of(there), n), 0.0f), off = plane.distance(px, py, there.w);
-                const float kernel = weight_of(dx) * weight_of(dy);
-                of_diffuse.add(from.diffuse[tap], kernel, off + 64.0f * bend);
-                if (has_gloss && abs(albedo[tap].w - alpha) < 0.1f + 0.2f * alpha) {
-                    of_gloss.add(from.gloss[tap], kernel, off + bend_of_gloss * bend + narrow);
-                }
+        Sum of_diffuse(diffuse, deviation_of(from.diffuse, diffuse.w, rows, columns));
+        Sum of_gloss(gloss, has_gloss ? deviation_of(from.gloss, gloss.w, rows, columns) : 0.0f);
+        for (int k = 0; k < 9; ++k) {
+            if (k == 4) continue;
+            const int row = k / 3, column = k % 3, tap = rows[row] + columns[column];
+            const Float4 there = guide[tap];
+            if (object_of(there) != object_of(own)) continue;
+            const float bend = max(1.0f - fused_dot(normal_of(there), normal), 0.0f),
+                        off = plane.distance(on_columns[column] + on_rows[row], depth_of(there));
+            const float kernel = row == 1 || column == 1 ? 0.5f : 0.25f; // of a tent, over that of the centre
+            of_diffuse.add(from.diffuse[tap], kernel, fma(64.0f, bend, off));
+            if (has_gloss && abs(alpha_of(there) - alpha) < 0.1f + 0.2f * alpha) {
+                of_gloss.add(from.gloss[tap], kernel, fma(bend_of_gloss, bend, off) + narrow);
             }
         }
         to.diffuse[pixel] = of_diffuse.mean();
@@ -62,7 +67,7 @@ struct WaveletPass {
 
 private:
     /// exp(-x) for a fifth of its price: (1 - x / 4)^4, and 0 from 4 on.
-    HD static float falloff(float x) { return square(square(max(1.0f - 0.25f * x, 0.0f))); }
+    HD static float falloff(float x) { return square(square(max(fma(-0.25f, x, 1.0f), 0.0f))); }
 
     /// The plane of the surface at a pixel. Seen by the camera a point is linear in its pixel, times its depth in
     /// perspective.
@@ -81,13 +86,15 @@ private:
             at_zero = 0.5f * (per_column + per_row) + scale * (n.y * camera.half_height - n.x * camera.half_width);
             per_depth = -scale * n.z;
             here = 0;
-            here = signed_distance(x, y, depth);
+            here = signed_distance(on_column(x) + on_row(y), depth);
         }
-        HD float signed_distance(int x, int y, float depth) const {
-            const float in_view = fma(per_column, static_cast<float>(x), fma(per_row, static_cast<float>(y), at_zero));
-            return fma(is_perspective ? depth : 1.0f, in_view, per_depth * depth) - here;
+        /// What a pixel's column and row add to its place.
+        HD float on_column(int x) const { return fma(per_column, static_cast<float>(x), at_zero); }
+        HD float on_row(int y) const { return per_row * static_cast<float>(y); }
+        HD float signed_distance(float in_view, float depth) const {
+            return fma(is_perspective ? depth : 1.0f, in_view, fma(per_depth, depth, -here));
         }
-        HD float distance(int x, int y, float depth) const { return abs(signed_distance(x, y, depth)); }
+        HD float distance(float in_view, float depth) const { return abs(signed_distance(in_view, depth)); }
     };
 
     /// Of one signal: values by their weights, variances by the squares of these.
@@ -96,13 +103,13 @@ private:
         float variance, weight = 1, centre, inv_deviation;
 
         HD Sum(Float4 own, float deviation)
-            : light(rgb_of(own)), variance(own.w), centre(luminance(rgb_of(own))),
+            : light(rgb_of(own)), variance(own.w), centre(fused_luminance(rgb_of(own))),
               inv_deviation(1.0f / (4.0f * deviation + 1e-4f)) {}
         HD void add(Float4 tap, float kernel, float difference) {
-            const float unlike = abs(luminance(rgb_of(tap)) - centre) * inv_deviation;
-            const float w = kernel * falloff(difference + unlike);
-            light += w * rgb_of(tap);
-            variance += w * w * tap.w;
+            const float unlike = abs(fused_luminance(rgb_of(tap)) - centre);
+            const float w = kernel * falloff(fma(unlike, inv_deviation, difference));
+            light = add_scaled(light, w, rgb_of(tap));
+            variance = fma(w * w, tap.w, variance);
             weight += w;
         }
         HD Float4 mean() const {
@@ -111,22 +118,14 @@ private:
         }
     };
 
-    /// Of nine taps' tent, over that of the centre. Measured: twenty-five taps of a B3 spline are no better by FLIP,
-    /// and cost twice the time.
-    HD static float weight_of(int offset) { return offset == 0 ? 1.0f : 0.5f; }
     /// Of light at a pixel: variances are noisy themselves, so that over its neighbours.
-    HD float deviation_of(const Float4* signal, int x, int y) const {
-        float sum = 0, weights = 0;
-        for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-                const int px = x + dx, py = y + dy;
-                if (px < 0 || py < 0 || px >= static_cast<int>(width) || py >= static_cast<int>(height)) continue;
-                const float w = (dx == 0 ? 2.0f : 1.0f) * (dy == 0 ? 2.0f : 1.0f);
-                sum += w * signal[py * static_cast<int>(width) + px].w;
-                weights += w;
-            }
+    HD float deviation_of(const Float4* signal, float own, const int* rows, const int* columns) const {
+        float sum = 4.0f * own;
+        for (int k = 0; k < 9; ++k) {
+            if (k == 4) continue;
+            sum = fma(k % 2 == 1 ? 2.0f : 1.0f, signal[rows[k / 3] + columns[k % 3]].w, sum);
         }
-        return safe_sqrt(sum / weights);
+        return safe_sqrt(sum * (1.0f / 16.0f));
     }
 };
 

@@ -9,17 +9,26 @@
 
 namespace pertev {
 
+struct PixelPlace {
+    uint32_t x, y; // column, row
+};
+
 /// The pixel that comes as number `i`. Columns and rows that do not fill a tile come last.
-HD inline uint32_t tiled_pixel(uint32_t i, uint32_t width, uint32_t height) {
+HD inline PixelPlace tiled_place(uint32_t i, uint32_t width, uint32_t height) {
     const uint32_t tiles_x = width / 8, tiles_y = height / 4, tiled = tiles_x * tiles_y * 32;
     if (i < tiled) {
-        const uint32_t tile = i / 32, within = i % 32;
-        return (tile / tiles_x * 4 + within / 8) * width + tile % tiles_x * 8 + within % 8;
+        const uint32_t tile = i / 32, within = i % 32, row = tile / tiles_x;
+        return {(tile - row * tiles_x) * 8 + within % 8, row * 4 + within / 8};
     }
     i -= tiled;
     const uint32_t right = width - tiles_x * 8, in_right = right * tiles_y * 4;
-    if (i < in_right) return i / right * width + tiles_x * 8 + i % right;
-    return tiles_y * 4 * width + (i - in_right);
+    if (i < in_right) return {tiles_x * 8 + i % right, i / right};
+    i -= in_right;
+    return {i % width, tiles_y * 4 + i / width};
+}
+HD inline uint32_t tiled_pixel(uint32_t i, uint32_t width, uint32_t height) {
+    const PixelPlace place = tiled_place(i, width, height);
+    return place.y * width + place.x;
 }
 
 } // namespace pertev

@@ -1,5 +1,7 @@
 #include "session/render_settings.h"
 
+#include <algorithm>
+
 namespace pertev {
 
 TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
@@ -16,6 +18,11 @@ void set_default_size(RenderSettings& settings, const Camera* own) {
     settings.width = 1280, settings.height = 720;
     if (own == nullptr || !(own->aspect > 0)) return;
     settings.width = static_cast<uint32_t>(to_int(720 * own->aspect + 0.5f, 1, 8192));
+}
+
+RenderSettings settings_of_frames(RenderSettings settings) {
+    settings.path.roulette_depth = std::min(settings.path.roulette_depth, 2u);
+    return settings;
 }
 
 bool same_picture(const RenderSettings& a, const RenderSettings& b) {

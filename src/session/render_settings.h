@@ -47,6 +47,10 @@ PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda);
 /// Null: there is none.
 void set_default_size(RenderSettings& settings, const Camera* own);
 
+/// `settings` as frames in real time are rendered with them: paths may end from their second vertex on, where those of
+/// pictures may from the third. The mean light is the same, by fewer rays.
+RenderSettings settings_of_frames(RenderSettings settings);
+
 /// Whether both ask for the same picture of the same scene, camera and number of samples.
 bool same_picture(const RenderSettings& a, const RenderSettings& b);
 

@@ -200,7 +200,7 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         noisy_frame_.emplace(queue_, width, height, splits_light);
         reconstruction_.emplace(queue_, width, height);
     }
-    begin(camera_, settings_, 1);
+    begin(camera_, settings_of_frames(settings_), 1);
     noisy_frame_->begin();
     integrator_->render(number, 1, noisy_frame_->film_view());
     frame_rays_ = integrator_->rays();
@@ -211,7 +211,7 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     has_moved_ = false;
 }
 
-const Reconstruction& Session::frame() const {
+Reconstruction& Session::frame() {
     PERTEV_CHECK(reconstruction_.has_value());
     return *reconstruction_;
 }

@@ -91,7 +91,7 @@ public:
     /// Error(OutOfMemory, DeviceFault).
     void render_frame(uint32_t number, const ReconstructionSettings& settings);
     /// Of the last render_frame.
-    const Reconstruction& frame() const;
+    Reconstruction& frame();
     /// Rays of the last render_frame.
     RayCounts frame_rays() const { return frame_rays_; }
     /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this

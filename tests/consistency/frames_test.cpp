@@ -131,7 +131,7 @@ TEST_CASE("a frame that is not reconstructed is the film's picture of the same s
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
         Queue queue = queue_asked_for();
-        Session session(queue, prepared, s.camera, frame_settings());
+        Session session(queue, prepared, s.camera, settings_of_frames(frame_settings()));
         session.render_frame(
             0, {.history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false});
         session.render(1);

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "denoise/reproject.h"
+#include "denoise/shown_color.h"
 
 using namespace pertev;
 
@@ -73,15 +74,38 @@ TEST_CASE("what has moved is looked for where it was") {
     CHECK(still.pixel.x == doctest::Approx(centre.x));
 }
 
+TEST_CASE("guides are packed without losing what filters ask of them") {
+    const Vec3 normals[] = {{0, 0, 1}, {-1, 0, 0}, normalize(Vec3{1, 2, -3}), {0, 0, 0}};
+    for (const Vec3 n : normals) {
+        for (const float alpha : {0.0f, 0.002f, 0.3f, 1.0f}) {
+            const Float4 packed = pack({n, alpha, 12.345f, kNoHit - 1});
+            CHECK(length(normal_of(packed) - n) < 3e-5f);
+            CHECK(alpha_of(packed) == doctest::Approx(alpha).epsilon(1e-5));
+            CHECK(depth_of(packed) == 12.345f);
+            CHECK(object_of(packed) == kNoHit - 1);
+        }
+    }
+    CHECK(length(normal_of(pack({{0, 0, 0}, 1, 0, kNoHit}))) == 0);
+}
+
+TEST_CASE("colours come back from the form in which pictures are kept") {
+    for (const Rgb light :
+         {Rgb{0, 0, 0}, Rgb{1e-4f, 2e-4f, 0}, Rgb{1, 0.5f, 0.25f}, Rgb{0, 0, 300}, Rgb{4e4f, 3e4f, 1e4f}}) {
+        const Rgb back = light_of_shown(shown_color(light));
+        const float error = (1e-6f + 1e-6f * luminance(light)) * luminance(light); // 1 - Y cancels where Y is near 1
+        CHECK(abs(back.r - light.r) <= 2 * error);
+        CHECK(abs(back.g - light.g) <= 2 * error);
+        CHECK(abs(back.b - light.b) <= 12 * error);
+    }
+}
+
 TEST_CASE("taps take what shows the same object at this depth with this normal, and nothing else") {
     constexpr uint32_t kWidth = 4, kHeight = 3;
-    std::vector<Float4> normal(kWidth * kHeight, {0, 0, 1, 2});
-    std::vector<uint32_t> object(kWidth * kHeight, 7);
+    std::vector<Float4> guide(kWidth * kHeight, pack({{0, 0, 1}, 1, 2, 7}));
     std::vector<Float4> values(kWidth * kHeight);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = {static_cast<float>(i), 0, 0, 1};
     HistoryView before = {};
-    before.normal = normal.data();
-    before.object = object.data();
+    before.guide = guide.data();
     const FrameCameras cameras = {{}, {}, kWidth, kHeight};
     const auto taps_at = [&](Vec2 place, float depth = 2, Vec3 n = {0, 0, 1}, uint32_t id = 7) {
         return find_taps(before, cameras, place, depth, n, id);
@@ -96,11 +120,11 @@ TEST_CASE("taps take what shows the same object at this depth with this normal, 
     CHECK(taps_at({-3, 1.5f}).sum == 0);                 // out of the picture
     CHECK(taps_at({1e30f, kInfinity}).sum == 0);
     CHECK(taps_at({-0.25f, 1.5f}).sum == doctest::Approx(0.25f)); // partly
-    object[5] = 9;
+    guide[5] = pack({{0, 0, 1}, 1, 2, 9});
     const Taps one = taps_at({2, 1.5f});
     CHECK(one.sum == doctest::Approx(0.5f));
     CHECK(mean_of_taps(one, cameras, values.data()).x == doctest::Approx(6));
-    object[6] = 9;
+    guide[6] = guide[5];
     const Taps beside = taps_at({1.75f, 1.5f}); // nearest is 5, of whose neighbours 4 comes first after 6
     CHECK(beside.sum == 1);
     CHECK(mean_of_taps(beside, cameras, values.data()).x == doctest::Approx(4));
