@@ -328,6 +328,7 @@ void add_bench_command(CLI::App& app, int& status) {
     add_bench_rays_command(verb, status);
     add_bench_frames_command(verb, status);
     add_bench_noise_command(verb, status);
+    add_bench_sequence_command(verb, status);
     add_bench_build_command(verb, status);
     verb.require_subcommand(0, 1);
     verb.callback([&verb, flags, &status] {

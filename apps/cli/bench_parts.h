@@ -57,9 +57,10 @@ void refuse_flags_before(const CLI::App& verb);
 
 /// `bench rays`, a verb of `bench`.
 void add_bench_rays_command(CLI::App& bench, int& status);
-/// `bench build`, `bench frames` and `bench noise`, likewise.
+/// `bench build`, `bench frames`, `bench noise` and `bench sequence`, likewise.
 void add_bench_build_command(CLI::App& bench, int& status);
 void add_bench_frames_command(CLI::App& bench, int& status);
 void add_bench_noise_command(CLI::App& bench, int& status);
+void add_bench_sequence_command(CLI::App& bench, int& status);
 
 } // namespace pertev

@@ -51,6 +51,12 @@ void check_for_list(const std::string& output, Messages& messages) {
     messages.warn(text);
 }
 
+void refuse(bool is_wrong, const std::string& text) {
+    if (is_wrong) throw Error(ErrorCode::BadInput, text);
+}
+
+} // namespace
+
 void add_motion_flags(CLI::App& verb, RenderFlags& flags) {
     const char* group = "Motion";
     verb.add_option("--time", flags.time_s,
@@ -82,10 +88,6 @@ void add_motion_flags(CLI::App& verb, RenderFlags& flags) {
         ->group(group);
 }
 
-void refuse(bool is_wrong, const std::string& text) {
-    if (is_wrong) throw Error(ErrorCode::BadInput, text);
-}
-
 void check_motion_flags(const RenderFlags& flags) {
     const bool is_sequence = frame_sequence(flags).has_value();
     refuse(flags.time_s && !flags.frames.empty(), "--time: with --frames every frame has its own; say --fps");
@@ -109,8 +111,6 @@ void check_motion_flags(const RenderFlags& flags) {
                         output));
     }
 }
-
-} // namespace
 
 std::optional<FrameSequence> frame_sequence(const RenderFlags& flags) {
     FrameSequence sequence;

@@ -42,6 +42,10 @@ struct RenderFlags {
 void add_render_flags(CLI::App& verb, RenderFlags& flags);
 /// Of these, but for the scene, the ones that a picture on a screen has too: size, display, quality, tracing, machine.
 void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags);
+/// Of these, the ones that say what moves, and at which times; and what can be told of them before the scene is read,
+/// which throws Error(BadInput).
+void add_motion_flags(CLI::App& verb, RenderFlags& flags);
+void check_motion_flags(const RenderFlags& flags);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
 /// --seed, --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);

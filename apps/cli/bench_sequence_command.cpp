@@ -1,0 +1,248 @@
+// pertev bench sequence: how like the frames of a moving picture are to pictures of many samples, and how they flicker;
+// beside them another denoiser's, which is given each frame's samples alone (tools/denoise_by_oidn.py).
+
+#include <algorithm>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/bench_parts.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/parse_values.h"
+#include "apps/cli/pfm_file.h"
+#include "apps/cli/ready_scene.h"
+#include "apps/cli/render_frames.h"
+#include "base/limits.h"
+#include "image/flip.h"
+#include "image/tone_map_image.h"
+#include "image/write_png.h"
+
+namespace pertev {
+namespace {
+
+struct SequenceFlags {
+    RenderFlags render;
+    uint32_t reference = 0;
+    std::string write_samples, peer, strips;
+};
+
+/// What one way of making frames is measured by, over a sequence.
+struct Score {
+    double flip = 0, flip_of_first = 0, flip_of_last = 0; // HDR-FLIP against the references: mean, of single frames
+    double flicker = 0; // mean absolute change of the shown error from frame to frame, in [0, 1]
+    uint32_t frames = 0;
+    std::vector<float> error; // of the frame before, as a display shows it
+
+    void add(const Image& picture, const Image& reference, ToneMap tone_map, float exposure) {
+        flip_of_last = hdr_flip(picture, reference).mean;
+        if (frames == 0) flip_of_first = flip_of_last;
+        flip += flip_of_last;
+        const Rgba8Image a = tone_map_image(picture, tone_map, exposure),
+                         b = tone_map_image(reference, tone_map, exposure);
+        std::vector<float> now(a.pixels.size());
+        double change = 0;
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            now[i] = (static_cast<float>(a.pixels[i]) - static_cast<float>(b.pixels[i])) / 255.0f;
+            if (frames > 0) change += static_cast<double>(std::abs(now[i] - error[i]));
+        }
+        // Three of four numbers are colours; alpha has no error.
+        flicker += change / (static_cast<double>(now.size()) * 0.75);
+        error = std::move(now);
+        ++frames;
+    }
+    double mean_flip() const { return flip / std::max(frames, 1u); }
+    double mean_flicker() const { return frames > 1 ? flicker / (frames - 1) : 0.0; }
+};
+
+struct Scores {
+    Score ours, sample;
+    std::optional<Score> peer;
+    double noise = 0; // HDR-FLIP of one half of the first reference's samples against the other
+};
+
+std::filesystem::path file_of(const std::string& folder, uint32_t frame, const char* kind) {
+    return std::filesystem::path(folder) / fmt::format("frame-{:04}{}.pfm", frame, kind);
+}
+
+/// One sample a pixel as `pertev render` takes it, another one for each frame.
+RenderResult sample_of(Session& session, const RenderSettings& settings, uint32_t frame, uint32_t samples,
+                       uint32_t aovs) {
+    RenderSettings one = settings;
+    one.samples = samples;
+    one.aovs = aovs;
+    one.path.seed = frame;
+    return session.look_aside(session.camera(), one);
+}
+
+const Image& layer_named(const RenderResult& result, const char* name) {
+    const auto layer = std::ranges::find(result.layers, name, &FilmLayer::name);
+    PERTEV_CHECK(layer != result.layers.end()); // it was asked for
+    return layer->image;
+}
+
+Image mean_of_both(const Image& a, const Image& b) {
+    Image mean = a;
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
+    return mean;
+}
+
+/// The middle quarter by half of each picture, side by side.
+Rgba8Image strip_of(const std::vector<const Image*>& pictures, ToneMap tone_map, float exposure) {
+    const uint32_t width = pictures[0]->width / 4, height = pictures[0]->height / 2;
+    const auto count = static_cast<uint32_t>(pictures.size());
+    Rgba8Image strip{width * count, height, std::vector<uint8_t>(std::size_t(width) * count * height * 4)};
+    for (uint32_t k = 0; k < count; ++k) {
+        const Rgba8Image shown = tone_map_image(*pictures[k], tone_map, exposure);
+        for (uint32_t y = 0; y < height; ++y) {
+            const auto from =
+                shown.pixels.begin() +
+                static_cast<std::ptrdiff_t>((std::size_t(y + height / 2) * shown.width + width * 3 / 2) * 4);
+            std::copy(from, from + static_cast<std::ptrdiff_t>(width * 4),
+                      strip.pixels.begin() +
+                          static_cast<std::ptrdiff_t>((std::size_t(y) * strip.width + k * width) * 4));
+        }
+    }
+    return strip;
+}
+
+Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
+               ToneMap tone_map, Reporter& reporter) {
+    Scores scores;
+    if (!flags.peer.empty()) scores.peer.emplace();
+    const FrameCamera camera = {*ready.camera, ready.sequence};
+    for (uint32_t number = 0; number < ready.sequence.count(); ++number) {
+        throw_if_interrupted();
+        const uint32_t frame = ready.sequence.first + number;
+        reporter.progress((number + 1.0) / ready.sequence.count(),
+                          fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
+        if (const std::optional<double> time_s = ready.sequence.time_of(frame)) {
+            if (const uint32_t parts = ready.moving->set_time(*time_s, reporter.messages())) {
+                session.update_scene(ready.prepared(), parts);
+            }
+        }
+        place_frame(frame, ready.scene(), camera, record);
+        session.set_camera(record.camera.camera);
+        session.render_frame(number, {});
+        const Image ours = session.frame().picture();
+        const RenderResult sample = sample_of(session, ready.settings, number, 1, kAovAlbedo | kAovNormal);
+        if (!flags.write_samples.empty()) {
+            write_pfm(file_of(flags.write_samples, number, ""), sample.picture);
+            write_pfm(file_of(flags.write_samples, number, "-albedo"), layer_named(sample, "albedo"));
+            write_pfm(file_of(flags.write_samples, number, "-normal"), layer_named(sample, "normal"));
+        }
+        if (flags.reference == 0) continue;
+        const uint32_t half = (flags.reference + 1) / 2;
+        const Image first = sample_of(session, ready.settings, 0x40000000u + number, half, 0).picture,
+                    second = sample_of(session, ready.settings, 0x80000000u + number, half, 0).picture,
+                    reference = mean_of_both(first, second);
+        scores.ours.add(ours, reference, tone_map, exposure);
+        scores.sample.add(sample.picture, reference, tone_map, exposure);
+        if (number == 0) scores.noise = hdr_flip(first, second).mean;
+        std::optional<Image> peer;
+        if (scores.peer) {
+            peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
+            scores.peer->add(*peer, reference, tone_map, exposure);
+        }
+        if (!flags.strips.empty() && number % 15 == 14) {
+            std::vector<const Image*> pictures = {&sample.picture, &ours};
+            if (peer) pictures.push_back(&*peer);
+            pictures.push_back(&reference);
+            write_png(std::filesystem::path(flags.strips) / fmt::format("strip-{:04}.png", number),
+                      strip_of(pictures, tone_map, exposure));
+        }
+    }
+    return scores;
+}
+
+std::string json_of(const Score& score) {
+    return fmt::format(R"({{"hdr_flip":{},"hdr_flip_first":{},"hdr_flip_last":{},"flicker":{}}})",
+                       json_number(score.mean_flip()), json_number(score.flip_of_first),
+                       json_number(score.flip_of_last), json_number(score.mean_flicker()));
+}
+
+std::string text_of(const char* name, const Score& score) {
+    return fmt::format("  {:<8} HDR-FLIP {:.4f} (first frame {:.4f}, last {:.4f}), flicker {:.5f}\n", name,
+                       score.mean_flip(), score.flip_of_first, score.flip_of_last, score.mean_flicker());
+}
+
+int bench_sequence(const SequenceFlags& flags) {
+    Reporter reporter(flags.render.report);
+    if (!frame_sequence(flags.render)) {
+        throw Error(ErrorCode::BadInput, "bench sequence: which frames? say --frames A-B or --turntable N");
+    }
+    if (flags.reference == 0 && (!flags.peer.empty() || !flags.strips.empty())) {
+        throw Error(ErrorCode::BadInput, "--peer, --strips: against which pictures? say --reference SPP");
+    }
+    check_motion_flags(flags.render);
+    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
+    reporter.say_messages();
+    listen_for_interrupt();
+    PictureRecord record = picture_record(flags.render.scene, *ready);
+    Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
+    const ToneMap tone_map = ToneMap::Agx;
+    const float exposure = session.meter(tone_map);
+    session.cut();
+    reporter.set_work("rendering");
+    const Scores scores = measure(*ready, session, record, flags, exposure, tone_map, reporter);
+    reporter.end_progress();
+    if (reporter.json()) {
+        reporter.event(fmt::format(
+            R"({{"event":"sequence","scene":{},"device":{},"width":{},"height":{},"frames":{},"reference_spp":{},"reference_noise":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
+            json_string(flags.render.scene.scene), json_string(ready->queue->device_name()), ready->settings.width,
+            ready->settings.height, ready->sequence.count(), flags.reference, json_number(scores.noise),
+            json_of(scores.ours), json_of(scores.sample), scores.peer ? json_of(*scores.peer) : "null",
+            picture_hash(session.frame().picture()).hex()));
+        return 0;
+    }
+    reporter.answer(fmt::format("{} on {}: {}x{}, {} frames; last frame {}\n", flags.render.scene.scene,
+                                ready->queue->device_name(), ready->settings.width, ready->settings.height,
+                                ready->sequence.count(), picture_hash(session.frame().picture()).hex()));
+    if (flags.reference == 0) return 0;
+    reporter.answer(fmt::format("against {} spp, one half of which differs from the other by {:.4f}:\n",
+                                flags.reference, scores.noise));
+    reporter.answer(text_of("frames", scores.ours));
+    if (scores.peer) reporter.answer(text_of("peer", *scores.peer));
+    reporter.answer(text_of("samples", scores.sample));
+    return 0;
+}
+
+} // namespace
+
+void add_bench_sequence_command(CLI::App& bench, int& status) {
+    CLI::App& verb = *bench.add_subcommand(
+        "sequence", "Frames of a moving picture against pictures of many samples, and another denoiser's frames");
+    const auto flags = std::make_shared<SequenceFlags>();
+    flags->render.size = "1280x720";
+    flags->render.max_depth = 4;
+    add_scene_options(verb, flags->render.scene);
+    add_motion_flags(verb, flags->render);
+    verb.remove_option(verb.get_option("--continue"));
+    add_light_path_flags(verb, flags->render, "Picture");
+    verb.remove_option(verb.get_option("--spp")); // a frame has one
+    verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--reference", flags->reference,
+                    "compare each frame with a picture of so many samples, by HDR-FLIP;\nits errors' mean change from "
+                    "frame to frame is the flicker")
+        ->type_name("SPP")
+        ->check(whole_between(2, kMaxSamplesPerPixel));
+    verb.add_option("--write-samples", flags->write_samples,
+                    "write each frame's samples, albedo and normals as PFM into this\nfolder, for another denoiser")
+        ->type_name("FOLDER");
+    verb.add_option("--peer", flags->peer,
+                    "compare what another denoiser made of these: frame-0000-denoised.pfm\nand so on in this folder")
+        ->type_name("FOLDER");
+    verb.add_option("--strips", flags->strips,
+                    "write of each fifteenth frame samples, frame, peer and reference\nside by side as PNG into this "
+                    "folder")
+        ->type_name("FOLDER");
+    add_machine_flags(verb, flags->render.machine);
+    add_report_flags(verb, flags->render.report);
+    verb.callback([&verb, flags, &status] {
+        refuse_flags_before(verb);
+        status = bench_sequence(*flags);
+    });
+}
+
+} // namespace pertev

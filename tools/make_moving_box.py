@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""Writes the Cornell box with a lamp and a block that move, for `pertev bench sequence`: make_moving_box.py OUT.gltf
+
+The box is scenes/cornell-box/cornell-box.gltf. In 2.5 s the lamp sinks below the ceiling and swings from side to side,
+the short block slides away from its wall and back.
+"""
+
+import base64
+import json
+import math
+import pathlib
+import struct
+import sys
+
+BOX = pathlib.Path(__file__).resolve().parent.parent / "scenes/cornell-box/cornell-box.gltf"
+SECONDS, STEPS = 2.5, 25
+
+
+def main(out):
+    box = json.loads(BOX.read_text())
+    names = [node.get("name") for node in box["nodes"]]
+    times = [SECONDS * k / STEPS for k in range(STEPS + 1)]
+    turn = [2 * math.pi * t / SECONDS for t in times]
+    lamp = [(0.12 * math.sin(a), -0.05 * (1 - math.cos(a)) - 0.001, 0.0) for a in turn]
+    slide = [(0.06 * (1 - math.cos(a)), 0.0, -0.05 * math.sin(a)) for a in turn]
+    data, views, accessors = b"", box["bufferViews"], box["accessors"]
+
+    def add(kind, rows):
+        nonlocal data
+        packed = b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows)
+        views.append({"buffer": len(box["buffers"]), "byteOffset": len(data), "byteLength": len(packed)})
+        accessor = {"bufferView": len(views) - 1, "componentType": 5126, "count": len(rows), "type": kind}
+        if kind == "SCALAR":
+            accessor |= {"min": [rows[0][0]], "max": [rows[-1][0]]}
+        accessors.append(accessor)
+        data += packed
+        return len(accessors) - 1
+
+    clock = add("SCALAR", [(t,) for t in times])
+    moves = [(names.index("light"), add("VEC3", lamp)), (names.index("short block"), add("VEC3", slide))]
+    box["animations"] = [{
+        "name": "lamp and block",
+        "samplers": [{"input": clock, "output": output} for _, output in moves],
+        "channels": [{"sampler": k, "target": {"node": node, "path": "translation"}}
+                     for k, (node, _) in enumerate(moves)]}]
+    box["buffers"].append({"byteLength": len(data),
+                           "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()})
+    pathlib.Path(out).write_text(json.dumps(box) + "\n")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
