@@ -25,10 +25,10 @@ namespace {
 struct FramesFlags {
     RenderFlags render;
     uint32_t frames = 60;
-    bool still = false, no_reconstruction = false;
-    bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false;
+    bool still = false;
+    ReconstructionFlags reconstruction;
     std::string write;
-    uint32_t reference = 0, passes = 5, history = 32;
+    uint32_t reference = 0;
 };
 
 /// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
@@ -57,13 +57,7 @@ struct FrameFigures {
 
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
-    ReconstructionSettings settings;
-    settings.passes = flags.passes;
-    settings.history = flags.history;
-    settings.limit_fireflies = !flags.no_firefly_limit;
-    settings.limit_history = !flags.no_history_limit;
-    settings.anti_alias = !flags.no_anti_alias;
-    if (flags.no_reconstruction) settings = {1, 0, false, false, false};
+    const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction;
     FrameFigures figures;
@@ -172,18 +166,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->check(whole_between(1, 100000))
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
-    verb.add_flag("--no-reconstruction", flags->no_reconstruction, "show the samples as they are");
-    verb.add_flag("--no-firefly-limit", flags->no_firefly_limit, "samples stay as bright as they are");
-    verb.add_flag("--no-history-limit", flags->no_history_limit, "means are not held within what recent frames say");
-    verb.add_flag("--no-anti-alias", flags->no_anti_alias, "no mean of shown pictures over time");
-    verb.add_option("--history", flags->history, "frames of a mean at most")
-        ->type_name("N")
-        ->check(whole_between(1, 1024))
-        ->capture_default_str();
-    verb.add_option("--passes", flags->passes, "of the wavelet filter")
-        ->type_name("N")
-        ->check(whole_between(0, 8))
-        ->capture_default_str();
+    add_reconstruction_flags(verb, flags->reconstruction);
     verb.add_option("--reference", flags->reference,
                     "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")
         ->type_name("SPP")

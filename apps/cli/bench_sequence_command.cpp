@@ -24,6 +24,7 @@ namespace {
 
 struct SequenceFlags {
     RenderFlags render;
+    ReconstructionFlags reconstruction;
     uint32_t reference = 0;
     std::string write_samples, peer, strips;
 };
@@ -109,6 +110,7 @@ Rgba8Image strip_of(const std::vector<const Image*>& pictures, ToneMap tone_map,
 
 Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
                ToneMap tone_map, Reporter& reporter) {
+    const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
     Scores scores;
     if (!flags.peer.empty()) scores.peer.emplace();
     const FrameCamera camera = {*ready.camera, ready.sequence};
@@ -124,7 +126,7 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         }
         place_frame(frame, ready.scene(), camera, record);
         session.set_camera(record.camera.camera);
-        session.render_frame(number, {});
+        session.render_frame(number, settings);
         const Image ours = session.frame().picture();
         const RenderResult sample = sample_of(session, ready.settings, number, 1, kAovAlbedo | kAovNormal);
         if (!flags.write_samples.empty()) {
@@ -222,6 +224,7 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
     add_light_path_flags(verb, flags->render, "Picture");
     verb.remove_option(verb.get_option("--spp")); // a frame has one
     verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    add_reconstruction_flags(verb, flags->reconstruction);
     verb.add_option("--reference", flags->reference,
                     "compare each frame with a picture of so many samples, by HDR-FLIP;\nits errors' mean change from "
                     "frame to frame is the flicker")
