@@ -35,11 +35,13 @@ struct AccumulateSignals {
             return forget(pixel);
         }
         Taps taps = {}, mirrored = {};
+        float longest_gloss = static_cast<float>(longest);
         if (has_history) {
             const Vec3 normal = normal_of(guide);
             const Reprojection then = reproject_surface(cameras, scene, scene_before, centre, frame.place[pixel]);
             was_at[pixel] = then.pixel;
             taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, object);
+            if (has_gloss) longest_gloss = min(longest_gloss, frames_of_lobe(alpha_of(guide), frame.place[pixel]));
             if (has_gloss && alpha_of(guide) < kMirrors) {
                 const float distance = min(frame.gloss[pixel].w, 1e6f);
                 const Reprojection behind = reproject_virtual(cameras, centre, depth_of(guide), distance);
@@ -55,12 +57,12 @@ struct AccumulateSignals {
             recent.w = fused_luminance(rgb_of(gloss));
             squares.y = square(recent.w);
             const Taps& of_gloss = mirrored.sum > kEnoughWeight ? mirrored : taps;
-            now.gloss[pixel] = gone_on(of_gloss, before.gloss, gloss);
+            now.gloss[pixel] = gone_on(of_gloss, before.gloss, gloss, longest_gloss);
             const float frames = now.gloss[pixel].w;
             if (frames > 1)
                 squares.y = lerp(mean_of_taps(of_gloss, cameras, before.squares).y, squares.y, 1.0f / frames);
         }
-        const Float4 mean = gone_on(taps, before.diffuse, diffuse);
+        const Float4 mean = gone_on(taps, before.diffuse, diffuse, static_cast<float>(longest));
         now.diffuse[pixel] = mean;
         if (mean.w > 1) {
             squares.x = lerp(mean_of_taps(taps, cameras, before.squares).x, squares.x, 1.0f / mean.w);
@@ -83,11 +85,21 @@ private:
         now.squares[pixel] = {0, 0};
     }
 
+    /// In how many frames a camera that goes on as it went passes a lobe of this width: what a surface reflects to it
+    /// changes meanwhile. Reflections that are sharp move instead.
+    HD float frames_of_lobe(float alpha, Float4 place) const {
+        if (alpha < kMirrors || cameras.now.projection == Projection::Orthographic) return kInfinity;
+        const Vec3 point = point_at(scene.instances, scene.meshes, place),
+                   now_seen = normalize(point - cameras.now.world_from_camera.translation),
+                   then_seen = normalize(point - cameras.before.world_from_camera.translation);
+        return max(alpha / max(length(now_seen - then_seen), 1e-6f), 1.0f);
+    }
+
     /// The mean of the signal that the taps hold, with this frame's; its w: frames.
-    HD Float4 gone_on(const Taps& taps, const Float4* signal, Float4 sample) const {
+    HD Float4 gone_on(const Taps& taps, const Float4* signal, Float4 sample, float most_frames) const {
         if (!(taps.sum > kEnoughWeight)) return with_w(rgb_of(sample), 1);
         const Float4 mean = mean_of_taps(taps, cameras, signal);
-        const float frames = min(mean.w + 1.0f, static_cast<float>(longest));
+        const float frames = min(mean.w + 1.0f, most_frames);
         return with_w(lerp(rgb_of(mean), rgb_of(sample), 1.0f / frames), frames);
     }
 
