@@ -78,6 +78,7 @@ PictureRecord picture_record(const SceneOptions& options, const ReadyScene& read
                             .settings = ready.settings,
                             .device = ready.queue->device_name(),
                             .display = {}};
+    if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
     record.scene.load_seconds = ready.load_s;
     record.scene.build_seconds = ready.prepared().build_seconds;
     place_frame(ready.sequence.first, ready.scene(), {*ready.camera, ready.sequence}, record);
