@@ -34,6 +34,9 @@ void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Message
         messages.note(fmt::format("{}: shown at rest; --time S shows it at a time of its {} (0 to {:.4g} s)",
                                   flags.scene.scene, counted(moving.scene().animations.size(), "animation"), end_s));
     }
+    if (std::ranges::count(flags.aovs, "motion") > 0 && flags.frames.empty()) {
+        messages.note("--aov motion: 0 without --frames, whose frames have one before them");
+    }
     if (!moving.is_animated() && has_time && flags.camera_path.empty() && flags.turntable == 0) {
         messages.warn(fmt::format("--{}: nothing moves in this scene (--time-limit ends a render after a time)",
                                   flags.time_s ? "time" : "frames"));
@@ -78,6 +81,7 @@ PictureRecord picture_record(const SceneOptions& options, const ReadyScene& read
                             .settings = ready.settings,
                             .device = ready.queue->device_name(),
                             .display = {}};
+    if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
     record.scene.load_seconds = ready.load_s;
     record.scene.build_seconds = ready.prepared().build_seconds;
     place_frame(ready.sequence.first, ready.scene(), {*ready.camera, ready.sequence}, record);

@@ -65,20 +65,38 @@ std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
     return files;
 }
 
+/// The camera of a time, after a share of a turn.
+Camera camera_at(const FrameCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
+    return camera.camera.turned(camera.camera.at(scene, time_s), turn);
+}
+
+void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
+    if (!time_s) return;
+    if (const uint32_t parts = moving.set_time(*time_s, messages)) session.update_scene(moving.prepared(), parts);
+}
+
+/// What motion vectors of a frame are from.
+void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
+                       Messages& messages) {
+    const std::optional<double> time_s = camera.sequence.time_before(frame);
+    go_to(time_s, moving, session, messages);
+    session.set_camera(camera_at(camera, moving.scene(), time_s, camera.sequence.turn_before(frame)));
+    session.keep_as_before();
+}
+
 } // namespace
 
 void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record) {
     const std::optional<double> time_s = camera.sequence.time_of(frame);
     record.scene.time_s = time_s;
     const CameraChoice choice = camera.camera.choice_at(time_s);
-    record.camera = {.camera = camera.camera.at(scene, time_s),
+    const double turn = camera.sequence.turn_of(frame);
+    record.camera = {.camera = camera_at(camera, scene, time_s, turn),
                      .name = choice.camera,
                      .target = choice.target,
                      .up = choice.up,
                      .fov_deg = choice.fov_deg.value_or(0)};
-    const double turn = camera.sequence.turn_of(frame);
     if (turn == 0) return;
-    record.camera.camera = camera.camera.turned(record.camera.camera, turn);
     record.camera.target.reset(); // its words say where the camera began
     record.camera.up.reset();
 }
@@ -101,11 +119,10 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
             continue;
         }
         const Stopwatch update;
-        if (time_s) {
-            if (const uint32_t parts = moving.set_time(*time_s, reporter.messages())) {
-                session.update_scene(moving.prepared(), parts);
-            }
+        if ((record.settings.aovs & kAovMotion) != 0) {
+            show_frame_before(frame, camera, moving, session, reporter.messages());
         }
+        go_to(time_s, moving, session, reporter.messages());
         const double update_s = update.seconds();
         place_frame(frame, moving.scene(), camera, record);
         session.set_camera(record.camera.camera);

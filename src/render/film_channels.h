@@ -21,6 +21,7 @@ enum AovBits : uint32_t {
     kAovDepth = 4,    // distance along the camera's axis, metres
     kAovPosition = 8, // the file's coordinates, metres
     kAovIds = 16,     // no sums: ids of sample 0, see FilmView::ids
+    kAovMotion = 32,  // not in the film: denoise/motion_vectors.h
 };
 
 inline constexpr uint32_t kFilmColorChannels = 4;
@@ -41,6 +42,7 @@ inline constexpr AovGroup kAovTable[] = {
     {kAovDepth, "depth", "depth", {"Z"}, true, true},
     {kAovPosition, "position", "position", {"X", "Y", "Z"}, true, true},
     {kAovIds, "ids", "id", {"instance", "primitive", "material"}, false, false},
+    {kAovMotion, "motion", "motion", {"u", "v"}, false, false},
 };
 
 namespace film_channels {

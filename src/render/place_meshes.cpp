@@ -14,8 +14,6 @@
 namespace pertev {
 namespace {
 
-constexpr float kMaxCondition = 4096; // 2^12
-
 /// Triangles of a mesh, moved by `world_from_local`.
 void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t instance,
                    std::span<BvhTriangle> triangles) {
@@ -69,8 +67,7 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const bool stays_alone = uses[instance.mesh] == 1 && !moves[i];
-        const bool is_skewed = !(condition_number(instance.world_from_local) <= kMaxCondition);
-        const bool baked = !instance.is_hidden && (stays_alone || is_skewed);
+        const bool baked = !instance.is_hidden && (stays_alone || is_skewed(instance.world_from_local));
         placement.is_baked.push_back(baked);
         if (baked && uses[instance.mesh] > 1) {
             ++placement.copies;

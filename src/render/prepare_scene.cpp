@@ -66,7 +66,9 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
         Bvh bvh = load_or_build_bvh(list, builders, options.bvh, options.bvh_cache, messages, &taken);
         prepared.trees.add(taken, std::move(bvh), list.size());
     }
-    prepared.top_level = build_top_level_bvh(placed_trees(scene, placement, prepared.trees.mesh_bounds()));
+    prepared.tree_of_mesh = placement.tree_of_mesh;
+    prepared.placed = placed_trees(scene, placement, prepared.trees.mesh_bounds());
+    prepared.top_level = build_top_level_bvh(prepared.placed);
     prepared.triangles = triangles.count();
     prepared.trees.build_s = watch.seconds();
     prepared.structures = std::make_shared<SceneStructures>(builders.front(), prepared.trees, prepared.top_level);

@@ -37,7 +37,12 @@ struct PreparedScene {
     std::shared_ptr<SceneStructures> structures; // of `trees` and of others, built when they are asked for
     LightSetData lights;                         // moved world
     uint64_t triangles = 0;                      // in all trees
-    double build_seconds = 0; // placement, trees (built or read from the cache), structures asked for at once
+    /// Of meshes whose vertices move, by Scene::shapes; those that are not on the host are at rest in all of the above.
+    /// For whoever has such meshes (session/moving_scene.h); empty: no vertex moves.
+    std::vector<MeshPose> poses;
+    std::vector<uint32_t> tree_of_mesh; // MeshPlacement's
+    std::vector<PlacedBvh> placed;      // what top_level is built of
+    double build_seconds = 0;           // placement, trees (built or read from the cache), structures asked for at once
 };
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);

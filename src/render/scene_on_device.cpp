@@ -9,14 +9,20 @@ namespace {
 // Each list below says what a part is made of, for the upload and for the prediction of memory alike. Arrays that are
 // made for the device alone stand in the arguments, so that they outlive the list.
 
-PartArrays list_geometry(const Scene& scene, std::vector<MeshView>& meshes, SceneView& view) {
+/// Vertices of meshes with a pose are DeformingMeshes'.
+PartArrays list_geometry(const PreparedScene& prepared, std::vector<MeshView>& meshes, SceneView& view) {
+    const Scene& scene = *prepared.scene;
     PartArrays arrays;
     meshes.resize(scene.meshes.size());
+    std::vector<bool> deforms(meshes.size());
+    for (std::size_t i = 0; i < prepared.poses.size(); ++i) deforms[scene.shapes[i].mesh] = true;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const Mesh& mesh = scene.meshes[i];
-        arrays.add(mesh.positions, meshes[i].positions);
-        arrays.add(mesh.normals, meshes[i].normals);
-        arrays.add(mesh.tangents, meshes[i].tangents);
+        if (!deforms[i]) {
+            arrays.add(mesh.positions, meshes[i].positions);
+            arrays.add(mesh.normals, meshes[i].normals);
+            arrays.add(mesh.tangents, meshes[i].tangents);
+        }
         for (int set = 0; set < 2; ++set) arrays.add(mesh.uv[set], meshes[i].uv[set]);
         arrays.add(mesh.colors, meshes[i].colors);
         arrays.add(mesh.indices, meshes[i].indices);
@@ -47,8 +53,8 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
         view.any_hidden_back |= hides_back;
         instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;
         instances.views.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material,
-                                   has_alpha, hides_back, is_mirroring(world_from_local) ? 1u : 0u,
-                                   prepared.is_baked[i] ? 1u : 0u});
+                                   has_alpha, hides_back, uint16_t(is_mirroring(world_from_local)),
+                                   uint16_t(instance.is_hidden), prepared.is_baked[i] ? 1u : 0u});
     }
     PartArrays arrays;
     arrays.add(instances.views, view.instances);
@@ -110,7 +116,9 @@ PartArrays list_environment(const EnvironmentData* environment, EnvironmentView&
 SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) { update(queue, prepared, kAllParts); }
 
 void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t parts) {
-    if ((parts & kPartGeometry) != 0) update_geometry(queue, *prepared.scene);
+    if ((parts & kPartShapes) != 0) update_shapes(queue, prepared);
+    if ((parts & (kPartShapes | kPartGeometry)) != 0) update_geometry(queue, prepared);
+    if ((parts & kPartPoses) != 0) update_poses(prepared);
     if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
@@ -118,9 +126,20 @@ void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t
     if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
 }
 
-void SceneOnDevice::update_geometry(Queue& queue, const Scene& scene) {
+void SceneOnDevice::update_shapes(Queue& queue, const PreparedScene& prepared) {
+    const uint64_t version = deforming_.version();
+    deforming_ = DeformingMeshes(); // before the new ones, so that both need not fit
+    deforming_ = DeformingMeshes(queue, prepared, version);
+}
+
+void SceneOnDevice::update_geometry(Queue& queue, const PreparedScene& prepared) {
     std::vector<MeshView> meshes;
-    list_geometry(scene, meshes, view_).upload(queue, geometry_, "geometry");
+    const PartArrays arrays = list_geometry(prepared, meshes, view_);
+    deforming_.point(meshes);
+    arrays.upload(queue, geometry_, "geometry");
+    deforming_.set_meshes(meshes);
+    if (deforming_.is_empty()) meshes.clear();
+    meshes_ = std::move(meshes);
 }
 
 void SceneOnDevice::update_instances(Queue& queue, const PreparedScene& prepared) {
@@ -161,9 +180,9 @@ std::size_t predicted_bytes(const PreparedScene& prepared) {
     Instances instances;
     std::vector<MaterialView> materials;
     std::vector<TextureImageView> images;
-    return list_geometry(scene, meshes, view).bytes() + list_instances(prepared, instances, view).bytes() +
-           list_materials(scene, materials, view).bytes() + list_textures(scene, images, view).bytes() +
-           list_lights(prepared.lights, view.lights).bytes() +
+    return DeformingMeshes::predicted_bytes(prepared) + list_geometry(prepared, meshes, view).bytes() +
+           list_instances(prepared, instances, view).bytes() + list_materials(scene, materials, view).bytes() +
+           list_textures(scene, images, view).bytes() + list_lights(prepared.lights, view.lights).bytes() +
            list_environment(prepared.lights.environment.get(), view.lights.environment).bytes();
 }
 

@@ -5,6 +5,7 @@
 // that needs no more room than the part has takes no memory.
 
 #include "device/buffer.h"
+#include "render/deforming_meshes.h"
 #include "render/prepare_scene.h"
 #include "render/scene_view.h"
 
@@ -20,7 +21,9 @@ enum ScenePart : uint32_t {
     kPartLights = 16,   // near and far ones, and how often each is drawn, but for the environment's own
     kPartTrees = 32,    // not here: a tracer's (render/tracer/)
     kPartEnvironment = 64, // its pixels, and the tables that draw one; with another environment go the lights too
-    kAllParts = 127,
+    kPartShapes = 128, // what the vertices of meshes that move are made of, which never changes; geometry goes with it
+    kPartPoses = 256,  // PreparedScene::poses: how these vertices stand
+    kAllParts = 511,
 };
 
 /// Every update copies: what it is given may go away afterwards. The view, and each copy of it, is void after an
@@ -36,15 +39,27 @@ public:
     void update(Queue& queue, const PreparedScene& prepared, uint32_t parts);
 
     // One part each (ScenePart says what is in it).
-    void update_geometry(Queue& queue, const Scene& scene);
+    void update_geometry(Queue& queue, const PreparedScene& prepared);
     void update_instances(Queue& queue, const PreparedScene& prepared);
     void update_materials(Queue& queue, const Scene& scene);
     void update_textures(Queue& queue, const Scene& scene);
     void update_lights(Queue& queue, const PreparedScene& prepared);
     void update_environment(Queue& queue, const PreparedScene& prepared);
+    void update_shapes(Queue& queue, const PreparedScene& prepared); // before geometry
+    void update_poses(const PreparedScene& prepared) { deforming_.set_poses(prepared); }
+
+    /// Meshes whose vertices were moved here, for trees that are fitted to them.
+    std::vector<DeformedMesh> deformed(const PreparedScene& prepared) const {
+        return deforming_.deformed(prepared, meshes_);
+    }
+    /// The meshes' positions as they are now are those of meshes_before() until the next call.
+    void keep_positions() { deforming_.keep_positions(); }
+    const MeshView* meshes_before() const { return deforming_.is_empty() ? view_.meshes : deforming_.before(); }
 
 private:
     SceneView view_{};
+    std::vector<MeshView> meshes_; // where none deforms: empty
+    DeformingMeshes deforming_;
     Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
 };
 

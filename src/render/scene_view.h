@@ -32,7 +32,8 @@ struct InstanceView {
     uint32_t material;
     uint16_t has_alpha;   // 1 where a hit may be refused by its alpha
     uint16_t hides_back;  // 1 where rays from the camera pass the back
-    uint32_t is_mirrored; // 1 where world_from_local turns winding over
+    uint16_t is_mirrored; // 1 where world_from_local turns winding over
+    uint16_t is_hidden;   // 1 where it is not there, and world_from_local says nothing
     uint32_t is_baked;    // 1 where the walk has its triangles in the world, 0 where it goes into its own space
 };
 

@@ -62,7 +62,8 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     const std::vector<PartChange> changes = changes_of(scene, placement, update);
     const SceneTriangles triangles = changed_triangles(scene, placement, changes);
     after.trees = update_binary_trees(before.trees, before.structures->builder(), changes, triangles);
-    after.top_level = build_top_level_bvh(placed_trees(scene, placement, after.trees.mesh_bounds()));
+    after.placed = placed_trees(scene, placement, after.trees.mesh_bounds());
+    after.top_level = build_top_level_bvh(after.placed);
     after.structures = before.structures->updated(after.trees, after.top_level, changes, triangles);
     after.triangles = after.trees.triangle_count();
     after.build_seconds = watch.seconds();
@@ -72,8 +73,15 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     return after;
 }
 
+bool changes_prepared(const SceneUpdate& update) {
+    SceneUpdate rest = update;
+    rest.poses_changed = false;
+    return !rest.is_empty();
+}
+
 uint32_t parts_of(const SceneUpdate& update) {
-    uint32_t parts = kPartLights;
+    uint32_t parts = changes_prepared(update) ? kPartLights : 0u;
+    if (update.poses_changed) parts |= kPartPoses;
     if (!update.moved_instances.empty() || !update.deformed_meshes.empty() || !update.replaced_meshes.empty()) {
         parts |= kPartTrees | kPartInstances;
     }

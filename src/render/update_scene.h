@@ -23,8 +23,12 @@ namespace pertev {
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
                            Messages& messages);
 
-/// The parts (ScenePart) that Session::update_scene then takes. Lights are always among them: how often each is drawn
-/// depends on what lies where. The environment is not, which is the same.
+/// Whether update_scene has anything to do: PreparedScene::poses are all that whoever moves vertices has to set anew.
+bool changes_prepared(const SceneUpdate& update);
+
+/// The parts (ScenePart) that Session::update_scene then takes. Lights are among them but for poses alone: how often
+/// each is drawn depends on what lies where, meshes whose vertices are left to whoever renders taken as at rest. The
+/// environment is not, which is the same.
 uint32_t parts_of(const SceneUpdate& update);
 
 } // namespace pertev

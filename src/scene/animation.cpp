@@ -27,7 +27,11 @@ std::vector<bool> moving_nodes(const Scene& scene) {
                 break;
             case AnimatedPart::Weights:
             case AnimatedPart::CameraFov:
+            case AnimatedPart::CameraHeight:
             case AnimatedPart::LightIntensity:
+            case AnimatedPart::LightRange:
+            case AnimatedPart::LightInnerCone:
+            case AnimatedPart::LightOuterCone:
                 break;
             }
         }

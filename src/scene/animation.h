@@ -11,17 +11,29 @@ namespace pertev {
 
 struct Scene;
 
-enum class AnimatedPart : uint8_t { Translation, Rotation, Scale, Weights, CameraFov, LightIntensity };
+enum class AnimatedPart : uint8_t {
+    Translation,
+    Rotation,
+    Scale,
+    Weights,
+    CameraFov,
+    CameraHeight, // of an orthographic view
+    LightIntensity,
+    LightRange,
+    LightInnerCone, // angles from a spot light's axis
+    LightOuterCone
+};
 enum class Interpolation : uint8_t { Step, Linear, CubicSpline };
 
 struct AnimationChannel {
-    uint32_t target = 0; // index into Scene::nodes; of CameraFov into Scene::cameras, of LightIntensity Scene::lights
+    uint32_t target = 0; // index into Scene::nodes; of parts of cameras into Scene::cameras, of lights Scene::lights
     AnimatedPart part = AnimatedPart::Translation;
     Interpolation interpolation = Interpolation::Linear;
     std::vector<float> times; // seconds, at least 0, each above the one before
     /// A value for each time, one after the other; for CubicSpline three: tangent into the key, value, tangent out of
     /// it, both a second. A value is 3 numbers (Translation in metres, Scale, LightIntensity), 4 (Rotation: a
-    /// quaternion x, y, z, w, not 0), as many as the node has morph_weights, or 1 (CameraFov in radians).
+    /// quaternion x, y, z, w, not 0), as many as the node has morph_weights, or 1 (CameraFov and cones in radians,
+    /// CameraHeight and LightRange in metres).
     std::vector<float> values;
 };
 

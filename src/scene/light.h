@@ -26,6 +26,9 @@ struct Light {
     uint32_t node = kNoNode; // index into Scene::nodes
 };
 
+/// Beside 1, the smallest difference of two floats: cones of one angle have this sharp an edge.
+inline constexpr float kSharpestEdge = 0x1p-24f;
+
 /// Puts `light` at the origin of a node, shining along the node's -z; its strength does not scale. False where that
 /// direction is lost.
 inline bool place_light(const Transform& world_from_node, Light& light) {

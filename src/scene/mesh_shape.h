@@ -36,4 +36,14 @@ struct MeshShape {
     bool is_turned_over = false;    // the mesh's triangles wind the other way now than in the file (shape_mesh)
 };
 
+/// What the vertices of a shape's mesh are made with at a time.
+struct MeshPose {
+    std::vector<float> morph_weights; // by target; those past the end are 0
+    std::vector<Transform> joints;    // world from mesh space, with the inverse bind matrices; empty without a skin
+    bool is_on_host = true; // Scene::meshes has these vertices; else those of rest, and whoever renders makes these
+};
+
+/// Whether both have the same numbers, to the bit, and the same place.
+bool same_pose(const MeshPose& a, const MeshPose& b);
+
 } // namespace pertev

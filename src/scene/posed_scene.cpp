@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "math/double_vec3.h"
+#include "math/portable_math.h"
 #include "scene/sample_channel.h"
 #include "scene/shape_mesh.h"
 #include "scene/validate_nodes.h"
@@ -18,7 +19,9 @@
 namespace pertev {
 namespace {
 
-constexpr float kLeastFov = 0x1p-12f; // radians: splines may lead out of the range
+// Splines may lead out of the range.
+constexpr float kLeastFov = 0x1p-12f;    // radians
+constexpr float kLeastLength = 0x1p-20f; // metres
 
 std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
     std::vector<uint32_t> numbers;
@@ -30,37 +33,28 @@ std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
 
 /// Zeros of two signs are two, as what is computed from them may be.
 template <class T>
-bool same_bits(const T* a, const T* b, std::size_t count) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    return count == 0 || std::memcmp(a, b, count * sizeof(T)) == 0;
-}
-
-template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && same_bits(a.data(), b.data(), a.size());
-}
-
-template <class T>
 bool same_bits(const T& a, const T& b) {
-    return same_bits(&a, &b, 1);
+    static_assert(std::is_trivially_copyable_v<T>);
+    return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
 } // namespace
 
-PosedScene::PosedScene(Scene rest)
+PosedScene::PosedScene(Scene rest, bool leaves_vertices)
     : scene_(std::move(rest)), cameras_at_rest_(scene_.cameras), lights_at_rest_(scene_.lights),
       parents_first_(parents_first(scene_.nodes)), node_moves_(moving_nodes(scene_)), instance_moves_(may_move(scene_)),
-      world_from_node_(world_from_nodes(scene_.nodes, parents_first_)), moved_(scene_.instances.size()),
+      world_from_node_(world_from_nodes(scene_.nodes, parents_first_)), cameras_(scene_.cameras),
+      lights_(scene_.lights), leaves_vertices_(leaves_vertices), moved_(scene_.instances.size()),
       deformed_(scene_.meshes.size()), replaced_(scene_.meshes.size()) {
     for (const Node& node : scene_.nodes) {
         const NodePose* pose = std::get_if<NodePose>(&node.pose);
-        poses_.push_back(pose == nullptr ? NodePose{} : *pose);
+        node_poses_.push_back(pose == nullptr ? NodePose{} : *pose);
         morph_weights_.push_back(node.morph_weights);
     }
-    for (const Camera& camera : scene_.cameras) fovs_.push_back(camera.fov_y);
-    for (const Light& light : scene_.lights) intensities_.push_back(light.intensity);
     drop_shapes_at_rest();
-    for (const MeshShape& shape : scene_.shapes) applied_.push_back(wanted(shape));
+    for (std::size_t i = 0; i < scene_.shapes.size(); ++i) at_rest_.push_back(wanted(i));
+    poses_ = on_host_ = at_rest_;
+    find_shapes_to_leave();
     if (!is_animated()) return;
     for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
 }
@@ -74,6 +68,18 @@ void PosedScene::drop_shapes_at_rest() {
     std::erase_if(scene_.shapes, [&](const MeshShape& shape) { return !moves[shape.mesh]; });
 }
 
+/// Meshes that give no light, of which every instance may move: the others are the lights' and the baked tree's too. At
+/// rest their triangles are wound as at the times at which no joint mirrors.
+void PosedScene::find_shapes_to_leave() {
+    std::vector<bool> stays(scene_.meshes.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (scene_.materials[instance.material].is_emissive() || !instance_moves_[i]) stays[instance.mesh] = true;
+    }
+    for (const MeshShape& shape : scene_.shapes)
+        may_be_left_.push_back(leaves_vertices_ && !stays[shape.mesh] && !shape.is_turned_over);
+}
+
 bool PosedScene::is_animated() const {
     return std::ranges::any_of(scene_.animations, [](const Animation& a) { return !a.channels.empty(); });
 }
@@ -85,8 +91,9 @@ SceneUpdate PosedScene::set_time(double time_s) {
     if (!is_animated()) return {};
     read_channels(time_s);
     place_nodes();
+    place_instances();
     shape_meshes();
-    place_instances(time_s);
+    check_places(time_s);
     place_cameras();
     place_lights();
     return take_changes();
@@ -100,22 +107,34 @@ void PosedScene::read_channels(double time_s) {
             const std::vector<float>& v = value_;
             switch (channel.part) {
             case AnimatedPart::Translation:
-                poses_[channel.target].translation = {v[0], v[1], v[2]};
+                node_poses_[channel.target].translation = {v[0], v[1], v[2]};
                 break;
             case AnimatedPart::Rotation:
-                poses_[channel.target].rotation = {v[0], v[1], v[2], v[3]};
+                node_poses_[channel.target].rotation = {v[0], v[1], v[2], v[3]};
                 break;
             case AnimatedPart::Scale:
-                poses_[channel.target].scale = {v[0], v[1], v[2]};
+                node_poses_[channel.target].scale = {v[0], v[1], v[2]};
                 break;
             case AnimatedPart::Weights:
                 morph_weights_[channel.target] = v;
                 break;
             case AnimatedPart::CameraFov:
-                fovs_[channel.target] = clamp(v[0], kLeastFov, kPi - kLeastFov);
+                cameras_[channel.target].fov_y = clamp(v[0], kLeastFov, kPi - kLeastFov);
+                break;
+            case AnimatedPart::CameraHeight:
+                cameras_[channel.target].ortho_height = max(abs(v[0]), kLeastLength);
                 break;
             case AnimatedPart::LightIntensity:
-                intensities_[channel.target] = {max(0.0f, v[0]), max(0.0f, v[1]), max(0.0f, v[2])};
+                lights_[channel.target].intensity = {max(0.0f, v[0]), max(0.0f, v[1]), max(0.0f, v[2])};
+                break;
+            case AnimatedPart::LightRange:
+                lights_[channel.target].range = max(v[0], kLeastLength);
+                break;
+            case AnimatedPart::LightInnerCone:
+                lights_[channel.target].cos_inner = cos(clamp(v[0], 0.0f, kPi / 2));
+                break;
+            case AnimatedPart::LightOuterCone:
+                lights_[channel.target].cos_outer = cos(clamp(v[0], 0.0f, kPi / 2));
                 break;
             }
         }
@@ -126,47 +145,70 @@ void PosedScene::place_nodes() {
     for (const uint32_t node : parents_first_) {
         if (!node_moves_[node]) continue; // stands as at rest
         const Transform* matrix = std::get_if<Transform>(&scene_.nodes[node].pose);
-        const Transform local = matrix == nullptr ? transform_of(poses_[node]) : *matrix;
+        const Transform local = matrix == nullptr ? transform_of(node_poses_[node]) : *matrix;
         const uint32_t parent = scene_.nodes[node].parent;
         world_from_node_[node] = parent == kNoNode ? local : compose(world_from_node_[parent], local);
     }
 }
 
-PosedScene::Applied PosedScene::wanted(const MeshShape& shape) const {
-    Applied pose;
+MeshPose PosedScene::wanted(std::size_t index) const {
+    const MeshShape& shape = scene_.shapes[index];
+    MeshPose pose;
     if (shape.node != kNoNode) pose.morph_weights = morph_weights_[shape.node];
     if (shape.skin != kNoSkin) pose.joints = joint_transforms(scene_.skins[shape.skin], world_from_node_);
     return pose;
 }
 
 void PosedScene::shape_meshes() {
+    if (scene_.shapes.empty()) return;
+    std::vector<bool> is_baked(scene_.meshes.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (instance_moves_[i] && !instance.is_hidden && is_skewed(instance.world_from_local))
+            is_baked[instance.mesh] = true;
+    }
+    const auto mirrors = [](const Transform& joint) { return is_mirroring(joint); };
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
-        MeshShape& shape = scene_.shapes[i];
-        Applied pose = wanted(shape);
-        const bool is_same = same_bits(pose.morph_weights, applied_[i].morph_weights);
-        if (is_same && same_bits(pose.joints, applied_[i].joints)) continue;
-        applied_[i] = std::move(pose);
-        Mesh& mesh = scene_.meshes[shape.mesh];
-        const bool is_wound_anew = shape_mesh(shape, applied_[i].morph_weights, applied_[i].joints, mesh);
-        (is_wound_anew ? replaced_ : deformed_)[shape.mesh] = true;
-        bounds_[shape.mesh] = bounds_of(mesh);
+        MeshPose pose = wanted(i);
+        const bool is_left =
+            may_be_left_[i] && !is_baked[scene_.shapes[i].mesh] && std::ranges::none_of(pose.joints, mirrors);
+        const MeshPose& here = is_left ? at_rest_[i] : pose;
+        if (!same_pose(here, on_host_[i])) {
+            MeshShape& shape = scene_.shapes[i];
+            Mesh& mesh = scene_.meshes[shape.mesh];
+            on_host_[i] = here;
+            const bool is_wound_anew = shape_mesh(shape, here.morph_weights, here.joints, mesh);
+            (is_wound_anew ? replaced_ : deformed_)[shape.mesh] = true;
+            bounds_[shape.mesh] = bounds_of(mesh);
+        }
+        pose.is_on_host = !is_left;
+        if (same_pose(pose, poses_[i])) continue;
+        poses_[i] = std::move(pose);
+        poses_changed_ = true;
     }
 }
 
-void PosedScene::place_instances(double time_s) {
+void PosedScene::place_instances() {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         Instance& instance = scene_.instances[i];
-        if (!instance_moves_[i]) continue;
-        if (scene_.nodes[instance.node].skin == kNoSkin) {
-            const Transform world = placed_in(world_from_node_[instance.node], instance.node_from_local);
-            const bool is_hidden = is_singular(world);
-            const Transform place = is_hidden ? Transform() : world;
-            if (!same_bits(place, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
-            instance.world_from_local = place;
-            instance.is_hidden = is_hidden;
-        }
+        if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
+        const Transform world = placed_in(world_from_node_[instance.node], instance.node_from_local);
+        const bool is_hidden = is_singular(world);
+        const Transform place = is_hidden ? Transform() : world;
+        if (!same_bits(place, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
+        instance.world_from_local = place;
+        instance.is_hidden = is_hidden;
+    }
+}
+
+void PosedScene::check_places(double time_s) const {
+    std::vector<bool> is_left(scene_.meshes.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) is_left[scene_.shapes[i].mesh] = !poses_[i].is_on_host;
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (!instance_moves_[i] || instance.is_hidden || is_left[instance.mesh]) continue;
         const Bounds3& local = bounds_[instance.mesh];
-        if (instance.is_hidden || local.is_empty() || lies_near(instance.world_from_local, local)) continue;
+        if (local.is_empty() || lies_near(instance.world_from_local, local)) continue;
         throw Error(ErrorCode::OverLimit,
                     fmt::format("{} lies further out than 2^40 metres at {} s; scale the scene down",
                                 numbered("instance", i, instance.name, origin_of(instance)), time_s));
@@ -176,7 +218,8 @@ void PosedScene::place_instances(double time_s) {
 void PosedScene::place_cameras() {
     for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
         Camera& camera = scene_.cameras[i];
-        camera.fov_y = fovs_[i];
+        camera.fov_y = cameras_[i].fov_y;
+        camera.ortho_height = cameras_[i].ortho_height;
         if (camera.node == kNoNode || !node_moves_[camera.node]) continue;
         const std::optional<Transform> rigid = without_scale(world_from_node_[camera.node]);
         const bool stands = rigid && lies_near(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
@@ -188,7 +231,10 @@ void PosedScene::place_lights() {
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light& rest = lights_at_rest_[i];
         Light light = rest;
-        light.intensity = intensities_[i];
+        light.intensity = lights_[i].intensity;
+        light.range = lights_[i].range;
+        light.cos_inner = lights_[i].cos_inner;
+        light.cos_outer = min(lights_[i].cos_outer, light.cos_inner - kSharpestEdge);
         if (light.node != kNoNode && node_moves_[light.node]) {
             bool stands = place_light(world_from_node_[light.node], light);
             light.direction = normalize_safely(light.direction);
@@ -200,16 +246,20 @@ void PosedScene::place_lights() {
         }
         Light& now = scene_.lights[i];
         const bool stays = same_bits(light.position, now.position) && same_bits(light.direction, now.direction);
-        if (stays && same_bits(light.intensity, now.intensity)) continue;
+        const bool shines_alike = same_bits(light.intensity, now.intensity) && same_bits(light.range, now.range) &&
+                                  same_bits(light.cos_inner, now.cos_inner) &&
+                                  same_bits(light.cos_outer, now.cos_outer);
+        if (stays && shines_alike) continue;
         now = std::move(light);
         lights_changed_ = true;
     }
 }
 
 SceneUpdate PosedScene::take_changes() {
-    SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_), lights_changed_};
+    SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_), lights_changed_,
+                          poses_changed_};
     for (std::vector<bool>* flags : {&moved_, &deformed_, &replaced_}) flags->assign(flags->size(), false);
-    lights_changed_ = false;
+    lights_changed_ = poses_changed_ = false;
     return update;
 }
 

@@ -56,6 +56,13 @@ inline Transform placed_in(const Transform& world_from_node, const Transform& no
 /// JSON pointer of the node that an instance comes from; empty for none.
 std::string origin_of(const Instance& instance);
 
+/// Whether a transform squeezes one direction so much more than another that its instance is baked into the world at
+/// any time at which it does: a condition number over 2^12 (render/place_meshes.h).
+inline constexpr float kMaxCondition = 4096;
+inline bool is_skewed(const Transform& world_from_local) {
+    return !(condition_number(world_from_local) <= kMaxCondition);
+}
+
 /// Whether a transform turns the winding of triangles over.
 inline bool is_mirroring(const Transform& world_from_local) { return determinant(world_from_local) < 0; }
 

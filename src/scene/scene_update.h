@@ -14,9 +14,11 @@ struct SceneUpdate {
     std::vector<uint32_t> deformed_meshes; // the same triangles (indices) with other positions or normals
     std::vector<uint32_t> replaced_meshes; // anything about them
     bool lights_changed = false;           // Scene::lights
+    bool poses_changed = false;            // PosedScene::poses; of Scene nothing but what stands above
 
     bool is_empty() const {
-        return moved_instances.empty() && deformed_meshes.empty() && replaced_meshes.empty() && !lights_changed;
+        return moved_instances.empty() && deformed_meshes.empty() && replaced_meshes.empty() && !lights_changed &&
+               !poses_changed;
     }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <utility>
 
 #include "base/parallel_for.h"
@@ -33,6 +34,15 @@ bool turns_over(const DeformVertices& stage, uint64_t vertices, std::span<const 
 }
 
 } // namespace
+
+bool same_pose(const MeshPose& a, const MeshPose& b) {
+    // Zeros of two signs are two, as what is computed from them may be.
+    const auto same_bits = [](const auto& one, const auto& other) {
+        return one.size() == other.size() &&
+               (one.empty() || std::memcmp(one.data(), other.data(), std::as_bytes(std::span(one)).size()) == 0);
+    };
+    return a.is_on_host == b.is_on_host && same_bits(a.morph_weights, b.morph_weights) && same_bits(a.joints, b.joints);
+}
 
 std::vector<Transform> joint_transforms(const Skin& skin, std::span<const Transform> world_from_node) {
     std::vector<Transform> joints;

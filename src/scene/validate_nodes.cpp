@@ -31,8 +31,12 @@ std::pair<const char*, std::size_t> targets_of(AnimatedPart part, const Scene& s
     case AnimatedPart::Weights:
         return {"node", scene.nodes.size()};
     case AnimatedPart::CameraFov:
+    case AnimatedPart::CameraHeight:
         return {"camera", scene.cameras.size()};
     case AnimatedPart::LightIntensity:
+    case AnimatedPart::LightRange:
+    case AnimatedPart::LightInnerCone:
+    case AnimatedPart::LightOuterCone:
         return {"light", scene.lights.size()};
     }
     return {"", 0};
@@ -55,6 +59,10 @@ std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene
     case AnimatedPart::Weights:
         return scene.nodes[channel.target].morph_weights.size();
     case AnimatedPart::CameraFov:
+    case AnimatedPart::CameraHeight:
+    case AnimatedPart::LightRange:
+    case AnimatedPart::LightInnerCone:
+    case AnimatedPart::LightOuterCone:
         return 1;
     }
     return 0;

@@ -1,7 +1,10 @@
 #include "session/picture_metadata.h"
 
+#include <set>
+
 #include <fmt/format.h>
 
+#include "base/json_text.h"
 #include "base/version.h"
 #include "image/tone_map_image.h"
 #include "session/settings_text.h"
@@ -22,7 +25,34 @@ ExrMetadata environment_metadata(const SceneSource& source) {
             {"pertev.environment_rotation", source.environment_rotation_deg}};
 }
 
+std::string names_as_json(const std::set<uint32_t>& ids, const std::vector<std::string>& names) {
+    std::string text;
+    for (const uint32_t id : ids) {
+        if (id >= names.size()) continue; // nothing was hit
+        text += fmt::format("{}\"{}\":{}", text.empty() ? "{" : ",", id, json_string(names[id]));
+    }
+    return text.empty() ? "{}" : text + "}";
+}
+
 } // namespace
+
+void name_ids(const Scene& scene, SceneSource& source) {
+    source.instances.clear(), source.materials.clear();
+    for (const Instance& instance : scene.instances) source.instances.push_back(instance.name);
+    for (const Material& material : scene.materials) source.materials.push_back(material.name);
+}
+
+ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids) {
+    if (ids.empty() || source.instances.empty()) return {};
+    std::set<uint32_t> instances, materials;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (i > 0 && ids[i].instance == ids[i - 1].instance && ids[i].material == ids[i - 1].material) continue;
+        instances.insert(ids[i].instance);
+        materials.insert(ids[i].material);
+    }
+    return {{"pertev.instances", names_as_json(instances, source.instances)},
+            {"pertev.materials", names_as_json(materials, source.materials)}};
+}
 
 SceneSource source_of(const OpenOptions& options, const Scene& scene) {
     return {.scene = options.scene,

@@ -3,7 +3,9 @@
 // How a picture was made, in the words that an EXR holds of it (pertev.*): all that is needed to make it again.
 
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "image/exr_file.h"
 #include "image/tone_map.h"
@@ -21,8 +23,9 @@ struct SceneSource {
     float environment_rotation_deg = 0;
     bool has_environment = false; // the scene has one: asked for, its own or the default
     bool two_sided_lights = false, show_back_faces = false;
-    std::optional<double> time_s;               // that it is shown at; none: at rest
-    double load_seconds = 0, build_seconds = 0; // of reading; of the trees
+    std::optional<double> time_s;                  // that it is shown at; none: at rest
+    std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty: none are said
+    double load_seconds = 0, build_seconds = 0;    // of reading; of the trees
 };
 
 /// A camera, and what was asked for of it in words that say the same.
@@ -59,6 +62,11 @@ ExrMetadata camera_metadata(const CameraSource& source);
 /// Of the picture, what it is a function of, but for the number of samples: the version, the scene as it was opened,
 /// the camera, the settings, how it is shown.
 ExrMetadata settings_metadata(const PictureRecord& record);
+
+/// Writes the names of all that ids may tell of.
+void name_ids(const Scene& scene, SceneSource& source);
+/// Of the instances and materials in the picture: a JSON object each, from id to name. Nothing without ids or names.
+ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids);
 
 /// settings_metadata and what came of it. `hash`: of the picture.
 ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash);

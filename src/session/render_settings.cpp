@@ -4,8 +4,10 @@
 
 namespace pertev {
 
-TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda) {
-    return settings.tracers.value_or(default_tracers(on_cuda));
+TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda, bool deforms) {
+    if (settings.tracers) return *settings.tracers;
+    const TracerChoice choice = default_tracers(on_cuda);
+    return on_cuda && deforms ? same_for_all(choice.bounce) : choice;
 }
 
 PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda) {

@@ -37,8 +37,9 @@ inline float filter_radius_of(const RenderSettings& settings) {
     return settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
 }
 
-/// The tracers asked for, or the device's default.
-TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda);
+/// The tracers asked for, or the device's default. `deforms`: the scene has meshes whose vertices move; a GPU then
+/// keeps one tree for all rays, that of compressed nodes, which it fits and builds by itself.
+TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda, bool deforms = false);
 
 /// What a scene is prepared with for a session of these settings: trees and structures of its tracers.
 PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda);

@@ -1,12 +1,15 @@
 #include "session/session.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
+#include "denoise/motion_vectors.h"
 #include "render/camera_work.h"
 #include "render/hidden_back_share.h"
+#include "render/place_meshes.h"
 #include "session/meter_exposure.h"
 
 namespace pertev {
@@ -25,6 +28,27 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
 
 bool same_film(const Film& film, const RenderSettings& settings) {
     return film.width() == settings.width && film.height() == settings.height && film.view().aovs == settings.aovs;
+}
+
+/// Of trees that are kept on the device for meshes whose vertices move, and of the top level over them.
+std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice& tracers, bool on_cuda) {
+    std::size_t bytes = 0;
+    std::set<TreeLayout> layouts;
+    for (const RayKind kind : kRayKinds) layouts.insert(layout_of(tracers[kind]));
+    const auto may_deform = [&](TreeLayout layout) { return can_deform(layout, on_cuda); };
+    if (scene.poses.empty() || !std::ranges::all_of(layouts, may_deform)) return 0;
+    for (const TreeLayout layout : layouts) {
+        bytes += scene.top_level.nodes.size() * sizeof(BvhNode) +
+                 scene.top_level.instances.size() * sizeof(InstanceRecord) +
+                 scene.trees.parts.size() * sizeof(CompressedBvhView) + 3 * 256;
+        if (layout != TreeLayout::Compressed) continue; // the host's other trees are not counted
+        for (std::size_t i = 0; i < scene.poses.size(); ++i) {
+            const uint32_t mesh = scene.scene->shapes[i].mesh;
+            if (scene.poses[i].is_on_host || scene.tree_of_mesh[mesh] == kBakedMesh) continue;
+            bytes += DeformingCompressed::predicted_bytes(scene.scene->meshes[mesh].triangle_count(), on_cuda);
+        }
+    }
+    return bytes;
 }
 
 } // namespace
@@ -49,9 +73,14 @@ void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
 
 /// Of instances, for the next frame, before they are moved.
 void Session::keep_places() {
-    if (!reconstruction_ || reconstruction_->frames() == 0 || has_moved_) return;
+    const bool is_asked_for = reconstruction_ && reconstruction_->frames() > 0 && !has_moved_ && !camera_before_;
+    if (is_asked_for) copy_places();
+}
+
+void Session::copy_places() {
     if (places_before_.size() != instance_count_) places_before_ = {queue_, instance_count_, "instances before"};
     queue_.copy_on_device(places_before_.data(), scene_->view().instances, instance_count_ * sizeof(InstanceView));
+    scene_->keep_positions();
     has_moved_ = true;
 }
 
@@ -59,7 +88,7 @@ void Session::keep_places() {
 void Session::upload(const PreparedScene& scene, uint32_t parts) {
     const Stopwatch watch;
     hidden_back_share_.reset();
-    if ((parts & kPartTrees) != 0) structures_ = scene.structures;
+    if ((parts & kPartTrees) != 0) structures_ = prepared_structures_ = scene.structures;
     try {
         if ((parts & kPartTrees) != 0 && tracer_) tracer_->set_structures(*structures_);
         if (scene_) {
@@ -73,8 +102,11 @@ void Session::upload(const PreparedScene& scene, uint32_t parts) {
         throw;
     }
     instance_count_ = static_cast<uint32_t>(scene.scene->instances.size());
+    placed_ = scene.placed;
+    has_poses_ = !scene.poses.empty();
+    deformed_ = scene_->deformed(scene);
     if (tracer_) tracer_->set_surfaces(scene_->view());
-    take_tracer();
+    if (!take_tracer() && (parts & (kPartTrees | kPartPoses)) != 0) fit_trees();
     queue_.wait();
     stats_.upload_seconds = watch.seconds();
 }
@@ -102,16 +134,51 @@ void Session::cut() {
     ++history_.cuts;
     if (reconstruction_) reconstruction_->cut();
     has_moved_ = false;
+    camera_before_.reset();
     begin_film();
 }
 
-/// The tracer that the settings ask for; the one there is where that is the same.
-void Session::take_tracer() {
-    const TracerChoice choice = tracers_of(settings_, queue_.is_cuda());
-    if (!tracer_ || tracer_->choice() != choice) {
-        tracer_.reset(); // before the new one, so that both need not fit
-        tracer_.emplace(queue_, *structures_, choice);
-        tracer_->set_surfaces(scene_->view());
+void Session::keep_as_before() {
+    PERTEV_CHECK(scene_.has_value());
+    if (reconstruction_) reconstruction_->cut();
+    copy_places();
+    camera_before_ = camera_;
+}
+
+Image Session::motion() {
+    if (!camera_before_) {
+        Image none{settings_.width, settings_.height, 2, {}};
+        none.pixels.resize(std::size_t(2) * settings_.width * settings_.height);
+        return none;
+    }
+    const PictureView picture = view_of(camera_, settings_);
+    const SceneView& scene = picture.scene;
+    const CameraView camera = make_camera_view(*camera_before_, settings_.width, settings_.height, scene.centre);
+    return motion_vectors(queue_, *tracer_, picture, camera, {places_before_.data(), scene_->meshes_before()});
+}
+
+/// The tracer that the settings ask for; the one there is where that is the same: false.
+bool Session::take_tracer() {
+    const TracerChoice choice = tracers_of(settings_, queue_.is_cuda(), has_poses_);
+    if (tracer_ && tracer_->choice() == choice) return false;
+    tracer_.reset(); // before the new one, so that both need not fit
+    tracer_.emplace(queue_, *structures_, choice);
+    tracer_->set_surfaces(scene_->view());
+    fit_trees();
+    return true;
+}
+
+/// To the vertices that were moved on the device.
+void Session::fit_trees() {
+    if (!has_poses_) return;
+    try {
+        if (tracer_->can_deform()) return tracer_->deform(deformed_, placed_);
+        structures_ = deformed_.empty() ? prepared_structures_ : structures_->fitted(queue_, deformed_, placed_);
+        tracer_->set_structures(*structures_);
+    } catch (...) {
+        scene_.reset(); // its trees are not those of its vertices
+        tracer_.reset();
+        throw;
     }
 }
 
@@ -200,14 +267,19 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         noisy_frame_.emplace(queue_, width, height, splits_light);
         reconstruction_.emplace(queue_, width, height);
     }
+    if (camera_before_) { // of another sequence
+        camera_before_.reset();
+        has_moved_ = false;
+    }
     begin(camera_, settings_of_frames(settings_), 1);
     noisy_frame_->begin();
     integrator_->render(number, 1, noisy_frame_->film_view());
     frame_rays_ = integrator_->rays();
     const PictureView picture = view_of(camera_, settings_);
     const SceneView& scene = picture.scene;
-    reconstruction_->add(*noisy_frame_, picture.camera.view, scene,
-                         {has_moved_ ? places_before_.data() : scene.instances, scene.meshes}, settings);
+    const PreviousScene before = has_moved_ ? PreviousScene{places_before_.data(), scene_->meshes_before()}
+                                            : PreviousScene{scene.instances, scene.meshes};
+    reconstruction_->add(*noisy_frame_, picture.camera.view, scene, before, settings);
     has_moved_ = false;
 }
 
@@ -233,7 +305,14 @@ RenderStats Session::stats() {
     return stats;
 }
 
-RenderResult Session::result() { return {stats(), picture(), layers(), current_film().ids()}; }
+RenderResult Session::result() {
+    RenderResult result = {stats(), picture(), layers(), current_film().ids()};
+    if ((settings_.aovs & kAovMotion) != 0) {
+        const AovGroup& group = aov_group(kAovMotion);
+        result.layers.push_back({group.layer, channel_names(group), motion()});
+    }
+    return result;
+}
 
 float Session::meter(ToneMap tone_map) {
     return meter_exposure(settings_, tone_map, [this](const RenderSettings& settings) {
@@ -264,9 +343,13 @@ std::vector<RayWork> Session::count_camera_work() {
 
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
-    const TracerChoice tracers = tracers_of(settings, on_cuda);
+    const TracerChoice tracers = tracers_of(settings, on_cuda, !scene.poses.empty());
     const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
-    return predicted_bytes(scene) + structures + film +
+    const std::size_t motion = (settings.aovs & kAovMotion) != 0
+                                   ? motion_vector_bytes(settings.width, settings.height) +
+                                         scene.scene->instances.size() * sizeof(InstanceView)
+                                   : 0;
+    return predicted_bytes(scene) + structures + motion + deforming_tree_bytes(scene, tracers, on_cuda) + film +
            predicted_bytes(settings, uint64_t(settings.width) * settings.height, settings.samples, on_cuda,
                            can_walk_on_host(tracers, on_cuda));
 }

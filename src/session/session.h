@@ -78,8 +78,15 @@ public:
     /// Reads two numbers back. The share of hidden backs is counted once for each scene, camera and size that is asked
     /// about.
     RenderStats stats();
-    /// Picture, layers, ids and stats together.
+    /// Picture, layers, ids, motion vectors and stats together.
     RenderResult result();
+
+    /// From now on the frame before is the scene and camera as they are: what motion vectors (kAovMotion) are from.
+    /// None after a cut, and they are then 0. Reconstruction begins anew. Throws Error(OutOfMemory).
+    void keep_as_before();
+    /// Pixels to the right and up that each pixel has moved since the frame before (denoise/motion_vectors.h). Throws
+    /// Error(OutOfMemory, DeviceFault).
+    Image motion();
 
     /// Stops for the present picture (session/meter_exposure.h), found over the scene as it lies on the device: nothing
     /// is uploaded. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
@@ -113,7 +120,9 @@ private:
     Film& current_film();
     void begin_film();
     void keep_places();
-    void take_tracer();
+    void copy_places();
+    bool take_tracer();
+    void fit_trees();
     void upload(const PreparedScene& scene, uint32_t parts);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
     void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
@@ -125,7 +134,9 @@ private:
     RenderStats stats_; // but for what stats() reads from the device
     std::optional<double> hidden_back_share_;
 
-    std::shared_ptr<SceneStructures> structures_;
+    std::shared_ptr<SceneStructures> structures_, prepared_structures_; // as rays meet them; as they were given
+    std::vector<PlacedBvh> placed_;                                     // PreparedScene's
+    std::vector<DeformedMesh> deformed_; // whose vertices were moved here, and structures_ perhaps have not
     std::optional<SceneOnDevice> scene_; // none after a set_scene that threw
     std::optional<SceneTracer> tracer_;
     FilterTable filter_;
@@ -134,7 +145,9 @@ private:
     std::optional<Reconstruction> reconstruction_;
     Buffer<InstanceView> places_before_; // of instances, in the frame before
     uint32_t instance_count_ = 0;
-    bool has_moved_ = false; // since the last frame: places_before_ counts
+    bool has_poses_ = false;              // PreparedScene's
+    bool has_moved_ = false;              // since the last frame: places_before_ counts
+    std::optional<Camera> camera_before_; // of keep_as_before()
     RayCounts frame_rays_;
     bool film_is_old_ = false; // holds samples of a picture that is no more asked for
     std::unique_ptr<Integrator> integrator_;

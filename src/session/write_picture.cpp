@@ -23,6 +23,13 @@ std::vector<ExrLayer> take_layers(RenderResult& result) {
     return layers;
 }
 
+ExrMetadata metadata_of(const PictureRecord& record, const RenderResult& result, const std::string& hash) {
+    ExrMetadata metadata = picture_metadata(record, result, hash);
+    const ExrMetadata names = id_metadata(record.scene, result.ids);
+    metadata.insert(metadata.end(), names.begin(), names.end());
+    return metadata;
+}
+
 } // namespace
 
 std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result) {
@@ -34,7 +41,7 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
     }
     PERTEV_CHECK(format == ImageFormat::Exr);
     return encode_exr(result.picture, take_layers(result),
-                      picture_metadata(record, result, picture_hash(result.picture).hex()));
+                      metadata_of(record, result, picture_hash(result.picture).hex()));
 }
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
@@ -45,7 +52,7 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureRe
                                        .exposure_stops = display.exposure_stops,
                                        .transparent = record.settings.transparent,
                                        .layers = layers,
-                                       .metadata = picture_metadata(record, result, written.hash)};
+                                       .metadata = metadata_of(record, result, written.hash)};
     for (const std::string& path : paths) {
         WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
         try {

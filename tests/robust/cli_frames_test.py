@@ -84,6 +84,20 @@ class MovingPictures(CliTest):
         end = said.events("sequence")[0]
         self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (4, 4, 0, False))
 
+    def test_motion_and_names_of_ids_are_layers_of_frames(self):
+        def render(frames, *more):
+            return self.succeed("render", "m.gltf", "-o", "f-#.exr", "--size", "24x16", "--spp", "1", "--device", "cpu",
+                                "--aov", "motion,ids", "--frames", frames, "--fps", "4", *more)
+
+        render("0-2")
+        info = self.info("f-2.exr")
+        self.assertIn("motion.u", info["channels"])
+        self.assertIn("motion.v", info["channels"])
+        self.assertIn('"0":', info["pertev.instances"])
+        said = self.succeed("render", "m.gltf", "-o", "one.exr", "--size", "8x8", "--spp", "1", "--device", "cpu",
+                            "--aov", "motion")
+        self.assertIn("--aov motion: 0 without --frames", said.stderr)
+
     def test_all_frames_are_exposed_as_the_first(self):
         said = self.succeed("render", "m.gltf", "-o", "f-#.png", "--size", "24x16", "--spp", "2", "--device", "cpu",
                             "--json", "--frames", "0-2", "--fps", "1")

@@ -10,6 +10,7 @@ TEST_CASE("groups of channels follow each other in the order of their bits, thos
     constexpr uint32_t kAll = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
     CHECK(film_channel_count(0) == 4);
     CHECK(film_channel_count(kAovIds) == 4);
+    CHECK(film_channel_count(kAovMotion) == 4);
     CHECK(film_channel_count(kAll) == 14);
     CHECK(channel_offset(kAll, kAovAlbedo) == 4);
     CHECK(channel_offset(kAll, kAovNormal) == 7);
@@ -21,10 +22,10 @@ TEST_CASE("groups of channels follow each other in the order of their bits, thos
 }
 
 TEST_CASE("auxiliary layers have names, by which their bits are found") {
-    CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids"});
+    CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion"});
     for (const std::string& name : aov_names()) CHECK(aov_group(aov_named(name).value()).name == name);
     CHECK_FALSE(aov_named("id").has_value());
     CHECK(channel_names(aov_group(kAovDepth)) == std::vector<std::string>{"Z"});
     CHECK(channel_names(aov_group(kAovIds)) == std::vector<std::string>{"instance", "primitive", "material"});
-    CHECK_THROWS_AS(aov_group(static_cast<AovBits>(32)), std::logic_error);
+    CHECK_THROWS_AS(aov_group(static_cast<AovBits>(64)), std::logic_error);
 }

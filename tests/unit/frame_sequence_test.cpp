@@ -27,3 +27,15 @@ TEST_CASE("frame k is at k / fps, and a turn ends where it began") {
     CHECK(turning.turn_of(8) == 0);
     CHECK(!FrameSequence{}.time_of(9));
 }
+
+TEST_CASE("the frame before one is a step back in time and in the turn, before the first too") {
+    const FrameSequence moving = {.first = 3, .last = 5, .fps = 24.0};
+    CHECK(moving.time_before(5) == moving.time_of(4));
+    CHECK(moving.time_before(0) == -1 / 24.0);
+    const FrameSequence turning = {.last = 7, .time_s = 1.5, .turntable = 8};
+    CHECK(turning.time_before(0) == 1.5);
+    CHECK(turning.turn_before(0) == 0.875);
+    CHECK(turning.turn_before(3) == turning.turn_of(2));
+    CHECK(turning.turn_before(8) == turning.turn_of(7));
+    CHECK(moving.turn_before(0) == 0);
+}

@@ -2,6 +2,7 @@
 
 #include "scene/posed_scene.h"
 
+#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -194,6 +195,30 @@ TEST_CASE("cameras and lights go with their nodes; one that is squashed stands a
     CHECK(posed.scene().cameras[0].world_from_camera == Transform());
     CHECK(posed.scene().lights[0].intensity == Rgb{0, 0, 0});
     CHECK(is_finite(posed.scene().lights[0].direction));
+}
+
+TEST_CASE("a light's range and cone and an orthographic view change over time, within what they may be") {
+    Scene scene = make_scene();
+    scene.cameras.push_back({.name = "plan", .projection = Projection::Orthographic});
+    scene.lights.push_back({.name = "lamp", .kind = LightKind::Spot, .direction = {0, 0, -1}});
+    std::vector<AnimationChannel>& channels = scene.animations[0].channels;
+    channels.push_back(channel(0, AnimatedPart::CameraHeight, {0, 4}, {2, 6}));
+    channels.push_back(channel(0, AnimatedPart::LightRange, {0, 4}, {8, -8}));
+    channels.push_back(channel(0, AnimatedPart::LightInnerCone, {0, 4}, {0, 1.5f}));
+    channels.push_back(channel(0, AnimatedPart::LightOuterCone, {0, 4}, {1, 1}));
+    PosedScene posed = pose(std::move(scene));
+    CHECK(posed.set_time(1).lights_changed);
+    const Light& light = posed.scene().lights[0];
+    CHECK(posed.scene().cameras[0].ortho_height == 3);
+    CHECK(light.range == 4);
+    CHECK(light.cos_inner == doctest::Approx(std::cos(0.375)));
+    CHECK(light.cos_outer == doctest::Approx(std::cos(1.0)));
+    posed.set_time(4);
+    CHECK(light.range > 0);
+    CHECK(light.cos_outer < light.cos_inner); // though the angles lie the other way round
+    Messages messages;
+    Scene now = posed.scene();
+    CHECK_NOTHROW(validate(now, "posed", messages));
 }
 
 TEST_CASE("a skin's vertices go where its joints take them, normals and tangents with them") {

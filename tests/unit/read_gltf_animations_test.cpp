@@ -156,7 +156,7 @@ TEST_CASE("validate_nodes refuses what no reader may leave") {
     refused([](Scene& s) { s.animations[0].channels[0].times.clear(); }, "it has no key times");
 }
 
-TEST_CASE("KHR_animation_pointer animates nodes, angles of view and lights; anything else is named and left out") {
+TEST_CASE("KHR_animation_pointer animates nodes, views and lights; anything else is named and left out") {
     GltfBuilder builder = numbers();
     builder.add("SCALAR", std::vector<float>{1, 0.5f, 0.25f}); // 10
     const auto pointer = [](const std::string& to, int number) {
@@ -192,6 +192,18 @@ TEST_CASE("KHR_animation_pointer animates nodes, angles of view and lights; anyt
     CHECK(channels[3].values == std::vector<float>{0.5f, 1, 0.25f, 0.25f, 0.5f, 0.125f, 0.125f, 0.25f, 0.0625f});
     CHECK(test::has_warning(messages, {"/animations/0/channels/3", "/materials/0/alphaCutoff", "is not animated"}));
     CHECK(test::has_warning(messages, {"/animations/0/channels/4", "/nodes/9/scale"}));
+
+    const Scene others =
+        test::read_gltf_text(document(pointer(light + "range", 1) + "," + pointer(light + "spot/innerConeAngle", 1) +
+                                      "," + pointer("/cameras/0/orthographic/ymag", 1)),
+                             messages);
+    const std::vector<AnimationChannel>& numbers_of = others.animations.at(0).channels;
+    REQUIRE(numbers_of.size() == 4);
+    CHECK(numbers_of[0].part == AnimatedPart::LightRange);
+    CHECK(numbers_of[0].values == std::vector<float>{1, 0.5f, 0.25f});
+    CHECK(numbers_of[1].part == AnimatedPart::LightInnerCone);
+    CHECK(numbers_of[2].part == AnimatedPart::CameraHeight);
+    CHECK(numbers_of[3].values == std::vector<float>{2, 1, 0.5f}); // both ways from the middle
 
     const Scene colored = test::read_gltf_text(document(pointer(light + "color", 0)), messages);
     CHECK(colored.animations.at(0).channels.at(0).values == std::vector<float>{0, 0, 0, 2, 4, 6, 8, 10, 12});

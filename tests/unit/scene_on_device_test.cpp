@@ -131,7 +131,7 @@ TEST_CASE("a scene that was updated part by part gives the picture of the scene 
     changes("textures");
     scene.update_materials(queue, after);
     changes("materials");
-    scene.update_geometry(queue, after);
+    scene.update_geometry(queue, new_scene);
     changes("geometry");
     scene.update_lights(queue, new_scene);
     changes("lights");

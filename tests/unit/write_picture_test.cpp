@@ -151,3 +151,20 @@ TEST_CASE("a record says of scene and camera what they were opened and chosen by
     choice.fov_deg = 40.0f;
     CHECK(source_of(choice, {}).fov_deg == 40);
 }
+
+TEST_CASE("ids come with the names of what the picture shows, as JSON, and of nothing else") {
+    Scene scene;
+    for (const char* name : {"floor", "a \"lamp\"", "unseen"}) {
+        scene.instances.emplace_back().name = name;
+        scene.materials.emplace_back().name = name;
+    }
+    SceneSource source;
+    const std::vector<PixelIds> ids = {{1, 5, 0}, {1, 6, 0}, {kNoHit, kNoHit, kNoHit}, {0, 0, 1}};
+    CHECK(id_metadata(source, ids).empty());
+    name_ids(scene, source);
+    const ExrMetadata metadata = id_metadata(source, ids);
+    CHECK(text_of(metadata, "pertev.instances") == R"({"0":"floor","1":"a \"lamp\""})");
+    CHECK(text_of(metadata, "pertev.materials") == R"({"0":"floor","1":"a \"lamp\""})");
+    CHECK(id_metadata(source, {}).empty());
+    CHECK(text_of(id_metadata(source, std::vector<PixelIds>(1, {kNoHit, kNoHit, kNoHit})), "pertev.instances") == "{}");
+}

@@ -42,6 +42,10 @@ ElementType element_of(AnimatedPart part) {
         return ElementType::Vec4;
     case AnimatedPart::Weights:
     case AnimatedPart::CameraFov:
+    case AnimatedPart::CameraHeight:
+    case AnimatedPart::LightRange:
+    case AnimatedPart::LightInnerCone:
+    case AnimatedPart::LightOuterCone:
         return ElementType::Scalar;
     }
     return ElementType::Scalar;
@@ -55,7 +59,20 @@ struct Target {
     std::vector<uint32_t> indices; // AnimationChannel::target
     std::optional<Rgb> factor;     // of a light: what the values are times; the accessor then holds...
     bool is_scalar = false;        // ...one number a value and not a colour
+    float scale = 1;               // what the values are times
 };
+
+/// Properties of cameras and lights of one number, which goes into the scene as it is or times `scale`.
+struct NumberPart {
+    std::string_view path; // beneath the camera or light
+    AnimatedPart part;
+    float scale;
+};
+constexpr NumberPart kCameraNumbers[] = {{"/perspective/yfov", AnimatedPart::CameraFov, 1},
+                                         {"/orthographic/ymag", AnimatedPart::CameraHeight, 2}};
+constexpr NumberPart kLightNumbers[] = {{"/range", AnimatedPart::LightRange, 1},
+                                        {"/spot/innerConeAngle", AnimatedPart::LightInnerCone, 1},
+                                        {"/spot/outerConeAngle", AnimatedPart::LightOuterCone, 1}};
 
 Target node_target(const Document& document, const JsonValue& place, uint32_t node, AnimatedPart part,
                    const Scene& scene) {
@@ -107,10 +124,23 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& plac
         }
     }
     const std::vector<JsonValue>& nodes = document.table("nodes");
-    if (const auto number = index_in(pointer, "/cameras/", "/perspective/yfov", document.table("cameras").size())) {
-        return Target{AnimatedPart::CameraFov, held_by(scene.cameras, [&](uint32_t node) {
-                          return document.index_into("cameras", nodes[node].at("camera")) == *number;
-                      })};
+    const auto holders_of_light = [&](uint32_t number) {
+        return held_by(scene.lights, [&](uint32_t node) {
+            const auto held = nodes[node].extension("KHR_lights_punctual");
+            return document.index_into("lights", held->at("light")) == number;
+        });
+    };
+    for (const NumberPart& property : kCameraNumbers) {
+        const auto number = index_in(pointer, "/cameras/", property.path, document.table("cameras").size());
+        if (!number) continue;
+        std::vector<uint32_t> holders = held_by(scene.cameras, [&](uint32_t node) {
+            return document.index_into("cameras", nodes[node].at("camera")) == *number;
+        });
+        return Target{.part = property.part, .indices = std::move(holders), .scale = property.scale};
+    }
+    for (const NumberPart& property : kLightNumbers) {
+        const auto number = index_in(pointer, kLights, property.path, document.table("lights").size());
+        if (number) return Target{.part = property.part, .indices = holders_of_light(*number), .scale = property.scale};
     }
     for (const std::string_view path : {"color", "intensity"}) {
         const auto number = index_in(pointer, kLights, fmt::format("/{}", path), document.table("lights").size());
@@ -120,13 +150,7 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& plac
         const float intensity = light.float_or("intensity", 1);
         const bool is_scalar = path == "intensity";
         const Rgb factor = is_scalar ? Rgb{color[0], color[1], color[2]} : Rgb{intensity, intensity, intensity};
-        return Target{AnimatedPart::LightIntensity,
-                      held_by(scene.lights,
-                              [&](uint32_t node) {
-                                  const auto held = nodes[node].extension("KHR_lights_punctual");
-                                  return document.index_into("lights", held->at("light")) == *number;
-                              }),
-                      factor, is_scalar};
+        return Target{AnimatedPart::LightIntensity, holders_of_light(*number), factor, is_scalar};
     }
     return std::nullopt;
 }
@@ -138,9 +162,11 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
         const JsonValue pointer = extension->at("pointer");
         std::optional<Target> found = pointed_at(document, pointer, scene);
         if (!found) {
-            messages.warn(fmt::format("{}: \"{}\" is not animated; expected a node's translation, rotation, scale or "
-                                      "weights, a camera's /perspective/yfov, or a light's color or intensity",
-                                      pointer.place(), shortened(pointer.to_string())));
+            messages.warn(
+                fmt::format("{}: \"{}\" is not animated; expected a node's translation, rotation, scale or "
+                            "weights, a camera's /perspective/yfov or /orthographic/ymag, or a light's color, "
+                            "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle",
+                            pointer.place(), shortened(pointer.to_string())));
         }
         return found;
     }
@@ -183,6 +209,7 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
     }
     channel.times = times.read_floats();
     channel.values = values.read_floats();
+    for (float& value : channel.values) value *= target.scale;
     if (!target.factor) return channel;
     const std::vector<float> read = std::move(channel.values);
     channel.values.clear();

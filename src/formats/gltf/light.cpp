@@ -7,9 +7,6 @@
 namespace pertev::gltf {
 namespace {
 
-// Beside 1, the smallest difference of two floats.
-constexpr float kSharpestEdge = 0x1p-24f;
-
 void set_cone(float inner, float outer, Light& light) {
     light.cos_inner = cos(inner);
     light.cos_outer = min(cos(outer), light.cos_inner - kSharpestEdge);

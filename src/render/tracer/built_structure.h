@@ -77,6 +77,8 @@ public:
     const AnyTrees& trees() const { return trees_; }
     const StructureFigures& figures() const { return figures_; }
     bool has_instances() const { return has_instances_; }
+    /// Which keep a tree of their own.
+    std::size_t mesh_count() const { return parts_.size() - 1; }
 
     /// Every array that the views point to, in the order in which they lie on a device.
     struct Array {

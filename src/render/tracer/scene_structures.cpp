@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "render/tracer/deforming_tree.h"
+#include "scene/scene.h"
+
 namespace pertev {
 
 namespace {
@@ -27,6 +33,21 @@ SceneTriangles triangles_of(const BinaryTrees& trees) {
 }
 
 } // namespace
+
+TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees) {
+    std::vector<PlacedBvh> now(placed.begin(), placed.end());
+    for (PlacedBvh& tree : now) {
+        const auto bounds = bounds_of_trees.find(tree.mesh_bvh);
+        if (bounds == bounds_of_trees.end()) continue;
+        tree.local_bounds = bounds->second;
+        if (tree.local_bounds.is_empty() || lies_near(tree.world_from_local, tree.local_bounds)) continue;
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("instance {} lies further out than 2^40 metres, as its vertices are moved; scale the "
+                                "scene down",
+                                tree.instance));
+    }
+    return build_top_level_bvh(now);
+}
 
 SceneStructures::SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level)
     : builder_(builder), top_level_(std::move(top_level)) {
@@ -55,6 +76,26 @@ std::shared_ptr<SceneStructures> SceneStructures::updated(BinaryTrees trees, Top
         }
     }
     return after;
+}
+
+std::shared_ptr<SceneStructures> SceneStructures::fitted(Queue& queue, std::span<const DeformedMesh> meshes,
+                                                         std::span<const PlacedBvh> placed) {
+    const BinaryTrees before = [&] {
+        const std::lock_guard lock(mutex_);
+        return binary_.at(builder_);
+    }();
+    std::vector<PartChange> changes(before.parts.size(), PartChange::None);
+    SceneTriangles triangles;
+    triangles.meshes.resize(before.parts.size() - 1);
+    for (const DeformedMesh& mesh : meshes) {
+        changes[1 + mesh.tree] = PartChange::Deformed;
+        triangles.meshes[mesh.tree] = read_triangles(queue, mesh);
+    }
+    BinaryTrees trees = update_binary_trees(before, builder_, changes, triangles);
+    std::map<uint32_t, Bounds3> bounds;
+    for (const DeformedMesh& mesh : meshes) bounds.emplace(mesh.tree, trees.parts[1 + mesh.tree]->bounds);
+    TopLevelBvh top_level = top_level_over(placed, bounds);
+    return updated(std::move(trees), std::move(top_level), changes, triangles);
 }
 
 const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {

@@ -7,12 +7,19 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <utility>
 
+#include "device/queue.h"
 #include "render/tracer/built_structure.h"
+#include "render/tracer/deformed_mesh.h"
 #include "render/tracer/tracer_choice.h"
 
 namespace pertev {
+
+/// The top level over instances, where these trees have other bounds than `placed` says. Throws Error(OverLimit) that
+/// names an instance that lies further out than kMaxCoordinate.
+TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees);
 
 class SceneStructures {
 public:
@@ -24,6 +31,11 @@ public:
     /// get.
     std::shared_ptr<SceneStructures> updated(BinaryTrees trees, TopLevelBvh top_level,
                                              const std::vector<PartChange>& changes, const SceneTriangles& triangles);
+
+    /// The scene with these vertices of some of its meshes: as updated(), on the host, for layouts whose trees are not
+    /// kept on the device (can_deform). `placed`: what the top level is built of.
+    std::shared_ptr<SceneStructures> fitted(Queue& queue, std::span<const DeformedMesh> meshes,
+                                            std::span<const PlacedBvh> placed);
 
     /// For the walk of `combination`. May be called from several threads. Throws Error(OverLimit), std::bad_alloc.
     std::shared_ptr<const BuiltStructure> get(const Combination& combination);

@@ -1,6 +1,8 @@
 #include "render/tracer/scene_tracer.h"
 
+#include <algorithm>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -42,6 +44,22 @@ void SceneTracer::set_structures(SceneStructures& structures) {
     for (const RayKind kind : kRayKinds) {
         structures_[static_cast<std::size_t>(kind)]->update(structure_for(choice_[kind], structures));
     }
+}
+
+bool SceneTracer::can_deform() const {
+    return std::ranges::all_of(
+        kRayKinds, [&](RayKind kind) { return pertev::can_deform(layout_of(choice_[kind]), queue_.is_cuda()); });
+}
+
+void SceneTracer::deform(std::span<const DeformedMesh> meshes, std::span<const PlacedBvh> placed) {
+    const std::set<std::shared_ptr<StructureOnDevice>> all(structures_.begin(), structures_.end());
+    std::map<uint32_t, Bounds3> bounds_of_trees;
+    for (const auto& structure : all) {
+        const std::vector<Bounds3> bounds = structure->deform(meshes);
+        for (std::size_t i = 0; i < meshes.size(); ++i) bounds_of_trees[meshes[i].tree] = bounds[i];
+    }
+    const TopLevelBvh top_level = top_level_over(placed, bounds_of_trees);
+    for (const auto& structure : all) structure->place(meshes, top_level);
 }
 
 void SceneTracer::set_surfaces(const SceneView& scene) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "device/buffer.h"
@@ -24,6 +25,12 @@ public:
     /// The scene after a change, or another: memory of trees that is large enough stays, and only what has become
     /// another is copied. Throws Error(OutOfMemory), Error(OverLimit); the tracer is then of no more use.
     void set_structures(SceneStructures& structures);
+
+    /// Whether the trees of meshes whose vertices move are kept on the device, in the layouts of all kinds of rays.
+    bool can_deform() const;
+    /// Where it can: fits them to these meshes, and makes the top level anew. `placed`: what that is built of, with the
+    /// bounds of the other trees. Throws Error(OverLimit) as top_level_over, Error(OutOfMemory, DeviceFault).
+    void deform(std::span<const DeformedMesh> meshes, std::span<const PlacedBvh> placed);
 
     /// What the rays meet is part of this scene: its surfaces say which candidates count. Its arrays stay where they
     /// are as long as rays are traced.

@@ -43,7 +43,7 @@ void DeviceBuilder::start(const BvhTriangle* triangles, uint32_t count) {
     PERTEV_CHECK(count <= codes_.size());
     triangles_ = triangles;
     count_ = count;
-    are_linked_ = false;
+    are_linked_ = is_refitted_ = false;
     if (count == 0) return;
     make_codes();
     climb();
@@ -108,18 +108,32 @@ void DeviceBuilder::start_refit(const BvhTriangle* moved) {
         parents_ = Buffer<uint32_t>(queue_, wide_.size(), "parents of wide nodes");
         children_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of wide nodes' children");
         arrived_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of children that are refitted");
-        boxes_ = Buffer<hploc::NodeBox>(queue_, wide_.size(), "boxes of wide nodes");
+        boxes_ = Buffer<NodeBox>(queue_, wide_.size(), "boxes of wide nodes");
+        refitted_ = Buffer<RefitResult>(queue_, 1, "bounds and cost of a refitted tree");
     }
     if (!are_linked_) {
-        queue_.fill(parents_.data(), 0xff, sizeof(uint32_t)); // the root has none
         launch(queue_, "link parents", nodes, hploc::LinkParents{wide_.data(), parents_.data(), children_.data()});
         are_linked_ = true;
     }
     arrived_.zero();
     launch(queue_, "move triangles", count_, hploc::MoveTriangles{moved, sources_.data(), placed_.data()});
     launch(queue_, "refit nodes", nodes,
-           hploc::RefitNodes{wide_.data(), placed_.data(), parents_.data(), children_.data(), arrived_.data(),
-                             boxes_.data(), &counts_.data()->bounds});
+           hploc::RefitNodes{
+               wide_.data(), placed_.data(),
+               UpwardLinks{parents_.data(), children_.data(), arrived_.data(), boxes_.data(), refitted_.data()},
+               costs_.node_cost, costs_.triangle_cost});
+    is_refitted_ = true;
+}
+
+std::size_t DeviceBuilder::predicted_bytes(uint32_t most, bool on_cuda) {
+    const std::size_t a_triangle = sizeof(uint64_t) * 2 + sizeof(uint32_t) * 4 + sizeof(hploc::ClusterNode) * 2 +
+                                   sizeof(hploc::CollapsePlan) + sizeof(hploc::CollapseSize) + sizeof(hploc::Cluster) +
+                                   sizeof(BvhTriangle);
+    const std::size_t a_node = sizeof(hploc::WideItem) + sizeof(uint32_t) + sizeof(CompressedBvhNode) +
+                               3 * sizeof(uint32_t) + sizeof(NodeBox) + (on_cuda ? 0 : 2 * sizeof(uint32_t));
+    const std::size_t a_sort = on_cuda ? sizeof(uint64_t) + sizeof(uint32_t) : 0; // a copy of what is sorted, about
+    return most * (a_triangle + a_sort) + most_nodes(most) * a_node + sizeof(hploc::OrderedBounds) +
+           sizeof(hploc::WideCounts) + sizeof(RefitResult) + (on_cuda ? 1 : 2) * sizeof(uint32_t);
 }
 
 DeviceBuilder::Figures DeviceBuilder::finish() {
@@ -135,7 +149,13 @@ DeviceBuilder::Figures DeviceBuilder::finish() {
         counts = counts_.read(copy).front();
     }
     PERTEV_CHECK(counts.nodes <= most_nodes(count_) && counts.depth <= kMaxBvhDepth);
-    figures_ = {counts.nodes, count_, counts.depth, counts.cost, counts.bounds};
+    figures_ = {counts.nodes, count_, counts.depth, counts.cost, 0, counts.bounds};
+    if (is_refitted_) {
+        std::vector<RefitResult> of_refit;
+        const RefitResult now = refitted_.read(of_refit).front();
+        figures_.refit_cost = now.cost;
+        figures_.bounds = now.bounds;
+    }
     return figures_;
 }
 

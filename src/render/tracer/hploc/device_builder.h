@@ -31,14 +31,17 @@ public:
     struct Figures {
         uint32_t nodes = 0, triangles = 0;
         int depth = 0;
-        float sah_cost = 0; // as CompressedBvh::sah_cost
+        float sah_cost = 0;   // as CompressedBvh::sah_cost, of the build
+        float refit_cost = 0; // the same of the tree as start_refit() left it; 0: it was not refitted
         Bounds3 bounds;
     };
     Figures finish();
 
     /// Gives the queue the work of fitting the tree that finish() told of to triangles that have moved: as many, in the
-    /// same order, anywhere. finish() then has their bounds; the cost that it states stays that of the build.
+    /// same order, anywhere. finish() then has their bounds and the cost of the tree now.
     void start_refit(const BvhTriangle* moved);
+    /// Of what the constructor takes and the first refit; on a GPU what sorting needs is an estimate.
+    static std::size_t predicted_bytes(uint32_t most, bool on_cuda);
 
     /// After finish(): where the tree lies, and a copy on the host.
     CompressedBvhView view() const;
@@ -79,8 +82,9 @@ private:
     Buffer<uint32_t> sources_;
     // For refits, made by the first: which node is above each, how many beneath it are done, and boxes.
     Buffer<uint32_t> parents_, children_, arrived_;
-    Buffer<hploc::NodeBox> boxes_;
-    bool are_linked_ = false;
+    Buffer<NodeBox> boxes_;
+    Buffer<RefitResult> refitted_;
+    bool are_linked_ = false, is_refitted_ = false;
 };
 
 /// Of triangles on the host, and back there; what the laboratory's structure is.

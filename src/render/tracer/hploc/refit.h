@@ -1,8 +1,7 @@
 #pragma once
 
 // Fits a tree of compressed nodes to triangles that have moved: nodes and leaves stay what they are, boxes are made
-// anew from the bottom up, each node by whoever finishes the last of its children. Each box is that of its triangles,
-// to the bit, so the bytes do not depend on who that is.
+// anew. Each box is that of its triangles, to the bit.
 
 #include <cstdint>
 
@@ -10,16 +9,9 @@
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/hploc/cluster_tree.h"
 #include "accel/hploc/leaves.h"
+#include "render/tracer/refit_upwards.h"
 
 namespace pertev::hploc {
-
-/// The box of what a node holds, before it is rounded.
-struct alignas(32) NodeBox {
-    Vec3 lo;
-    uint32_t unused0;
-    Vec3 hi;
-    uint32_t unused1;
-};
 
 /// One node each: counts its inner children and tells them where it is. The root's own entry is the caller's.
 struct LinkParents {
@@ -46,58 +38,40 @@ struct MoveTriangles {
     }
 };
 
-/// One node each: those without inner children begin, and climb as far as they are the last to come.
+/// One node each.
 struct RefitNodes {
     CompressedBvhNode* nodes;
     const BvhTriangle* triangles;
-    const uint32_t* parents;  // [0] kNone
-    const uint32_t* children; // [node] how many inner ones; nodes change meanwhile
-    uint32_t* arrived;        // [node] children that are done; 0 at first
-    NodeBox* boxes;
-    Bounds3* bounds; // of all
+    UpwardLinks links;
+    float node_cost, triangle_cost; // CollapseSettings'
 
     HD void operator()(uint32_t i) const {
-        if (children[i] != 0) return;
-        while (true) {
-            fit(i);
-            const uint32_t parent = parents[i];
-            if (parent == kNone) return;
-            if (arrive(arrived + parent) != children[parent]) return;
-            i = parent;
-        }
+        links.climb_from(i, [this](uint32_t node) { return fit(node); });
     }
 
 private:
-    /// How many have arrived, this one among them; it sees what those before wrote.
-    HD static uint32_t arrive(uint32_t* count) {
-#if defined(__CUDA_ARCH__)
-        __threadfence();
-        const uint32_t before = atomicAdd(count, 1u);
-        __threadfence();
-        return before + 1;
-#else
-        return __atomic_fetch_add(count, 1u, __ATOMIC_ACQ_REL) + 1;
-#endif
-    }
-
-    HD void fit(uint32_t i) const {
+    HD NodeBox fit(uint32_t i) const {
         CompressedBvhNode node = nodes[i];
         Bounds3 slots[8], all;
         uint32_t child = node.child_base, triangle = node.triangle_base;
+        float cost = 0;
         for (uint32_t bit = 0; bit < 24; ++bit) {
             if (node.triangles >> bit & 1u) slots[bit % 8].extend(bounds_of(triangles[triangle++]));
         }
         for (uint32_t s = 0; s < 8; ++s) {
             if (inner_slots(node) >> s & 1u) {
-                const NodeBox box = load_fresh(boxes + child++);
+                const NodeBox box = links.box_of(child++);
                 slots[s] = {box.lo, box.hi};
+                cost += box.cost;
+            } else {
+                const auto held = static_cast<float>(count_ones(triangles_of_slots(node, 1u << s)));
+                cost += slots[s].half_area() * (triangle_cost * held);
             }
             all.extend(slots[s]);
         }
         compress_boxes(node, all, slots);
         nodes[i] = node;
-        boxes[i] = {all.lo, 0, all.hi, 0};
-        if (i == 0) *bounds = all;
+        return {all.lo, cost + all.half_area() * node_cost, all.hi, 0};
     }
 };
 

@@ -1,0 +1,73 @@
+#pragma once
+
+// How far what each pixel shows has moved in the picture since the frame before, by the camera, its instance and its
+// vertices: for motion blur and for filters over time in other programs. One ray through the pixel's centre and the
+// middle of the lens finds what it shows; a mean over samples would mix what lies before with what lies behind.
+
+#include "denoise/reproject.h"
+#include "image/image.h"
+#include "render/picture_view.h"
+#include "render/tracer/scene_tracer.h"
+
+namespace pertev {
+
+/// One pixel each: its ray and the key of its coin, for blended surfaces.
+struct CentreRays {
+    CameraView camera;
+    uint32_t width, first; // pixels; number of the first one
+    Ray* rays;
+    uint32_t* keys;
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t pixel = first + i;
+        const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
+        store_ray(rays + i, make_camera_ray(camera, centre, {0.5f, 0.5f}));
+        keys[i] = hash_words(pixel, 0, 0, 0).x;
+    }
+};
+
+/// One pixel each. Nothing has moved that the frame before had behind its camera; what it did not have at all is taken
+/// to have stood where it is.
+struct MotionOfHits {
+    FrameCameras cameras;
+    SceneView scene;
+    PreviousScene before;
+    HitQueueView hits;
+    uint32_t first;
+    Vec2* motion; // pixels to the right and up, of this frame's place from that of the frame before
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t pixel = first + i;
+        const Vec2 centre = {static_cast<float>(pixel % cameras.width) + 0.5f,
+                             static_cast<float>(pixel / cameras.width) + 0.5f};
+        const Hit hit = hits.load(i);
+        Vec2 then = centre;
+        if (hit.instance == kNoHit) {
+            if (faces_sky_before(centre)) then = reproject_sky(cameras, centre);
+        } else {
+            const bool was_there = before.instances[hit.instance].is_hidden == 0;
+            const Reprojection at =
+                reproject_surface(cameras, scene, was_there ? before : PreviousScene{scene.instances, scene.meshes},
+                                  centre, {float_of(hit.instance), float_of(hit.primitive), hit.u, hit.v});
+            if (at.depth > 0 || cameras.before.projection == Projection::Orthographic) then = at.pixel;
+        }
+        const Vec2 moved = {centre.x - then.x, then.y - centre.y};
+        motion[i] = is_finite(moved.x) && is_finite(moved.y) ? moved : Vec2{0, 0};
+    }
+
+private:
+    HD bool faces_sky_before(Vec2 centre) const {
+        const Vec3 direction = make_camera_ray(cameras.now, centre, {0.5f, 0.5f}).direction;
+        return transform_transposed(cameras.before.world_from_camera, direction).z < 0;
+    }
+};
+
+/// Of the device's memory, while motion_vectors is at work.
+std::size_t motion_vector_bytes(uint32_t width, uint32_t height);
+
+/// Of the picture: two channels, pixels to the right and up. `camera_before` saw the frame before, of the same size, in
+/// which things stood as `before` says. Throws Error(OutOfMemory, DeviceFault).
+Image motion_vectors(Queue& queue, SceneTracer& tracer, const PictureView& picture, const CameraView& camera_before,
+                     const PreviousScene& before);
+
+} // namespace pertev

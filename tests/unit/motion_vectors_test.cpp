@@ -1,0 +1,161 @@
+// Motion vectors of pixels: of the camera, of instances, of the sky; none of still pictures.
+
+#include "denoise/motion_vectors.h"
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "render/update_scene.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+RenderSettings motion_settings() {
+    RenderSettings settings;
+    settings.width = 64, settings.height = 48;
+    settings.samples = 1;
+    settings.path.max_depth = 0;
+    settings.aovs = kAovMotion;
+    return settings;
+}
+
+/// A ball of radius 1 about the origin, 5 m away.
+Camera camera_of_ball() {
+    Camera camera;
+    camera.world_from_camera = make_translation({0, 0, 5});
+    return camera;
+}
+
+Vec2 at(const Image& motion, uint32_t x, uint32_t y) {
+    const float* pixel = &motion.pixels[2 * (std::size_t(y) * motion.width + x)];
+    return {pixel[0], pixel[1]};
+}
+
+/// Pixels that a metre takes, 4 m away.
+float pixels_a_metre(const CameraView& view) { return 0.5f * 64 / (4 * view.half_width); }
+
+} // namespace
+
+TEST_CASE("what moves to the right and up has a motion of so many pixels to the right and up") {
+    Messages messages;
+    Queue queue = test::queue_asked_for();
+    const Camera camera = camera_of_ball();
+    const RenderSettings settings = motion_settings();
+    Scene scene = test::make_furnace_scene(0.5f);
+    scene.instances.push_back(scene.instances[0]); // so that the mesh has a tree of its own
+    scene.instances[1].world_from_local = make_translation({0, 0, -40});
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Session session(queue, prepared, camera, settings);
+    session.keep_as_before();
+    scene.instances[0].world_from_local = make_translation({0.1f, 0.05f, 0});
+    SceneUpdate update;
+    update.moved_instances = {0};
+    prepared = update_scene(prepared, scene, update, messages);
+    session.update_scene(prepared, parts_of(update));
+    session.render(1);
+    const RenderResult result = session.result();
+    REQUIRE(result.layers.size() == 1);
+    CHECK(result.layers[0].name == "motion");
+    CHECK(result.layers[0].channels == std::vector<std::string>{"u", "v"});
+    const Image& motion = result.layers[0].image;
+    const float scale = pixels_a_metre(make_camera_view(camera, 64, 48));
+    const Vec2 ball = at(motion, 32, 24), sky = at(motion, 1, 1);
+    CHECK(ball.x == doctest::Approx(0.1f * scale).epsilon(0.02));
+    CHECK(ball.y == doctest::Approx(0.05f * scale).epsilon(0.02));
+    CHECK(length(Vec3{sky.x, sky.y, 0}) < 1e-3f);
+}
+
+TEST_CASE("a camera that goes to the right moves what is near to the left, and one that turns the sky too") {
+    Messages messages;
+    Queue queue = test::queue_asked_for();
+    const Scene scene = test::make_furnace_scene(0.5f);
+    const Camera camera = camera_of_ball();
+    const RenderSettings settings = motion_settings();
+    Session session(queue, prepare_scene(scene, {}, messages), camera, settings);
+    session.keep_as_before();
+    Camera aside = camera;
+    aside.world_from_camera.translation.x += 0.1f;
+    session.set_camera(aside);
+    const CameraView view = make_camera_view(camera, 64, 48);
+    Image motion = session.motion();
+    CHECK(at(motion, 32, 24).x == doctest::Approx(-0.1f * pixels_a_metre(view)).epsilon(0.02));
+    CHECK(std::abs(at(motion, 1, 1).x) < 1e-3f); // the sky is endlessly far
+
+    Camera turned = camera; // by a hundredth to the left
+    turned.world_from_camera.row0 = {1, 0, 0.01f};
+    turned.world_from_camera.row2 = {-0.01f, 0, 1};
+    session.set_camera(turned);
+    motion = session.motion();
+    const float expected = 0.01f * 0.5f * 64 / view.half_width;
+    CHECK(at(motion, 32, 2).x == doctest::Approx(expected).epsilon(0.05)); // sky
+    CHECK(at(motion, 32, 24).x == doctest::Approx(expected).epsilon(0.05));
+    CHECK(std::abs(at(motion, 32, 24).y) < 1e-2f);
+}
+
+TEST_CASE("a picture without a frame before it has no motion, nor has what was behind the camera or was hidden") {
+    Messages messages;
+    Queue queue = test::queue_asked_for();
+    Scene scene = test::make_furnace_scene(0.5f);
+    const Camera camera = camera_of_ball();
+    const auto largest = [](const Image& motion) {
+        float most = 0;
+        for (const float value : motion.pixels) most = max(most, std::abs(value));
+        return most;
+    };
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Session session(queue, prepared, camera, motion_settings());
+    CHECK(largest(session.motion()) == 0);
+    Camera away = camera;
+    away.world_from_camera.row0.x = away.world_from_camera.row2.z = -1;
+    session.set_camera(away);
+    session.keep_as_before();
+    session.set_camera(camera);
+    CHECK(largest(session.motion()) == 0);
+    session.cut();
+    session.keep_as_before();
+    CHECK(largest(session.motion()) < 1e-4f); // the same place, but for rounding
+
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[1].world_from_local = make_translation({0, 0, -40});
+    scene.instances[0].is_hidden = true;
+    prepared = prepare_scene(scene, {}, messages);
+    session.set_scene(prepared);
+    session.keep_as_before();
+    scene.instances[0].is_hidden = false;
+    scene.instances[0].world_from_local = make_translation({0.5f, 0, 0});
+    SceneUpdate update;
+    update.moved_instances = {0};
+    prepared = update_scene(prepared, scene, update, messages);
+    session.update_scene(prepared, parts_of(update));
+    CHECK(largest(session.motion()) < 1e-4f);
+}
+
+TEST_CASE("motion vectors take the memory that is said beforehand, and have the same bytes on every device") {
+    Messages messages;
+    Queue cpu = Queue::make_cpu();
+    const PreparedScene prepared = prepare_scene(test::make_mixed_scene(), {}, messages);
+    const Scene scene = test::make_mixed_scene();
+    const auto motion_on = [&](Queue& queue, PathBody body) {
+        Messages said;
+        RenderSettings settings = motion_settings();
+        settings.body = body;
+        const PreparedScene own = prepare_scene(scene, {}, said);
+        Session session(queue, own, test::mixed_scene_camera(), settings);
+        session.keep_as_before();
+        Camera moved = test::mixed_scene_camera();
+        moved.world_from_camera.translation.y += 0.2f;
+        session.set_camera(moved);
+        return session.motion().pixels;
+    };
+    const std::vector<float> expected = motion_on(cpu, PathBody::Loop);
+    CHECK(motion_on(cpu, PathBody::Wavefront) == expected);
+    CHECK(motion_vector_bytes(64, 48) == 64 * 48 * 64);
+    if (!cuda_requested()) return;
+    Queue cuda = test::make_cuda_queue();
+    CHECK(motion_on(cuda, PathBody::Wavefront) == expected);
+}
