@@ -67,20 +67,19 @@ std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
 
 } // namespace
 
+CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
+    const CameraChoice choice = camera.choice_at(time_s);
+    CameraSource source = source_of(choice, camera.at(scene, time_s));
+    if (turn == 0) return source;
+    source.camera = camera.turned(source.camera, turn);
+    source.target.reset(); // its words say where the camera began
+    source.up.reset();
+    return source;
+}
+
 void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record) {
-    const std::optional<double> time_s = camera.sequence.time_of(frame);
-    record.scene.time_s = time_s;
-    const CameraChoice choice = camera.camera.choice_at(time_s);
-    record.camera = {.camera = camera.camera.at(scene, time_s),
-                     .name = choice.camera,
-                     .target = choice.target,
-                     .up = choice.up,
-                     .fov_deg = choice.fov_deg.value_or(0)};
-    const double turn = camera.sequence.turn_of(frame);
-    if (turn == 0) return;
-    record.camera.camera = camera.camera.turned(record.camera.camera, turn);
-    record.camera.target.reset(); // its words say where the camera began
-    record.camera.up.reset();
+    record.scene.time_s = camera.sequence.time_of(frame);
+    record.camera = camera_at(camera.camera, scene, record.scene.time_s, camera.sequence.turn_of(frame));
 }
 
 int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,

@@ -43,8 +43,19 @@ bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
 } // namespace
 
-SessionFrames::SessionFrames(Session& session, double frame_s) : session_(session), pace_(frame_s) {
+SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s)
+    : session_(session), scene_(scene), pace_(frame_s) {
     session_.abandon_when(&abandon_);
+}
+
+void SessionFrames::set_time(double time_s) {
+    if (scene_.time_s() == time_s) return;
+    const Stopwatch watch;
+    Messages said_already; // what there is to say of the scene was said at the start
+    const uint32_t parts = scene_.set_time(time_s, said_already);
+    if (parts != 0) session_.update_scene(scene_.prepared(), parts);
+    scene_changes_ += parts != 0;
+    update_s_ += watch.seconds();
 }
 
 RenderSettings SessionFrames::settings_for(const FrameRequest& request, float scale) {
@@ -114,8 +125,9 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
 
 ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) {
     const Stopwatch whole;
+    const double update_s = std::exchange(update_s_, 0);
     use(settings_for(request, scale));
-    const bool is_still = session_.camera() == request.camera && shows_reconstruction_;
+    const bool is_still = session_.camera() == request.camera && shows_reconstruction_ && update_s == 0;
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
@@ -128,9 +140,10 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
     frame.image = session_.frame().display(request.view.display.tone_map, request.view.display.exposure_stops);
-    frame.stages = {{"render", 1e3 * frame.render_s},
-                    {"reconstruction", 1e3 * reconstruction_s},
-                    {"tone map", 1e3 * display.seconds()}};
+    if (update_s > 0) frame.stages.emplace_back("scene", 1e3 * update_s);
+    frame.stages.insert(frame.stages.end(), {{"render", 1e3 * frame.render_s},
+                                             {"reconstruction", 1e3 * reconstruction_s},
+                                             {"tone map", 1e3 * display.seconds()}});
     frame.full_width = request.view.picture.width;
     frame.full_height = request.view.picture.height;
     frame.scale = scale;
@@ -142,9 +155,9 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
 const std::string& SessionFrames::film_hash() {
     const History& now = session_.history();
     const bool is_known = !hashed_.hash.empty() && hashed_.cuts == now.cuts && hashed_.samples == now.samples &&
-                          hashed_.camera == session_.camera();
+                          hashed_.scene_changes == scene_changes_ && hashed_.camera == session_.camera();
     if (!is_known) {
-        hashed_ = {picture_hash(session_.picture()).hex(), session_.camera(), now.cuts, now.samples};
+        hashed_ = {picture_hash(session_.picture()).hex(), session_.camera(), now.cuts, scene_changes_, now.samples};
     }
     return hashed_.hash;
 }
@@ -154,6 +167,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const bool is_small = request.is_moving || request.view.is_real_time;
     const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
     if (is_small && is_beauty(request.view.layer) && request.view.is_reconstructed) return reconstruct(request, scale);
+    update_s_ = 0;
     use(settings_for(request, scale));
     session_.set_camera(request.camera);
     const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;

@@ -1,20 +1,23 @@
 #pragma once
 
-// The pictures of a Session, as the viewer shows them. While the camera moves: frames of one sample, reconstructed with
-// what those before have seen, at the resolution that keeps the frame rate. At rest: samples gather at full size until
-// all that were asked for are there; that film is the one of `pertev render`, to the bit.
+// The pictures of a Session, as the viewer shows them. While the camera or time moves: frames of one sample,
+// reconstructed with what those before have seen, at the resolution that keeps the frame rate. At rest: samples gather
+// at full size until all that were asked for are there; that film is the one of `pertev render`, to the bit.
 
 #include "apps/viewer/frame_pace.h"
 #include "apps/viewer/frame_source.h"
+#include "session/moving_scene.h"
 #include "session/session.h"
 
 namespace pertev {
 
 class SessionFrames final : public FrameSource {
 public:
-    /// `frame_s`: seconds that a frame may take while the camera moves. The session outlives it.
-    SessionFrames(Session& session, double frame_s);
+    /// `frame_s`: seconds that a frame may take while the view moves. `session` has the scene of `scene`; both outlive
+    /// it.
+    SessionFrames(Session& session, MovingScene& scene, double frame_s);
 
+    void set_time(double time_s) override;
     std::optional<ShownFrame> next(const FrameRequest& request) override;
     std::atomic<bool>& abandon() override { return abandon_; }
     std::optional<PickedPoint> pick(const Camera& camera, float x, float y) override;
@@ -28,6 +31,9 @@ private:
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
 
     Session& session_;
+    MovingScene& scene_;
+    uint64_t scene_changes_ = 0;
+    double update_s_ = 0; // of the scene, since the last frame
     FramePace pace_;
     std::atomic<bool> abandon_{false};
     uint32_t next_sample_ = 0;  // of the frames in real time
@@ -38,7 +44,7 @@ private:
     struct Hashed {
         std::string hash;
         Camera camera;
-        uint64_t cuts = 0;
+        uint64_t cuts = 0, scene_changes = 0;
         uint32_t samples = 0;
     } hashed_;
     double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known

@@ -50,7 +50,7 @@ class Access(WithViewer):
 
     def test_all_files_of_the_page_come_with_the_cookie_and_their_type(self):
         for path, kind in [("/", "text/html"), ("/main.js", "text/javascript"), ("/link.js", "text/javascript"),
-                           ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/style.css", "text/css"),
+                           ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/time.js", "text/javascript"), ("/style.css", "text/css"),
                            ("/icon.svg", "image/svg+xml")]:
             status, headers, body = self.get(path)
             self.assertEqual((status, headers["content-type"].split(";")[0]), (200, kind), path)
@@ -145,7 +145,10 @@ class Fuzzed(WithViewer):
                         "AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n\x81\x80aaaa".encode())
         messages = ['{"type":"orbit","n":1,"dx":0.1,"dy":0.1}', '{"type":"set","n":2,"name":"exposure","value":1}',
                     '{"type":"move","n":1,"right":1,"up":0,"forward":0,"ms":10,"pace":"fast"}',
-                    '{"type":"pick","n":3,"x":0.5,"y":0.5,"use":"orbit"}', '{"type":"ack","frame":1,"ms":1}',
+                    '{"type":"pick","n":3,"x":0.5,"y":0.5,"use":"orbit"}',
+                    '{"type":"play","n":4,"on":true,"loops":false,"speed":2}', '{"type":"time","n":5,"at":1}',
+                    '{"type":"key","n":6,"at":2}', '{"type":"unkey","n":7,"index":0}', '{"type":"follow","n":8}',
+                    '{"type":"ack","frame":1,"ms":1}',
                     '{"type":"set","n":2,"name":"walk","value":"packet"}', '{"type":"hand","to":1}', '{"type":"meter","n":3}']
         client, before = None, 0
         for number in range(FUZZED // 2):

@@ -72,10 +72,13 @@ TEST_CASE("texts to the page are JSON") {
     frame.stages = {{"render", 1.5}};
     ViewNumbers numbers;
     numbers.frame = &frame;
+    numbers.flags = "--eye '1'";
+    const CameraPath path = {{{.time_s = 0.5, .eye = {1, 2, 3}, .fov_deg = 40}, {.time_s = 2}}};
+    numbers.path = &path;
     const PickedPoint point;
-    for (const std::string& text : {welcome_text(start), state_text(start.view, numbers, "--eye '1'"),
-                                    state_text(start.view, {}, ""), notice_text("error", "\"quoted\""),
-                                    picked_text(scene, &point, 0.5f, 0.5f), picked_text(scene, nullptr, 0, 0)}) {
+    for (const std::string& text : {welcome_text(start), state_text(start.view, numbers), state_text(start.view, {}),
+                                    notice_text("error", "\"quoted\""), picked_text(scene, &point, 0.5f, 0.5f),
+                                    picked_text(scene, nullptr, 0, 0)}) {
         simdjson::dom::parser parser;
         std::string_view type;
         CHECK_MESSAGE(parser.parse(text)["type"].get_string().get(type) == simdjson::SUCCESS, text);

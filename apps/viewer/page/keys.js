@@ -17,6 +17,7 @@ export const kKeys = [
   { keys: ["double click"], text: "the centre to turn about" },
   { keys: ["Alt", "click"], text: "bring into focus" },
   { keys: ["R"], text: "home: the camera of the start" },
+  { keys: ["Space"], text: "time runs, or stands" },
   { keys: ["T"], text: "at rest: the reference, or real time" },
   { keys: ["[", "]"], text: "exposure down, up" },
   { keys: ["0", "…", "9"], text: "scatterings, at most" },
@@ -67,7 +68,7 @@ export class Controls {
   keyDown(event) {
     if (event.ctrlKey || event.metaKey) return;
     const target = event.target;
-    const types = target instanceof HTMLInputElement;
+    const types = target instanceof HTMLInputElement && target.type === "number";
     if (types && event.code !== "Tab" && event.code !== "F12" && event.code !== "Escape") return;
     if (event.code === "Escape" && target instanceof HTMLElement) target.blur();
     if (event.code in kAxes || event.code.startsWith("Shift") || event.code === "KeyZ") {
@@ -79,7 +80,7 @@ export class Controls {
     const action = this.actions[event.code];
     if (!action || event.altKey) return;
     event.preventDefault();
-    action(event);
+    if (!event.repeat || event.code.startsWith("Bracket")) action(event);
   }
 
   /** Once a frame of the browser.
