@@ -160,8 +160,13 @@ int view(const ViewFlags& flags) {
     start.record = record;
     start.view.picture = ready->settings;
     start.view.display = choose_shown_display(flags.render, session, reporter);
+    start.view.finds_exposure = flags.render.exposure.empty() || flags.render.exposure == "auto";
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
+    if (start.view.finds_exposure) {
+        source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
+        start.view.display.exposure_stops = 0;
+    }
     start.camera.name = camera_name(flags.render.scene, ready->scene());
     const float size = length(bounds_of(ready->scene()).size());
     start.speed = 0.12f * size;

@@ -34,6 +34,8 @@ struct ShownFrame {
     bool is_reference = false;                // of the picture that pertev render makes
     std::string hash;                         // of the film where that is known; empty otherwise
     std::string caption;                      // of a layer: what its colours mean
+    float exposure_stops = 0;                 // that it is shown with
+    float found_stops = 0;                    // of these, what was found where the exposure is found by itself
     RayCounts rays;                           // traced for it
     double render_s = 0;                      // of these rays
     float scale = 1;                          // of the full size

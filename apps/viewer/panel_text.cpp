@@ -65,6 +65,8 @@ constexpr NumberRow kRows[] = {
          return fmt::format("{} x {}", n.frame->image.width, n.frame->image.height);
      }},
     {"Now", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
+    {"Now", "exposed by",
+     [](const ViewState&, const ViewNumbers& n) { return fmt::format("{:+.2f} stops", n.frame->exposure_stops); }},
     {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",
      [](const ViewState&, const ViewNumbers& n) {

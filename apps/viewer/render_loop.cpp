@@ -113,7 +113,7 @@ void RenderLoop::steer(const Steer& asked) {
     case MessageKind::Set:
         return set(asked);
     case MessageKind::Meter:
-        view_.display.exposure_stops = source_.meter(request());
+        view_.display.exposure_stops = view_.finds_exposure ? 0 : source_.meter(request());
         break;
     case MessageKind::Hello:
     case MessageKind::Ack:
@@ -236,6 +236,7 @@ void RenderLoop::show_next() {
     is_new_ = false;
     shown_ = view_;
     shown_time_s_ = clock_.time_s;
+    view_.found_stops = frame->found_stops;
     const double now = now_s_();
     const double since = now - std::exchange(framed_at_s_, now);
     frames_per_second_ = since > 1 ? 0 : frames_per_second_ + 0.3 * (1 / std::max(since, 1e-4) - frames_per_second_);
@@ -255,6 +256,7 @@ PictureRecord RenderLoop::record() const {
     if (start_.is_animated) record.scene.time_s = clock_.time_s;
     record.settings = view_.picture;
     record.display = view_.display;
+    if (last_) record.display->exposure_stops = last_->exposure_stops;
     record.camera.camera = camera_.camera(view_.lens);
     record.camera.target.reset();
     record.camera.up.reset();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "apps/viewer/layer_colors.h"
 #include "apps/viewer/steering.h"
 #include "base/error.h"
@@ -16,7 +18,8 @@ namespace {
 
 // Samples from which on a picture at rest is shown in place of a reconstruction: fewer are noisier.
 constexpr uint32_t kBetterThanReconstruction = 8;
-constexpr double kPass = 0.03; // seconds after which a render looks whether it is still wanted
+constexpr uint32_t kFramesOfLayer = 32; // at rest, after which a layer of the reconstruction stays as it is
+constexpr double kPass = 0.03;          // seconds after which a render looks whether it is still wanted
 
 /// What the film must hold beside the picture for this layer.
 uint32_t aovs_of(ShownLayer layer) {
@@ -24,6 +27,8 @@ uint32_t aovs_of(ShownLayer layer) {
     case ShownLayer::Beauty:
     case ShownLayer::NodeHeat:
     case ShownLayer::TriangleHeat:
+    case ShownLayer::Motion:
+    case ShownLayer::Deviation:
         return 0;
     case ShownLayer::Albedo:
         return kAovAlbedo;
@@ -40,6 +45,13 @@ uint32_t aovs_of(ShownLayer layer) {
 }
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
+
+/// Of the reconstruction, so that they are there only with it.
+bool is_reconstructed(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
+
+bool same_metering(const RenderSettings& a, const RenderSettings& b) {
+    return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
+}
 
 } // namespace
 
@@ -65,7 +77,7 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.height = scaled_side(settings.height, scale);
     settings.aovs |= aovs_of(request.view.layer);
     // Layers and heat maps need no light.
-    if (!is_beauty(request.view.layer)) settings.path.max_depth = 0;
+    if (!is_beauty(request.view.layer) && !is_reconstructed(request.view.layer)) settings.path.max_depth = 0;
     settings.pass_samples = 1;
     if (sample_s_ > 0 && scale == 1)
         settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
@@ -91,7 +103,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     const uint32_t width = session_.settings().width, height = session_.settings().height;
     switch (request.view.layer) {
     case ShownLayer::Beauty:
-        return session_.display(request.view.display.exposure_stops, request.view.display.tone_map);
+        return session_.display(frame.exposure_stops, request.view.display.tone_map);
     case ShownLayer::Albedo:
         return show_albedo(session_.layers().front().image);
     case ShownLayer::Normal:
@@ -108,13 +120,15 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
         return show_ids(session_.film().ids(), width, height, IdKind::Material);
     case ShownLayer::NodeHeat:
     case ShownLayer::TriangleHeat:
+    case ShownLayer::Motion:
+    case ShownLayer::Deviation:
         break;
     }
     const bool nodes = request.view.layer == ShownLayer::NodeHeat;
     const std::vector<RayWork> work = session_.count_camera_work();
     if (work.empty()) {
         frame.caption = "this walk cannot count what one ray tests: its rays go together";
-        return session_.display(request.view.display.exposure_stops, request.view.display.tone_map);
+        return session_.display(frame.exposure_stops, request.view.display.tone_map);
     }
     uint32_t most = 0;
     Rgba8Image image = show_work(work, width, height, nodes ? WorkKind::Nodes : WorkKind::Triangles, most);
@@ -123,15 +137,54 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     return image;
 }
 
+/// What the layer of the last reconstructed frame looks like.
+Rgba8Image SessionFrames::show_layer(const FrameRequest& request, ShownFrame& frame) {
+    float most = 0;
+    if (request.view.layer == ShownLayer::Motion) {
+        Rgba8Image image = show_motion(session_.frame().motion(), most);
+        frame.caption = fmt::format("grey: still; to the right red, down green; full at {:.3g} pixels a frame", most);
+        return image;
+    }
+    Rgba8Image image = show_deviation(session_.frame().deviation(), most);
+    frame.caption = fmt::format("deviation of the signals: black: none; pale yellow: {:.3g}, or not known", most);
+    return image;
+}
+
+/// The stops that the present picture is shown with.
+void SessionFrames::expose(const FrameRequest& request, ShownFrame& frame) {
+    frame.found_stops = exposure_.stops();
+    frame.exposure_stops = request.view.display.exposure_stops;
+    if (request.view.finds_exposure) frame.exposure_stops += frame.found_stops;
+}
+
+/// A picture at rest has the exposure that pertev render meters for it.
+void SessionFrames::meter_still(const FrameRequest& request) {
+    if (!request.view.finds_exposure) return;
+    const Metered& last = metered_;
+    if (last.is_there && same_metering(last.picture, request.view.picture) && last.camera == request.camera &&
+        last.tone_map == request.view.display.tone_map && last.scene_changes == scene_changes_) {
+        return;
+    }
+    begin_exposed(request, session_.meter(request.view.display.tone_map));
+}
+
+void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
+    metered_ = {request.view.picture, request.camera, request.view.display.tone_map, scene_changes_, true};
+    exposure_.set(stops);
+}
+
 ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) {
     const Stopwatch whole;
     const double update_s = std::exchange(update_s_, 0);
+    const uint32_t width_before = session_.settings().width;
     use(settings_for(request, scale));
-    const bool is_still = session_.camera() == request.camera && shows_reconstruction_ && update_s == 0;
+    const bool is_still = session_.camera() == request.camera && shows_reconstruction_ && update_s == 0 &&
+                          session_.settings().width == width_before;
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
-    session_.render_frame(next_sample_, {});
+    const bool shows_layer = is_reconstructed(request.view.layer);
+    session_.render_frame(next_sample_, {.keep_layers = shows_layer});
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
     ShownFrame frame;
@@ -139,7 +192,13 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     const double reconstruction_s = session_.frame().seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
-    frame.image = session_.frame().display(request.view.display.tone_map, request.view.display.exposure_stops);
+    if (request.view.finds_exposure && !shows_layer) {
+        exposure_.next(session_.frame_tones(), request.view.display.tone_map);
+        metered_.is_there = false;
+    }
+    expose(request, frame);
+    frame.image = shows_layer ? show_layer(request, frame)
+                              : session_.frame().display(request.view.display.tone_map, frame.exposure_stops);
     if (update_s > 0) frame.stages.emplace_back("scene", 1e3 * update_s);
     frame.stages.insert(frame.stages.end(), {{"render", 1e3 * frame.render_s},
                                              {"reconstruction", 1e3 * reconstruction_s},
@@ -148,6 +207,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     frame.full_height = request.view.picture.height;
     frame.scale = scale;
     frame.samples = still_frames_;
+    frame.is_final = shows_layer && !request.is_moving && still_frames_ >= kFramesOfLayer;
     pace_.took(scale, whole.seconds());
     return frame;
 }
@@ -166,6 +226,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
     const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
+    if (is_reconstructed(request.view.layer)) return reconstruct(request, scale);
     if (is_small && is_beauty(request.view.layer) && request.view.is_reconstructed) return reconstruct(request, scale);
     update_s_ = 0;
     use(settings_for(request, scale));
@@ -194,6 +255,8 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
         return std::nullopt;
     }
     shows_reconstruction_ = false;
+    if (!is_small && is_beauty(request.view.layer)) meter_still(request);
+    expose(request, frame);
     const Stopwatch display;
     frame.image = show(request, frame);
     const double display_s = display.seconds();

@@ -6,6 +6,7 @@
 
 #include "apps/viewer/frame_pace.h"
 #include "apps/viewer/frame_source.h"
+#include "session/adaptive_exposure.h"
 #include "session/moving_scene.h"
 #include "session/session.h"
 
@@ -23,12 +24,17 @@ public:
     std::optional<PickedPoint> pick(const Camera& camera, float x, float y) override;
     float meter(const FrameRequest& request) override;
     RenderResult result() override { return session_.result(); }
+    /// What the meter has found for this view, so that it need not look again.
+    void begin_exposed(const FrameRequest& request, float stops);
 
 private:
     ShownFrame reconstruct(const FrameRequest& request, float scale);
     RenderSettings settings_for(const FrameRequest& request, float scale);
     void use(const RenderSettings& settings);
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
+    Rgba8Image show_layer(const FrameRequest& request, ShownFrame& frame);
+    void expose(const FrameRequest& request, ShownFrame& frame);
+    void meter_still(const FrameRequest& request);
 
     Session& session_;
     MovingScene& scene_;
@@ -47,6 +53,15 @@ private:
         uint64_t cuts = 0, scene_changes = 0;
         uint32_t samples = 0;
     } hashed_;
+    AdaptiveExposure exposure_;
+    /// The view that exposure_ was metered for, as long as no frame has moved it on.
+    struct Metered {
+        RenderSettings picture;
+        Camera camera;
+        ToneMap tone_map = ToneMap::Agx;
+        uint64_t scene_changes = 0;
+        bool is_there = false;
+    } metered_;
     double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known
 };
 

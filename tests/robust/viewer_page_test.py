@@ -175,6 +175,25 @@ class Page(unittest.TestCase):
                    "f.dispatchEvent(new Event('change'))")
         self.set_to("walk", "while-while")
 
+    def choose(self, name, value):
+        self.browser.value(f"(() => {{ const f = document.querySelector('#setting-{name}'); f.value = '{value}';"
+                           "f.dispatchEvent(new Event('change')); })()")
+        self.set_to(name, value)
+
+    def test_the_exposure_is_found_or_fixed_and_layers_of_the_reconstruction_show(self):
+        page = self.browser
+        self.choose("exposed", "fixed")
+        page.until("document.querySelector('#setting-exposure').value != '0'")
+        fixed = page.value("document.querySelector('#setting-exposure').value")
+        page.until(f"document.querySelector('#readings').innerText.includes('{float(fixed):+.2f} stops')")
+        self.choose("exposed", "auto")
+        page.until("document.querySelector('#setting-exposure').value == '0'")
+        for layer, says in [("motion", "pixels a frame"), ("deviation", "deviation of the signals")]:
+            self.choose("layer", layer)
+            page.until(f"document.querySelector('#readings').innerText.includes('{says}') && document.body.dataset.phase == 'done'")
+            self.moved(lambda: page.drag("left", 40, 0))
+        self.choose("layer", "picture")
+
     def test_where_nothing_moves_there_is_no_time_line_until_a_path_is_played(self):
         page = self.browser
         self.assertTrue(page.value("document.querySelector('#time').hidden"))
@@ -259,8 +278,8 @@ class Moving(unittest.TestCase):
                 self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--time", at, size="160x120", spp=2))
                 page.value("const t = document.querySelector('#time-at'); t.focus(); t.value = '0.5';"
                            "t.dispatchEvent(new Event('input')); t.dispatchEvent(new Event('change'))")
-                page.until("document.body.dataset.time == '0.5' && document.body.dataset.phase == 'done'")
-                scrubbed = page.until("document.body.dataset.flags.endsWith('--time 0.5') && document.body.dataset.hash")
+                scrubbed = page.until("document.body.dataset.flags.endsWith('--time 0.5')"
+                                      "&& document.body.dataset.phase == 'done' && document.body.dataset.hash")
                 self.assertEqual(scrubbed, render(scene, "--time", "0.5", size="160x120", spp=2))
                 page.key("KeyW", "w", 0.2)
                 page.until(f"document.body.dataset.phase == 'done' && document.body.dataset.hash != '{scrubbed}'")
