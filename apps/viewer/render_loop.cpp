@@ -232,7 +232,10 @@ void RenderLoop::show_next() {
         return;
     }
     std::optional<ShownFrame> frame = next_frame(wanted);
-    if (!frame) return;
+    if (!frame) { // a picture gathers that is not shown yet
+        if (now_s_() - told_at_s_ > kTellEvery) tell_state();
+        return;
+    }
     is_new_ = false;
     shown_ = view_;
     shown_time_s_ = clock_.time_s;

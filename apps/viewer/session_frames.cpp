@@ -1,10 +1,12 @@
 #include "apps/viewer/session_frames.h"
 
 #include <algorithm>
+#include <bit>
 
 #include <fmt/format.h>
 
 #include "apps/viewer/layer_colors.h"
+#include "apps/viewer/reference_is_better.h"
 #include "apps/viewer/steering.h"
 #include "base/error.h"
 #include "base/limits.h"
@@ -16,8 +18,6 @@
 namespace pertev {
 namespace {
 
-// Samples from which on a picture at rest is shown in place of a reconstruction: fewer are noisier.
-constexpr uint32_t kBetterThanReconstruction = 8;
 constexpr uint32_t kFramesOfLayer = 32; // at rest, after which a layer of the reconstruction stays as it is
 constexpr double kPass = 0.03;          // seconds after which a render looks whether it is still wanted
 
@@ -176,10 +176,11 @@ void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
 ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) {
     const Stopwatch whole;
     const double update_s = std::exchange(update_s_, 0);
+    const bool goes_on = std::exchange(shows_reconstruction_, false);
     const uint32_t width_before = session_.settings().width;
     use(settings_for(request, scale));
-    const bool is_still = session_.camera() == request.camera && shows_reconstruction_ && update_s == 0 &&
-                          session_.settings().width == width_before;
+    const bool is_still =
+        session_.camera() == request.camera && goes_on && update_s == 0 && session_.settings().width == width_before;
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
@@ -187,6 +188,8 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     session_.render_frame(next_sample_, {.keep_layers = shows_layer});
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
+    shows_layer_ = shows_layer;
+    reconstruction_.pixels.clear();
     ShownFrame frame;
     frame.rays = session_.frame_rays();
     const double reconstruction_s = session_.frame().seconds();
@@ -222,6 +225,21 @@ const std::string& SessionFrames::film_hash() {
     return hashed_.hash;
 }
 
+/// Whether the picture at rest is to be shown in place of the reconstruction. Told at powers of two alone, each of
+/// which has that before it as its half.
+bool SessionFrames::beats_reconstruction(const FrameRequest& request) {
+    const uint32_t samples = session_.history().samples;
+    if (!std::has_single_bit(samples)) return false;
+    ShownFrame frame; // shown as the reconstruction is
+    expose(request, frame);
+    Rgba8Image whole = session_.display(frame.exposure_stops, request.view.display.tone_map);
+    const bool is_better =
+        half_samples_ > 0 && 2 * half_samples_ == samples && reference_is_better(whole, half_, reconstruction_);
+    half_ = std::move(whole);
+    half_samples_ = samples;
+    return is_better;
+}
+
 std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
@@ -229,18 +247,26 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (is_reconstructed(request.view.layer)) return reconstruct(request, scale);
     if (is_small && is_beauty(request.view.layer) && request.view.is_reconstructed) return reconstruct(request, scale);
     update_s_ = 0;
+    const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer);
+    if (competes && reconstruction_.pixels.empty()) { // before another size forgets it
+        ShownFrame frame;
+        expose(request, frame);
+        reconstruction_ = session_.frame().display(request.view.display.tone_map, frame.exposure_stops);
+    }
     use(settings_for(request, scale));
     session_.set_camera(request.camera);
     const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
     const uint32_t before = session_.history().samples;
     const bool was_begun = before > 0;
+    if (!was_begun) half_samples_ = 0;
+    const uint32_t until = competes ? std::min(wanted, std::bit_floor(before) * 2 + !was_begun) : wanted;
     // A picture of the movement is finished whatever comes: input comes faster than pictures, and would break off each.
     session_.abandon_when(is_small ? nullptr : &abandon_);
     const Stopwatch render;
     ShownFrame frame;
     uint32_t added = 0;
     if (before < wanted) {
-        added = session_.render(is_small ? 1 : wanted - before, [&](const RenderProgress& now) {
+        added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
             return (is_small || !abandon_) && now.seconds < request.budget_s;
         });
@@ -250,10 +276,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (abandon_ && !is_small) return std::nullopt;
     frame.samples = session_.history().samples;
     if (frame.samples == 0) return std::nullopt;
-    if (shows_reconstruction_ && !is_small && is_beauty(request.view.layer) && frame.samples < wanted &&
-        frame.samples < kBetterThanReconstruction) {
-        return std::nullopt;
-    }
+    if (competes && frame.samples < wanted && !beats_reconstruction(request)) return std::nullopt;
     shows_reconstruction_ = false;
     if (!is_small && is_beauty(request.view.layer)) meter_still(request);
     expose(request, frame);

@@ -34,6 +34,7 @@ private:
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
     Rgba8Image show_layer(const FrameRequest& request, ShownFrame& frame);
     void expose(const FrameRequest& request, ShownFrame& frame);
+    bool beats_reconstruction(const FrameRequest& request);
     void meter_still(const FrameRequest& request);
 
     Session& session_;
@@ -45,6 +46,10 @@ private:
     uint32_t next_sample_ = 0;  // of the frames in real time
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
     bool shows_reconstruction_ = false;
+    bool shows_layer_ = false;  // of it
+    Rgba8Image reconstruction_; // the last, as it is shown; empty while nothing competes with it
+    Rgba8Image half_;           // the picture at rest that is not shown yet, at half_samples_ of its samples
+    uint32_t half_samples_ = 0;
     /// The hash of the film as it is; the one before where that is the same film.
     const std::string& film_hash();
     struct Hashed {

@@ -120,7 +120,13 @@ class Page(unittest.TestCase):
         page.click(640, 690, count=2)
         page.until("document.querySelector('#notice').innerText.includes('turns about')")
         page.click(640, 690, modifiers=1)
-        page.until("document.querySelector('#notice').innerText.includes('in focus')")
+        page.until("document.querySelector('#notice').innerText.includes('in focus:')")
+        page.click(640, 690, count=2)
+        page.until("document.querySelector('#notice').innerText.includes('turns about')")
+        page.value("[...document.querySelectorAll('#buttons button')].find((b) => b.textContent == 'Focus').click()")
+        page.until("document.querySelector('#notice').innerText.includes('click on what')")
+        page.click(640, 690)
+        page.until("document.querySelector('#notice').innerText.includes('in focus:')")
         page.click(5, 5)
 
     def test_fingers_turn_and_zoom(self):

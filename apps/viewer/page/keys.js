@@ -15,7 +15,7 @@ export const kKeys = [
   { keys: ["wheel"], text: "closer, away" },
   { keys: ["click"], text: "what is there: instance, mesh, material" },
   { keys: ["double click"], text: "the centre to turn about" },
-  { keys: ["Alt", "click"], text: "bring into focus" },
+  { keys: ["Alt", "click"], text: "bring into focus (or the panel's Focus, then click)" },
   { keys: ["R"], text: "home: the camera of the start" },
   { keys: ["Space"], text: "time runs, or stands" },
   { keys: ["T"], text: "at rest: the reference, or real time" },
@@ -50,7 +50,7 @@ export class Controls {
     this.button = -1;
     this.travelled = 0;
     this.drag = { kind: "", dx: 0, dy: 0 };
-    this.clickTimer = 0;
+    this.nextUse = "show"; // of the next click
     addEventListener("keydown", (event) => this.keyDown(event));
     addEventListener("keyup", (event) => this.held.delete(event.code));
     addEventListener("blur", () => this.held.clear());
@@ -151,11 +151,8 @@ export class Controls {
     if (!this.pointers.delete(event.pointerId) || this.pointers.size > 0) return;
     this.canvas.classList.remove("dragging");
     if (event.type !== "pointerup" || this.travelled >= kClickPixels || this.button !== 0) return;
-    if (event.altKey) {
-      this.pick(event, "focus");
-    } else {
-      this.pick(event, "show");
-    }
+    this.pick(event, event.altKey ? "focus" : this.nextUse);
+    this.nextUse = "show";
   }
 
   /** @param {MouseEvent} event @param {string} use */

@@ -181,6 +181,7 @@ function buildButtons(cameras) {
   const place = element("buttons");
   place.replaceChildren(
     button("Home", () => link.sendInput({ type: "home" })), button("Meter", () => link.sendInput({ type: "meter" })),
+    button("Focus", () => { controls.nextUse = "focus"; notify("click on what is to be in focus"); }),
     button("Copy flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
     button("Keys", () => help.showModal()));
   if (cameras.length > 0) {
@@ -279,7 +280,7 @@ const actions = {
 };
 for (let depth = 0; depth <= 9; ++depth) actions[`Digit${depth}`] = () => set("max_depth", depth);
 
-new Controls(canvas, link, place, actions);
+const controls = new Controls(canvas, link, place, actions);
 buildHelp();
 addEventListener("resize", draw);
 setInterval(showReadings, 500);
