@@ -25,7 +25,7 @@ RenderLoop::RenderLoop(const ViewerStart& start, FrameSource& source, Inbox& inb
                        const Packer& packer, std::function<double()> now_s)
     : start_(start), source_(source), inbox_(inbox), audience_(audience), packer_(packer), now_s_(std::move(now_s)),
       view_(start.view), shown_(start.view), camera_(start.camera, *start.scene), clock_(start.clock),
-      shown_time_s_(start.clock.time_s), speed_(start.speed) {}
+      shown_s_(start.clock.time_s), speed_(start.speed) {}
 
 /// Whether another time is another picture.
 bool RenderLoop::time_matters() const { return clock_.end_s > 0 && (start_.is_animated || camera_.moves_with_time()); }
@@ -165,9 +165,11 @@ void RenderLoop::let_time_pass() {
 
 /// Scene and camera to the clock's time. Throws as FrameSource::set_time.
 void RenderLoop::follow_time() {
-    if (!clock_.time_s) return;
+    if (!clock_.time_s || clock_.time_s == followed_s_) return;
+    followed_s_.reset();
     source_.set_time(*clock_.time_s);
     camera_.go_to(clock_.time_s, view_.lens);
+    followed_s_ = clock_.time_s;
 }
 
 void RenderLoop::pick(const Steer& asked) {
@@ -221,8 +223,10 @@ void RenderLoop::show_next() {
     } catch (const Error& error) {
         if (error.code() == ErrorCode::DeviceFault) throw;
         audience_.tell(0, notice_text("error", error.what()));
+        const double back_s = shown_s_.value_or(0);
+        is_done_ = clock_.time_s == back_s; // there is no way out of it but another time
         clock_.plays = false;
-        clock_.time_s = shown_time_s_.value_or(0);
+        clock_.time_s = back_s;
         return tell_state();
     }
     const FrameRequest wanted = request();
@@ -238,7 +242,7 @@ void RenderLoop::show_next() {
     }
     is_new_ = false;
     shown_ = view_;
-    shown_time_s_ = clock_.time_s;
+    shown_s_ = clock_.time_s;
     view_.found_stops = frame->found_stops;
     const double now = now_s_();
     const double since = now - std::exchange(framed_at_s_, now);

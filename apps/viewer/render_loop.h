@@ -52,7 +52,7 @@ private:
     ViewState shown_; // of the last picture: what to go back to where a setting cannot be had
     ViewCamera camera_;
     SceneClock clock_;
-    std::optional<double> shown_time_s_; // of the last picture
+    std::optional<double> followed_s_, shown_s_; // time that scene and camera are at, and that of the last picture
     double clocked_at_s_ = 0;
     float speed_;
     uint32_t input_ = 0, steerer_ = 0; // number of the last input, and the client that it came from

@@ -61,12 +61,18 @@ SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_
 }
 
 void SessionFrames::set_time(double time_s) {
-    if (scene_.time_s() == time_s) return;
+    if (scene_.time_s() == time_s && !is_behind_) return;
     const Stopwatch watch;
     Messages said_already; // what there is to say of the scene was said at the start
+    const bool was_behind = std::exchange(is_behind_, true);
     const uint32_t parts = scene_.set_time(time_s, said_already);
-    if (parts != 0) session_.update_scene(scene_.prepared(), parts);
-    scene_changes_ += parts != 0;
+    if (was_behind) {
+        session_.set_scene(scene_.prepared());
+    } else if (parts != 0) {
+        session_.update_scene(scene_.prepared(), parts);
+    }
+    is_behind_ = false;
+    scene_changes_ += was_behind || parts != 0;
     update_s_ += watch.seconds();
 }
 

@@ -40,7 +40,8 @@ private:
     Session& session_;
     MovingScene& scene_;
     uint64_t scene_changes_ = 0;
-    double update_s_ = 0; // of the scene, since the last frame
+    bool is_behind_ = false; // the last set_time threw
+    double update_s_ = 0;    // of the scene, since the last frame
     FramePace pace_;
     std::atomic<bool> abandon_{false};
     uint32_t next_sample_ = 0;  // of the frames in real time

@@ -50,7 +50,7 @@ public:
     bool take_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens);
     /// False: it has no keys.
     bool follow_path(std::optional<double> time_s, Camera& lens);
-    /// Time has come to `time_s`: whatever leads the camera is there. What of the lens was set by hand stays.
+    /// Time has come to another `time_s`: whatever leads the camera is there. What of the lens was set by hand stays.
     void go_to(std::optional<double> time_s, Camera& lens);
 
     /// A step of somebody: Move, Orbit, Look, Pan or Zoom.

@@ -2,6 +2,7 @@
 """Time in `pertev view`: animations play and stand, cameras that time moves, the recorded path."""
 
 import json
+import math
 import time
 
 from cli_frames_test import moving_gltf
@@ -102,6 +103,30 @@ class Times(CliTest):
             self.assertEqual(state["clock"]["end"], 0)
             after = self.still(client, self.play(client, True))
             self.assertEqual((after["hash"], after["flags"]), (state["hash"], state["flags"]))
+
+    def test_a_time_that_cannot_be_shown_is_told_and_the_one_before_comes_back(self):
+        write(self.path("far.gltf"), moving_gltf(way=1e15))
+        with self.view("--time", "0", scene="far.gltf") as viewer, Client(viewer) as client:
+            first = client.done()
+            number = client.steer(type="time", at=1.5)
+            self.assertIn("1.5", client.text("notice")["text"])
+            back = self.still(client, number)
+            self.assertEqual((back["clock"]["at"], back["hash"]), (0, first["hash"]))
+            near = self.still(client, client.steer(type="time", at=0.0001))
+            self.assertEqual(near["hash"], self.rendered("--time", near["flags"].split()[-1], scene="far.gltf"))
+
+    def test_a_centre_that_was_set_stays_while_the_camera_does(self):
+        with self.view("--time", "0.5") as viewer, Client(viewer) as client:
+            client.done()
+            client.steer(type="pick", x=0.6, y=0.6, use="show")
+            centre = client.text("picked")["position"]
+            client.steer(type="pick", x=0.6, y=0.6, use="orbit")
+            client.text("notice")
+            client.done(lambda s, n=client.steer(type="set", name="max_depth", value=3): s["input"] >= n)
+            turned = self.still(client, client.steer(type="orbit", dx=0.2, dy=0))
+            eye = [float(x) for x in words_of(turned)[words_of(turned).index("--eye") + 1].split(",")]
+            self.assertGreater(abs(eye[0]), 1)
+            self.assertAlmostEqual(math.hypot(eye[0] - centre[0], eye[2] - centre[2]), math.hypot(centre[0], 4), 3)
 
     def test_one_steers_time_and_the_others_see_it(self):
         with self.view("--time", "0") as viewer, Client(viewer) as client, Client(viewer, key="second") as other:

@@ -182,7 +182,7 @@ function buildButtons(cameras) {
   place.replaceChildren(
     button("Home", () => link.sendInput({ type: "home" })), button("Meter", () => link.sendInput({ type: "meter" })),
     button("Focus", () => { controls.nextUse = "focus"; notify("click on what is to be in focus"); }),
-    button("Copy flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
+    button("Flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
     button("Keys", () => help.showModal()));
   if (cameras.length > 0) {
     const list = document.createElement("select");
