@@ -114,7 +114,7 @@ void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart&
     if (turntable > 0) {
         start.clock.end_s = std::max(start.clock.end_s, turntable / kTurntableFps);
         start.camera.at = [&ready](double time_s) { return turned_camera(ready, time_s); };
-    } else {
+    } else if (flags.render.camera_path.empty()) {
         start.camera.at = [&ready](double time_s) { return camera_at(*ready.camera, ready.scene(), time_s, 0); };
     }
     start.camera.moves = start.is_animated || turntable > 0;

@@ -141,11 +141,13 @@ void RenderLoop::steer_path(const Steer& asked) {
     const ClientMessage& message = asked.message;
     if (message.kind == MessageKind::Key) {
         if (!camera_.add_key(message.at, view_.lens)) {
-            audience_.tell(asked.client, notice_text("error", "a path has so many keys at most"));
+            audience_.tell(asked.client,
+                           notice_text("error", fmt::format("a path has {} keys at most", ViewCamera::kMostKeys)));
         }
     } else if (message.kind == MessageKind::Unkey) {
         camera_.remove_key(message.index);
     }
+    followed_s_.reset(); // it may lead elsewhere now
     const std::vector<CameraKey>& keys = camera_.path().keys;
     clock_.end_s = std::max(start_.clock.end_s, keys.empty() ? 0 : keys.back().time_s);
     if (message.kind == MessageKind::Follow && !keys.empty()) {

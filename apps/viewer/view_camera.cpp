@@ -98,6 +98,7 @@ void ViewCamera::go_to(std::optional<double> time_s, Camera& lens) {
 
 void ViewCamera::go_home(std::optional<double> time_s, Camera& lens) {
     if (is_path_of_file_) {
+        lens = start_.camera;
         follow_path(time_s, lens);
         return;
     }
@@ -129,7 +130,8 @@ bool ViewCamera::follow_path(std::optional<double> time_s, Camera& lens) {
     base_ = start_.camera;
     pose_ = start_.pose;
     go_to(time_s, lens);
-    lens = base_;
+    lens.fov_y = base_.fov_y; // keys say these
+    lens.focus_distance = base_.focus_distance;
     return true;
 }
 

@@ -44,7 +44,8 @@ public:
     bool is_at_start() const { return guide_ == Guide::Start; }
     const std::string& name() const { return name_; }
 
-    /// Each of these gives the lens of whatever leads the camera then.
+    // Each of these gives the lens of whatever leads the camera then; of a path all but the aperture.
+
     void go_home(std::optional<double> time_s, Camera& lens);
     /// False: there is no such one.
     bool take_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens);

@@ -242,6 +242,7 @@ function save(format) {
 
 /** @param {string} name @param {string | number} value */
 function set(name, value) {
+  if (people.steers !== people.you) return notify("somebody else steers");
   if (state) state.values[name] = value; // so that a key pressed twice counts twice before the viewer answers
   settings.wish(name, value, link.sendInput({ type: "set", name, value }));
 }

@@ -68,7 +68,7 @@ export class TimeLine {
 
   /** Time runs or stands. */
   toggle() {
-    if (this.clock.end > 0) this.play({ on: !this.clock.on });
+    if (this.clock.end > 0 && !this.button.disabled) this.play({ on: !this.clock.on });
   }
 
   /** @param {Partial<Clock>} change */
