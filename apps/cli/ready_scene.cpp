@@ -25,12 +25,12 @@ void refuse_missing(const Messages& messages) {
                             missing > 1 ? fmt::format(" (and {} like it)", counted(missing - 1, "warning")) : ""));
 }
 
-/// Says what a time would show where none is given, or that one shows nothing.
+} // namespace
+
 void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages) {
     const bool has_time = flags.time_s || !flags.frames.empty();
     if (moving.is_animated() && !has_time) {
-        double end_s = 0;
-        for (const Animation& animation : moving.scene().animations) end_s = std::max(end_s, animation.end_s());
+        const double end_s = moving.end_s();
         messages.note(fmt::format("{}: shown at rest; --time S shows it at a time of its {} (0 to {:.4g} s)",
                                   flags.scene.scene, counted(moving.scene().animations.size(), "animation"), end_s));
     }
@@ -42,8 +42,6 @@ void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Message
                                   flags.time_s ? "time" : "frames"));
     }
 }
-
-} // namespace
 
 std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& reporter) {
     Messages& messages = reporter.messages();
@@ -70,7 +68,6 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     reporter.set_work("building trees");
     ready->sequence = frame_sequence(flags).value_or(FrameSequence{.time_s = flags.time_s});
     ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages);
-    say_what_moves(flags, *ready->moving, messages);
     ready->queue = machine.take();
     return ready;
 }

@@ -29,6 +29,9 @@ struct ReadyScene {
 /// Says what there is to say on the way. Throws Error.
 std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& reporter);
 
+/// Says what a time would show where none is given, or that one shows nothing.
+void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages);
+
 /// How the picture of the first frame is made, but for how it is displayed; with its camera.
 PictureRecord picture_record(const SceneOptions& options, const ReadyScene& ready);
 

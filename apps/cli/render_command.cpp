@@ -87,6 +87,7 @@ int render(const RenderFlags& flags) {
     check_render_flags(flags, reporter.messages());
     const Stopwatch watch;
     const std::unique_ptr<ReadyScene> ready = make_ready(flags, reporter);
+    say_what_moves(flags, *ready->moving, reporter.messages());
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;
     reporter.say_messages();

@@ -55,15 +55,21 @@ void refuse(bool is_wrong, const std::string& text) {
     if (is_wrong) throw Error(ErrorCode::BadInput, text);
 }
 
+/// One thing leads the camera.
+void check_camera_path(const RenderFlags& flags) {
+    if (flags.camera_path.empty()) return;
+    const SceneOptions& scene = flags.scene;
+    for (const auto& [flag, text] :
+         {std::pair("--eye", &scene.eye), std::pair("--target", &scene.target), std::pair("--up", &scene.up)}) {
+        refuse(!text->empty(), fmt::format("{}: the camera's path says it; leave out one of them", flag));
+    }
+    refuse(flags.turntable > 0, "--turntable: the camera goes its path; leave out one of them");
+}
+
 } // namespace
 
 void add_motion_flags(CLI::App& verb, RenderFlags& flags) {
     const char* group = "Motion";
-    verb.add_option("--time", flags.time_s,
-                    "the scene at this time of its animations, which all play\nfrom 0 on (at rest)")
-        ->type_name("SECONDS")
-        ->check(number_between(-1e9f, 1e9f))
-        ->group(group);
     verb.add_option("--frames", flags.frames,
                     "pictures from frame A to frame B; in the name of each output\na run of # is the frame's number: "
                     "-o frame-####.png")
@@ -72,16 +78,6 @@ void add_motion_flags(CLI::App& verb, RenderFlags& flags) {
     verb.add_option("--fps", flags.fps, "of --frames: frames a second; frame k is at k / F seconds (24)")
         ->type_name("F")
         ->check(number_above_zero(1e6f))
-        ->group(group);
-    verb.add_option("--camera-path", flags.camera_path,
-                    "a JSON file of keys (time, eye, target, up, fov) that lead the\ncamera")
-        ->type_name("FILE")
-        ->check(file_name())
-        ->group(group);
-    verb.add_option("--turntable", flags.turntable,
-                    "N pictures, with which the camera goes once round what it looks at")
-        ->type_name("N")
-        ->check(whole_between(1, kMostFrames))
         ->group(group);
     verb.add_flag("--continue", flags.goes_on,
                   "of a sequence that was interrupted: keep the frames that are\nthere whole")
@@ -95,14 +91,6 @@ void check_motion_flags(const RenderFlags& flags) {
     refuse(flags.goes_on && !is_sequence, "--continue: of a sequence; say --frames A-B or --turntable N");
     refuse(flags.time_limit_s > 0 && is_sequence,
            "--time-limit: a sequence's frames have as many samples each; say --spp");
-    const SceneOptions& scene = flags.scene;
-    if (!flags.camera_path.empty()) {
-        for (const auto& [flag, text] :
-             {std::pair("--eye", &scene.eye), std::pair("--target", &scene.target), std::pair("--up", &scene.up)}) {
-            refuse(!text->empty(), fmt::format("{}: the camera's path says it; leave out one of them", flag));
-        }
-        refuse(flags.turntable > 0, "--turntable: the camera goes its path; leave out one of them");
-    }
     for (const std::string& output : flags.outputs) {
         refuse(
             is_sequence && !names_frames(output),
@@ -134,6 +122,27 @@ std::optional<FrameSequence> frame_sequence(const RenderFlags& flags) {
     sequence.last = static_cast<uint32_t>(*last);
     sequence.fps = flags.fps > 0 ? flags.fps : 24;
     return sequence;
+}
+
+void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays) {
+    const char* group = "Motion";
+    verb.add_option("--time", flags.time_s,
+                    fmt::format("the scene at this time of its animations, which all play\nfrom 0 on ({})",
+                                plays ? "without it, they play" : "at rest"))
+        ->type_name("SECONDS")
+        ->check(number_between(-1e9f, 1e9f))
+        ->group(group);
+    verb.add_option("--camera-path", flags.camera_path,
+                    "a JSON file of keys (time, eye, target, up, fov) that lead the\ncamera")
+        ->type_name("FILE")
+        ->check(file_name())
+        ->group(group);
+    verb.add_option("--turntable", flags.turntable,
+                    plays ? "the camera goes once round what it looks at, in N / 24 s"
+                          : "N pictures, with which the camera goes once round what it looks at")
+        ->type_name("N")
+        ->check(whole_between(1, kMostFrames))
+        ->group(group);
 }
 
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group) {
@@ -218,6 +227,7 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("SECONDS")
         ->check(number_above_zero())
         ->group("Quality");
+    add_time_flags(verb, flags, false);
     add_motion_flags(verb, flags);
     verb.add_flag("--strict", flags.strict,
                   "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
@@ -236,6 +246,7 @@ void check_shown_picture_flags(const RenderFlags& flags) {
     }
     if (!flags.size.empty()) parse_size("--size", flags.size);
     check_scene_options(flags.scene);
+    check_camera_path(flags);
 }
 
 void check_render_flags(const RenderFlags& flags, Messages& messages) {

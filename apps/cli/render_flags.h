@@ -46,6 +46,9 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags);
 /// which throws Error(BadInput).
 void add_motion_flags(CLI::App& verb, RenderFlags& flags);
 void check_motion_flags(const RenderFlags& flags);
+/// Of these, the ones that say at which time the scene is shown, or how the camera goes over time: --time,
+/// --camera-path, --turntable. `plays`: without a time, time runs.
+void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
 /// --seed, --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
@@ -59,7 +62,7 @@ std::optional<FrameSequence> frame_sequence(const RenderFlags& flags);
 /// What can be told before the scene is read. Throws Error, above all for an output that could not be written.
 void check_render_flags(const RenderFlags& flags, Messages& messages);
 
-/// The same of add_shown_picture_flags and the scene's options.
+/// The same of add_shown_picture_flags, add_time_flags and the scene's options.
 void check_shown_picture_flags(const RenderFlags& flags);
 
 /// The settings for a scene. Throws Error.

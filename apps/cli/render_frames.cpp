@@ -65,11 +65,6 @@ std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
     return files;
 }
 
-/// The camera of a time, after a share of a turn.
-Camera camera_at(const FrameCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
-    return camera.camera.turned(camera.camera.at(scene, time_s), turn);
-}
-
 void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
     if (!time_s) return;
     if (const uint32_t parts = moving.set_time(*time_s, messages)) session.update_scene(moving.prepared(), parts);
@@ -80,25 +75,26 @@ void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& m
                        Messages& messages) {
     const std::optional<double> time_s = camera.sequence.time_before(frame);
     go_to(time_s, moving, session, messages);
-    session.set_camera(camera_at(camera, moving.scene(), time_s, camera.sequence.turn_before(frame)));
+    session.set_camera(
+        camera_at(camera.camera, moving.scene(), time_s, camera.sequence.turn_before(frame)).camera);
     session.keep_as_before();
 }
 
 } // namespace
 
+CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
+    const CameraChoice choice = camera.choice_at(time_s);
+    CameraSource source = source_of(choice, camera.at(scene, time_s));
+    if (turn == 0) return source;
+    source.camera = camera.turned(source.camera, turn);
+    source.target.reset(); // its words say where the camera began
+    source.up.reset();
+    return source;
+}
+
 void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record) {
-    const std::optional<double> time_s = camera.sequence.time_of(frame);
-    record.scene.time_s = time_s;
-    const CameraChoice choice = camera.camera.choice_at(time_s);
-    const double turn = camera.sequence.turn_of(frame);
-    record.camera = {.camera = camera_at(camera, scene, time_s, turn),
-                     .name = choice.camera,
-                     .target = choice.target,
-                     .up = choice.up,
-                     .fov_deg = choice.fov_deg.value_or(0)};
-    if (turn == 0) return;
-    record.camera.target.reset(); // its words say where the camera began
-    record.camera.up.reset();
+    record.scene.time_s = camera.sequence.time_of(frame);
+    record.camera = camera_at(camera.camera, scene, record.scene.time_s, camera.sequence.turn_of(frame));
 }
 
 int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,

@@ -17,6 +17,8 @@ struct FrameCamera {
     FrameSequence sequence;
 };
 
+/// The camera at a time, and after a share of a turn.
+CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn);
 /// Gives `record` the camera and the time of `frame`; `scene` is at that time.
 void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record);
 

@@ -4,6 +4,8 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <thread>
 
@@ -15,9 +17,11 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/render_frames.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
+#include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
 
 extern char** environ;
@@ -26,6 +30,7 @@ namespace pertev {
 namespace {
 
 constexpr double kFrameOnCpu = 0.12, kFrameOnGpu = 1.0 / 60; // seconds that a frame may take while the camera moves
+constexpr double kTurntableFps = 24;                         // as --frames has them
 constexpr auto kLongestEnd = std::chrono::milliseconds(800); // from Ctrl-C to the end
 
 struct ViewFlags {
@@ -82,6 +87,39 @@ std::string camera_name(const SceneOptions& options, const Scene& scene) {
     return scene.cameras.empty() ? "" : "0";
 }
 
+/// Turns as --turntable N does at 24 frames a second. Its places are said by eye, target and up, so that flags can say
+/// them too: but for rounding they are those of render's frames.
+CameraSource turned_camera(const ReadyScene& ready, double time_s) {
+    const double frames = std::fmod(time_s * kTurntableFps, ready.sequence.turntable);
+    CameraSource source = camera_at(*ready.camera, ready.scene(), time_s, frames / ready.sequence.turntable);
+    if (frames == 0) return source;
+    const Pose pose = pose_of(source.camera, {}, {}, source.camera.focus_distance);
+    source.camera.world_from_camera = look_at(pose.eye, pose.target, pose.up);
+    source.target = pose.target;
+    source.up = pose.up;
+    return source;
+}
+
+/// What time does to the camera, and when all of it is over.
+void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart& start) {
+    const MovingScene& moving = *ready.moving;
+    const uint32_t turntable = flags.render.turntable;
+    start.is_animated = moving.is_animated();
+    start.clock = {.end_s = moving.end_s(), .time_s = moving.time_s(), .plays = !moving.time_s()};
+    if (!flags.render.camera_path.empty()) {
+        start.camera.path = read_camera_path(flags.render.camera_path);
+        start.clock.end_s = std::max(start.clock.end_s, start.camera.path.keys.back().time_s);
+    }
+    if (flags.render.scene.focus_m > 0) start.camera.focus_m = flags.render.scene.focus_m;
+    if (turntable > 0) {
+        start.clock.end_s = std::max(start.clock.end_s, turntable / kTurntableFps);
+        start.camera.at = [&ready](double time_s) { return turned_camera(ready, time_s); };
+    } else if (flags.render.camera_path.empty()) {
+        start.camera.at = [&ready](double time_s) { return camera_at(*ready.camera, ready.scene(), time_s, 0); };
+    }
+    start.camera.moves = start.is_animated || turntable > 0;
+}
+
 /// Where the view turns about what is in the middle of the picture, unless a target was given.
 Pose start_pose(const PictureRecord& record, FrameSource& source, float scene_size) {
     const Camera& camera = record.camera.camera;
@@ -106,6 +144,7 @@ int view(const ViewFlags& flags) {
     check_host(flags.host);
     check_shown_picture_flags(flags.render);
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
+    if (flags.render.time_s) say_what_moves(flags.render, *ready->moving, reporter.messages());
     check_jpeg_size("--size", ready->settings.width, ready->settings.height); // that is how pictures are sent
     reporter.say_messages();
     listen_for_interrupt();
@@ -114,19 +153,25 @@ int view(const ViewFlags& flags) {
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
-    SessionFrames source(session, on_cuda ? kFrameOnGpu : kFrameOnCpu);
+    SessionFrames source(session, *ready->moving, on_cuda ? kFrameOnGpu : kFrameOnCpu);
     ViewerStart start;
     start.scene = &ready->scene();
-    start.camera = camera;
+    start.camera.camera = camera;
     start.record = record;
     start.view.picture = ready->settings;
     start.view.display = choose_shown_display(flags.render, session, reporter);
+    start.view.finds_exposure = flags.render.exposure.empty() || flags.render.exposure == "auto";
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
-    start.camera_name = camera_name(flags.render.scene, ready->scene());
+    if (start.view.finds_exposure) {
+        source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
+        start.view.display.exposure_stops = 0;
+    }
+    start.camera.name = camera_name(flags.render.scene, ready->scene());
     const float size = length(bounds_of(ready->scene()).size());
     start.speed = 0.12f * size;
-    start.pose = start_pose(start.record, source, size);
+    start.camera.pose = start_pose(start.record, source, size);
+    let_time_move(flags, *ready, start);
     reporter.set_work("waiting for somebody to look");
     end_soon();
     run_viewer(
@@ -155,6 +200,7 @@ void add_view_command(CLI::App& app, int& status) {
         ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
     add_shown_picture_flags(verb, flags->render);
+    add_time_flags(verb, flags->render, true);
     add_report_flags(verb, flags->render.report);
     verb.callback([flags, &status] { status = view(*flags); });
 }

@@ -72,6 +72,11 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
     case MessageKind::Camera:
     case MessageKind::Set:
     case MessageKind::Meter:
+    case MessageKind::Play:
+    case MessageKind::Time:
+    case MessageKind::Key:
+    case MessageKind::Unkey:
+    case MessageKind::Follow:
         break;
     }
     // Whoever has just lost the wheel may not know it yet: no reason to drop it. Looking at a place is free.

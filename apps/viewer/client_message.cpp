@@ -26,6 +26,11 @@ bool read_float(dom::element value, ClientMessage& message) {
     return true;
 }
 
+template <bool ClientMessage::*Field>
+bool read_bool(dom::element value, ClientMessage& message) {
+    return value.get_bool().get(message.*Field) == simdjson::SUCCESS;
+}
+
 template <uint32_t ClientMessage::*Field>
 bool read_whole(dom::element value, ClientMessage& message) {
     uint64_t number = 0;
@@ -107,6 +112,12 @@ constexpr Key kPickKeys[] = {
     kInput, {"x", read_float<&ClientMessage::x, 0, 1>}, {"y", read_float<&ClientMessage::y, 0, 1>}, {"use", read_use}};
 constexpr Key kPlainKeys[] = {kInput};
 constexpr Key kCameraKeys[] = {kInput, {"index", read_whole<&ClientMessage::index>}};
+constexpr Key kAt = {"at", read_float<&ClientMessage::at, 0, 1000000000>};
+constexpr Key kTimeKeys[] = {kInput, kAt};
+constexpr Key kPlayKeys[] = {kInput,
+                             {"on", read_bool<&ClientMessage::on>},
+                             {"loops", read_bool<&ClientMessage::loops>},
+                             {"speed", read_float<&ClientMessage::speed, 0, 64>}};
 constexpr Key kSetKeys[] = {kInput, {"name", read_string<&ClientMessage::name, 32>}, {"value", read_value}};
 constexpr Key kAckKeys[] = {{"frame", read_whole<&ClientMessage::frame>},
                             {"ms", read_float<&ClientMessage::milliseconds, 0, 1000000>}};
@@ -119,13 +130,25 @@ struct Form {
 };
 
 constexpr Form kForms[] = {
-    {"hello", MessageKind::Hello, kHelloKeys}, {"move", MessageKind::Move, kMoveKeys},
-    {"orbit", MessageKind::Orbit, kDragKeys},  {"look", MessageKind::Look, kDragKeys},
-    {"pan", MessageKind::Pan, kDragKeys},      {"zoom", MessageKind::Zoom, kStepKeys},
-    {"speed", MessageKind::Speed, kStepKeys},  {"pick", MessageKind::Pick, kPickKeys},
-    {"home", MessageKind::Home, kPlainKeys},   {"camera", MessageKind::Camera, kCameraKeys},
-    {"set", MessageKind::Set, kSetKeys},       {"meter", MessageKind::Meter, kPlainKeys},
-    {"ack", MessageKind::Ack, kAckKeys},       {"ask", MessageKind::Ask, {}},
+    {"hello", MessageKind::Hello, kHelloKeys},
+    {"move", MessageKind::Move, kMoveKeys},
+    {"orbit", MessageKind::Orbit, kDragKeys},
+    {"look", MessageKind::Look, kDragKeys},
+    {"pan", MessageKind::Pan, kDragKeys},
+    {"zoom", MessageKind::Zoom, kStepKeys},
+    {"speed", MessageKind::Speed, kStepKeys},
+    {"pick", MessageKind::Pick, kPickKeys},
+    {"home", MessageKind::Home, kPlainKeys},
+    {"camera", MessageKind::Camera, kCameraKeys},
+    {"set", MessageKind::Set, kSetKeys},
+    {"meter", MessageKind::Meter, kPlainKeys},
+    {"play", MessageKind::Play, kPlayKeys},
+    {"time", MessageKind::Time, kTimeKeys},
+    {"key", MessageKind::Key, kTimeKeys},
+    {"unkey", MessageKind::Unkey, kCameraKeys},
+    {"follow", MessageKind::Follow, kPlainKeys},
+    {"ack", MessageKind::Ack, kAckKeys},
+    {"ask", MessageKind::Ask, {}},
     {"hand", MessageKind::Hand, kHandKeys},
 };
 
@@ -169,7 +192,7 @@ std::optional<ClientMessage> parse_client_message(std::string_view text) {
     return message;
 }
 
-bool moves_the_camera(MessageKind kind) {
+bool moves_the_picture(MessageKind kind) {
     switch (kind) {
     case MessageKind::Move:
     case MessageKind::Orbit:
@@ -178,12 +201,17 @@ bool moves_the_camera(MessageKind kind) {
     case MessageKind::Zoom:
     case MessageKind::Home:
     case MessageKind::Camera:
+    case MessageKind::Time:
+    case MessageKind::Follow:
         return true;
     case MessageKind::Hello:
     case MessageKind::Speed:
     case MessageKind::Pick:
     case MessageKind::Set:
     case MessageKind::Meter:
+    case MessageKind::Play:
+    case MessageKind::Key:
+    case MessageKind::Unkey:
     case MessageKind::Ack:
     case MessageKind::Ask:
     case MessageKind::Hand:

@@ -27,6 +27,11 @@ enum class MessageKind : uint8_t {
     Camera, // to one of the scene's cameras
     Set,    // one setting
     Meter,  // exposure by the light meter
+    Play,   // time runs or stands, and how
+    Time,   // to a time of the scene
+    Key,    // the present view becomes a key of the camera's path
+    Unkey,  // a key goes
+    Follow, // the camera goes its path, from its beginning
     Ack,    // a picture was drawn
     Ask,    // for the wheel
     Hand,   // the wheel, to another client
@@ -45,7 +50,10 @@ struct ClientMessage {
     float steps = 0;                         // Zoom, Speed: of the wheel, [-20, 20]
     float x = 0, y = 0;                      // Pick: of the picture's width and height, [0, 1]
     PickUse use = PickUse::Show;             // Pick
-    uint32_t index = 0;                      // Camera
+    uint32_t index = 0;                      // Camera, Unkey
+    bool on = false, loops = false;          // Play
+    float speed = 1;                         // Play: of time, [0, 64]
+    float at = 0;                            // Time, Key: seconds, [0, 1e9]
     uint32_t frame = 0;                      // Ack
     float milliseconds = 0;                  // Ack: of decoding and drawing, [0, 1e6]
     uint32_t client = 0;                     // Hand
@@ -57,7 +65,7 @@ struct ClientMessage {
 /// Throws nothing. Not for use from several threads at once with one parser's state: it has none.
 std::optional<ClientMessage> parse_client_message(std::string_view text);
 
-/// Whether the picture before it is of no use any more.
-bool moves_the_camera(MessageKind kind);
+/// Whether it asks for another view or another time: the picture before it is of no use any more.
+bool moves_the_picture(MessageKind kind);
 
 } // namespace pertev

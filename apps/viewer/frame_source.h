@@ -1,9 +1,7 @@
 #pragma once
 
-// The seam between the viewer and whatever makes its pictures: camera, settings and time in; after a budget of time a
-// picture that can be shown, and its numbers, out. Reconstruction of real-time frames and scenes that move plug in
-// here: by another FrameSource, or inside SessionFrames. Called by one thread, the one that the device's queue belongs
-// to.
+// The seam between the viewer and whatever makes its pictures: time, camera and settings in; after a budget of time a
+// picture that can be shown, and its numbers, out. Called by one thread, the one that the device's queue belongs to.
 
 #include <atomic>
 #include <optional>
@@ -21,7 +19,6 @@ namespace pertev {
 struct FrameRequest {
     Camera camera;
     ViewState view;
-    double time_s = 0;      // of the scene; it stands still today
     bool is_moving = false; // camera or time changes now: a frame that comes soon, at a resolution that can
     double budget_s = 0.1;  // roughly how long next() may take; a sample of all pixels is the least
 };
@@ -37,6 +34,8 @@ struct ShownFrame {
     bool is_reference = false;                // of the picture that pertev render makes
     std::string hash;                         // of the film where that is known; empty otherwise
     std::string caption;                      // of a layer: what its colours mean
+    float exposure_stops = 0;                 // that it is shown with
+    float found_stops = 0;                    // of these, what was found where the exposure is found by itself
     RayCounts rays;                           // traced for it
     double render_s = 0;                      // of these rays
     float scale = 1;                          // of the full size
@@ -55,6 +54,9 @@ class FrameSource {
 public:
     virtual ~FrameSource() = default;
 
+    /// Puts the scene to this time; until then it is at rest, or where it began. Throws Error(OverLimit) where
+    /// something lies too far out then; the next set_time makes good for it. Throws as next().
+    virtual void set_time(double time_s) = 0;
     /// The next picture: at rest more samples gather in the one before. Nothing where `abandon` broke it off, which is
     /// for pictures at rest alone: the movement's are short. Throws Error(OutOfMemory, OverLimit, DeviceFault).
     virtual std::optional<ShownFrame> next(const FrameRequest& request) = 0;

@@ -1,5 +1,6 @@
 #include "apps/viewer/layer_colors.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "image/srgb.h"
@@ -36,6 +37,39 @@ uint32_t id_of(const PixelIds& ids, IdKind kind) {
 }
 
 } // namespace
+
+namespace {
+
+/// What one in two hundred exceeds; 0 where there are none.
+float nearly_largest(std::vector<float> values) {
+    if (values.empty()) return 0;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() - 1 - values.size() / 200);
+    std::ranges::nth_element(values, at);
+    return *at;
+}
+
+} // namespace
+
+Rgba8Image show_motion(const Image& motion, float& most) {
+    std::vector<float> sizes;
+    for (const float x : motion.pixels) sizes.push_back(is_finite(x) ? abs(x) : 0);
+    most = max(nearly_largest(std::move(sizes)), 1.0f);
+    const auto shade = [&](float x) { return to_byte(0.5f + 0.5f * clamp(is_finite(x) ? x / most : 0, -1.0f, 1.0f)); };
+    return paint(motion.width, motion.height, [&](std::size_t i) {
+        const float right = motion.pixels[2 * i], down = motion.pixels[2 * i + 1];
+        return FalseColor{shade(right), shade(down), shade(-0.5f * (right + down))};
+    });
+}
+
+Rgba8Image show_deviation(const Image& deviation, float& most) {
+    std::vector<float> known;
+    for (const float d : deviation.pixels) {
+        if (d < 1000) known.push_back(d);
+    }
+    most = max(nearly_largest(std::move(known)), 1e-6f);
+    return paint(deviation.width, deviation.height,
+                 [&](std::size_t i) { return false_color(deviation.pixels[i] / most); });
+}
 
 Rgba8Image show_albedo(const Image& albedo) {
     return paint(albedo.width, albedo.height, [&](std::size_t i) {

@@ -25,4 +25,10 @@ enum class WorkKind : uint8_t { Nodes, Triangles };
 /// Pale yellow at `most` and above, dark at none (lab/heat_map.h); `most` is what one pixel in two hundred exceeds.
 Rgba8Image show_work(std::span<const RayWork> work, uint32_t width, uint32_t height, WorkKind kind, uint32_t& most);
 
+/// Of two channels, pixels to the right and down: grey stands still, red goes to the right, green down, and blue what
+/// is left of both; full at `most`, what one pixel in two hundred exceeds, at least 1.
+Rgba8Image show_motion(const Image& motion, float& most);
+/// Dark at none, pale yellow at `most` and above: what one pixel in two hundred of those exceeds that are below 1000.
+Rgba8Image show_deviation(const Image& deviation, float& most);
+
 } // namespace pertev

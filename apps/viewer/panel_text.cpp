@@ -65,6 +65,8 @@ constexpr NumberRow kRows[] = {
          return fmt::format("{} x {}", n.frame->image.width, n.frame->image.height);
      }},
     {"Now", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
+    {"Now", "exposed by",
+     [](const ViewState&, const ViewNumbers& n) { return fmt::format("{:+.2f} stops", n.frame->exposure_stops); }},
     {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",
      [](const ViewState&, const ViewNumbers& n) {
@@ -99,6 +101,23 @@ std::string json_of(Vec3 v) {
                        json_number(static_cast<double>(v.z)));
 }
 
+std::string clock_json(const SceneClock& clock) {
+    return fmt::format(R"({{"at":{},"end":{},"on":{},"loops":{},"speed":{}}})", clock.time_s.value_or(0),
+                       json_number(clock.end_s), clock.plays, clock.loops, json_number(clock.speed));
+}
+
+/// As formats/read_camera_path.h reads them.
+std::string keys_json(const CameraPath* path) {
+    std::string list;
+    if (path == nullptr) return list;
+    for (const CameraKey& key : path->keys) {
+        append(list, fmt::format(R"({{"time":{},"eye":{},"target":{},"up":{},"fov":{}}})", json_number(key.time_s),
+                                 json_of(key.eye), json_of(key.target), json_of(key.up),
+                                 json_number(static_cast<double>(key.fov_deg))));
+    }
+    return list;
+}
+
 } // namespace
 
 std::string welcome_text(const ViewerStart& start) {
@@ -113,16 +132,17 @@ std::string welcome_text(const ViewerStart& start) {
         start.view.picture.height, cameras, settings_json());
 }
 
-std::string state_text(const ViewState& view, const ViewNumbers& numbers, const std::string& flags) {
+std::string state_text(const ViewState& view, const ViewNumbers& numbers) {
     std::string values;
     for (const ViewSetting& setting : view_settings()) {
         append(values, fmt::format(R"("{}":{})", setting.name, json_of(setting.get(view))));
     }
     const uint32_t samples = numbers.frame != nullptr ? numbers.frame->samples : 0;
     return fmt::format(
-        R"({{"type":"state","phase":"{}","samples":{},"spp":{},"hash":"{}","reference":{},"flags":{},"values":{{{}}},"rows":[{}]}})",
+        R"({{"type":"state","phase":"{}","samples":{},"spp":{},"hash":"{}","reference":{},"flags":{},"input":{},"steerer":{},"clock":{},"keys":[{}],"values":{{{}}},"rows":[{}]}})",
         numbers.phase, samples, view.picture.samples, numbers.frame != nullptr ? numbers.frame->hash : "",
-        numbers.frame != nullptr && numbers.frame->is_reference, json_string(flags), values, rows_json(view, numbers));
+        numbers.frame != nullptr && numbers.frame->is_reference, json_string(numbers.flags), numbers.input,
+        numbers.steerer, clock_json(numbers.clock), keys_json(numbers.path), values, rows_json(view, numbers));
 }
 
 std::string notice_text(const char* kind, const std::string& text) {

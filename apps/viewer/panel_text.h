@@ -18,10 +18,14 @@ struct ViewNumbers {
     double frames_per_second = 0;
     double pack_ms = 0;
     std::size_t packed_bytes = 0;
-    std::string phase; // "moving", "gathering", "done"
+    std::string phase;                // "moving", "gathering", "done"
+    std::string flags;                // of the camera and the time
+    uint32_t input = 0, steerer = 0;  // the last input that all this knows of, and the client that it came from
+    SceneClock clock;                 // end_s is 0 where time changes nothing
+    const CameraPath* path = nullptr; // that is recorded; null: none
 };
 
-std::string state_text(const ViewState& view, const ViewNumbers& numbers, const std::string& flags);
+std::string state_text(const ViewState& view, const ViewNumbers& numbers);
 /// "error" or "note".
 std::string notice_text(const char* kind, const std::string& text);
 /// What a client pointed at; null: the background.

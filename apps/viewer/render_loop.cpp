@@ -16,36 +16,33 @@ constexpr double kStillAfter = 0.15; // seconds without a step, and the camera i
 constexpr double kTellEvery = 0.2;   // seconds between two states, while nothing else is new
 constexpr double kFirstBudget = 0.1, kLongestBudget = 1;
 constexpr float kSpeedStep = 1.25f;
+constexpr double kSlowestTime = 1.0 / 64; // seconds of the scene a second
+constexpr double kLongestStep = 0.5;      // seconds: while nobody looked, time stood
 
 } // namespace
 
 RenderLoop::RenderLoop(const ViewerStart& start, FrameSource& source, Inbox& inbox, Audience& audience,
                        const Packer& packer, std::function<double()> now_s)
     : start_(start), source_(source), inbox_(inbox), audience_(audience), packer_(packer), now_s_(std::move(now_s)),
-      view_(start.view), shown_(start.view), base_(start.camera), pose_(start.pose), camera_name_(start.camera_name),
-      speed_(start.speed) {}
+      view_(start.view), shown_(start.view), camera_(start.camera, *start.scene), clock_(start.clock),
+      shown_s_(start.clock.time_s), speed_(start.speed) {}
 
-Camera RenderLoop::camera() const {
-    Camera lens = base_;
-    lens.fov_y = view_.lens.fov_y;
-    lens.aperture_radius = view_.lens.aperture_radius;
-    lens.focus_distance = view_.lens.focus_distance;
-    return has_moved_ ? camera_at(pose_, lens) : lens;
-}
+/// Whether another time is another picture.
+bool RenderLoop::time_matters() const { return clock_.end_s > 0 && (start_.is_animated || camera_.moves_with_time()); }
 
-bool RenderLoop::is_moving() const { return now_s_() - moved_at_s_ < kStillAfter; }
+bool RenderLoop::time_runs() const { return clock_.plays && time_matters() && saves_.empty(); }
+
+bool RenderLoop::is_moving() const { return now_s_() - moved_at_s_ < kStillAfter || time_runs(); }
 
 FrameRequest RenderLoop::request() const {
     FrameRequest request;
-    request.camera = camera();
+    request.camera = camera_.camera(view_.lens);
     request.view = view_;
     request.is_moving = is_moving() && saves_.empty();
     if (!saves_.empty()) request.view.is_real_time = false;
     request.budget_s = budget_s_;
     return request;
 }
-
-std::string RenderLoop::flags() const { return camera_flags(pose_, camera(), camera_name_); }
 
 void RenderLoop::run(const std::function<bool()>& goes_on) {
     while (goes_on()) {
@@ -77,7 +74,10 @@ void RenderLoop::handle(const Command& command) {
 
 void RenderLoop::steer(const Steer& asked) {
     const ClientMessage& message = asked.message;
-    if (message.input != 0) input_ = message.input;
+    if (message.input != 0) {
+        input_ = message.input;
+        steerer_ = asked.client;
+    }
     is_done_ = is_done_ && message.kind == MessageKind::Pick; // to look at a place changes nothing
     switch (message.kind) {
     case MessageKind::Move:
@@ -85,7 +85,8 @@ void RenderLoop::steer(const Steer& asked) {
     case MessageKind::Look:
     case MessageKind::Pan:
     case MessageKind::Zoom:
-        step_camera(message);
+        camera_.step(message, view_.lens, speed_);
+        moved_at_s_ = now_s_();
         break;
     case MessageKind::Speed:
         speed_ *= pow(kSpeedStep, message.steps);
@@ -95,25 +96,24 @@ void RenderLoop::steer(const Steer& asked) {
     case MessageKind::Pick:
         return pick(asked);
     case MessageKind::Home:
-        base_ = start_.camera;
-        pose_ = start_.pose;
-        camera_name_ = start_.camera_name;
-        view_.lens = start_.camera;
-        has_moved_ = false;
+        camera_.go_home(clock_.time_s, view_.lens);
         break;
     case MessageKind::Camera:
-        if (message.index < start_.scene->cameras.size()) {
-            base_ = start_.scene->cameras[message.index];
-            pose_ = pose_of(base_, {}, {}, length(start_.pose.target - start_.pose.eye));
-            camera_name_ = fmt::format("{}", message.index);
-            view_.lens = base_;
-            has_moved_ = false;
-        }
+        camera_.take_scene_camera(message.index, clock_.time_s, view_.lens);
+        break;
+    case MessageKind::Play:
+    case MessageKind::Time:
+        steer_time(message);
+        break;
+    case MessageKind::Key:
+    case MessageKind::Unkey:
+    case MessageKind::Follow:
+        steer_path(asked);
         break;
     case MessageKind::Set:
         return set(asked);
     case MessageKind::Meter:
-        view_.display.exposure_stops = source_.meter(request());
+        view_.display.exposure_stops = view_.finds_exposure ? 0 : source_.meter(request());
         break;
     case MessageKind::Hello:
     case MessageKind::Ack:
@@ -124,35 +124,59 @@ void RenderLoop::steer(const Steer& asked) {
     budget_s_ = kFirstBudget;
 }
 
-void RenderLoop::step_camera(const ClientMessage& message) {
-    const Pose before = pose_;
-    const bool is_flat = base_.projection == Projection::Orthographic;
-    const float height = is_flat ? base_.ortho_height : 2 * tan(0.5f * view_.lens.fov_y);
-    if (message.kind == MessageKind::Move) {
-        const float metres = metres_of(message, speed_);
-        pose_ = fly(pose_, metres * message.right, metres * message.up, metres * message.forward);
-    } else if (message.kind == MessageKind::Orbit) {
-        pose_ = orbit(pose_, message.dx, message.dy);
-    } else if (message.kind == MessageKind::Look) {
-        pose_ = look(pose_, message.dx, message.dy, is_flat ? 1.0f : view_.lens.fov_y);
-    } else if (message.kind == MessageKind::Pan) {
-        pose_ = pan(pose_, message.dx, message.dy, height, is_flat);
-    } else if (is_flat) {
-        base_.ortho_height = clamp(base_.ortho_height * pow(6.0f / 7.0f, message.steps), 1e-6f, 1e12f);
+void RenderLoop::steer_time(const ClientMessage& message) {
+    if (message.kind == MessageKind::Time) {
+        clock_.go_to(static_cast<double>(message.at));
+        moved_at_s_ = now_s_();
     } else {
-        pose_ = zoom(pose_, message.steps);
+        clock_.speed = std::max(static_cast<double>(message.speed), kSlowestTime);
+        clock_.loops = message.loops;
+        clock_.play(message.on);
     }
-    const Transform placed = look_at(pose_.eye, pose_.target, pose_.up);
-    const bool is_good = is_finite(placed.row0) && is_finite(placed.row1) && is_finite(placed.row2) &&
-                         max_component(abs(pose_.eye)) < 1e9f && max_component(abs(pose_.target)) < 1e9f;
-    if (!is_good) pose_ = before; // a step too far
-    has_moved_ = true;
-    moved_at_s_ = now_s_();
+    clocked_at_s_ = now_s_();
+    tell_state();
+}
+
+void RenderLoop::steer_path(const Steer& asked) {
+    const ClientMessage& message = asked.message;
+    if (message.kind == MessageKind::Key) {
+        if (!camera_.add_key(message.at, view_.lens)) {
+            audience_.tell(asked.client,
+                           notice_text("error", fmt::format("a path has {} keys at most", ViewCamera::kMostKeys)));
+        }
+    } else if (message.kind == MessageKind::Unkey) {
+        camera_.remove_key(message.index);
+    }
+    followed_s_.reset(); // it may lead elsewhere now
+    const std::vector<CameraKey>& keys = camera_.path().keys;
+    clock_.end_s = std::max(start_.clock.end_s, keys.empty() ? 0 : keys.back().time_s);
+    if (message.kind == MessageKind::Follow && !keys.empty()) {
+        clock_.time_s = 0;
+        clock_.plays = true;
+        clocked_at_s_ = moved_at_s_ = now_s_();
+        camera_.follow_path(clock_.time_s, view_.lens);
+    }
+    tell_state();
+}
+
+/// Since the last call, where time runs.
+void RenderLoop::let_time_pass() {
+    const double now = now_s_(), passed = now - std::exchange(clocked_at_s_, now);
+    if (time_runs()) clock_.advance(std::min(passed, kLongestStep));
+}
+
+/// Scene and camera to the clock's time. Throws as FrameSource::set_time.
+void RenderLoop::follow_time() {
+    if (!clock_.time_s || clock_.time_s == followed_s_) return;
+    followed_s_.reset();
+    source_.set_time(*clock_.time_s);
+    camera_.go_to(clock_.time_s, view_.lens);
+    followed_s_ = clock_.time_s;
 }
 
 void RenderLoop::pick(const Steer& asked) {
     const ClientMessage& message = asked.message;
-    const Camera now = camera();
+    const Camera now = camera_.camera(view_.lens);
     const std::optional<PickedPoint> point = source_.pick(now, message.x, message.y);
     if (message.use == PickUse::Show) {
         return audience_.tell(asked.client,
@@ -160,7 +184,7 @@ void RenderLoop::pick(const Steer& asked) {
     }
     if (!point) return audience_.tell(asked.client, notice_text("note", "there is nothing but background"));
     if (message.use == PickUse::Orbit) {
-        pose_.centre = point->position;
+        camera_.turn_about(point->position);
         return audience_.tell(asked.client, notice_text("note", "the view now turns about this place"));
     }
     const Transform& from = now.world_from_camera;
@@ -180,25 +204,48 @@ void RenderLoop::set(const Steer& asked) {
     tell_state();
 }
 
-void RenderLoop::show_next() {
-    const FrameRequest wanted = request();
-    if (wanted.is_moving && !is_new_ && last_ && last_->samples >= view_.picture.samples) { // nothing new to be seen
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        return;
-    }
-    std::optional<ShownFrame> frame;
+/// Where something of it cannot be had, all is told so, and the view goes back to what could be.
+std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
     try {
-        frame = source_.next(wanted);
+        return source_.next(wanted);
     } catch (const Error& error) {
         if (error.code() == ErrorCode::DeviceFault) throw;
         audience_.tell(0, notice_text("error", error.what()));
         const ViewState failed = std::exchange(view_, shown_);
         view_.display = failed.display;
+        tell_state();
+        return std::nullopt;
+    }
+}
+
+void RenderLoop::show_next() {
+    let_time_pass();
+    try {
+        follow_time();
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::DeviceFault) throw;
+        audience_.tell(0, notice_text("error", error.what()));
+        const double back_s = shown_s_.value_or(0);
+        is_done_ = clock_.time_s == back_s; // there is no way out of it but another time
+        clock_.plays = false;
+        clock_.time_s = back_s;
         return tell_state();
     }
-    if (!frame) return;
+    const FrameRequest wanted = request();
+    if (wanted.is_moving && !is_new_ && !time_runs() && last_ &&
+        last_->samples >= view_.picture.samples) { // nothing new to be seen
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return;
+    }
+    std::optional<ShownFrame> frame = next_frame(wanted);
+    if (!frame) { // a picture gathers that is not shown yet
+        if (now_s_() - told_at_s_ > kTellEvery) tell_state();
+        return;
+    }
     is_new_ = false;
     shown_ = view_;
+    shown_s_ = clock_.time_s;
+    view_.found_stops = frame->found_stops;
     const double now = now_s_();
     const double since = now - std::exchange(framed_at_s_, now);
     frames_per_second_ = since > 1 ? 0 : frames_per_second_ + 0.3 * (1 / std::max(since, 1e-4) - frames_per_second_);
@@ -212,6 +259,25 @@ void RenderLoop::show_next() {
     if (is_done_ || now - told_at_s_ > kTellEvery) tell_state();
 }
 
+/// How the present picture is made.
+PictureRecord RenderLoop::record() const {
+    PictureRecord record = start_.record;
+    if (start_.is_animated) record.scene.time_s = clock_.time_s;
+    record.settings = view_.picture;
+    record.display = view_.display;
+    if (last_) record.display->exposure_stops = last_->exposure_stops;
+    record.camera.camera = camera_.camera(view_.lens);
+    record.camera.target.reset();
+    record.camera.up.reset();
+    if (camera_.is_said_by_pose()) {
+        record.camera.target = camera_.pose().target;
+        record.camera.up = camera_.pose().up;
+    }
+    if (!camera_.is_at_start() || camera_.is_own()) record.camera.name = camera_.name();
+    record.camera.fov_deg = degrees_for(view_.lens.fov_y);
+    return record;
+}
+
 void RenderLoop::save_pictures() {
     if (saves_.empty() || !last_ || !last_->is_reference) {
         if (saves_.empty() || view_.layer == ShownLayer::Beauty) return;
@@ -220,19 +286,10 @@ void RenderLoop::save_pictures() {
         return;
     }
     RenderResult result = source_.result();
-    PictureRecord record = start_.record;
-    record.settings = view_.picture;
-    record.display = view_.display;
-    record.camera.camera = camera();
-    if (has_moved_) {
-        record.camera.target = pose_.target;
-        record.camera.up = pose_.up;
-        record.camera.name = camera_name_;
-    }
-    record.camera.fov_deg = degrees_for(view_.lens.fov_y);
+    const PictureRecord made = record();
     for (const Save& save : std::exchange(saves_, {})) {
         RenderResult copy = result;
-        save.reply(encode_picture(save.format == "exr" ? ImageFormat::Exr : ImageFormat::Png, record, copy));
+        save.reply(encode_picture(save.format == "exr" ? ImageFormat::Exr : ImageFormat::Png, made, copy));
     }
 }
 
@@ -244,7 +301,13 @@ void RenderLoop::tell_state() {
     numbers.pack_ms = packer_.milliseconds();
     numbers.packed_bytes = packer_.bytes();
     numbers.phase = is_done_ ? "done" : (is_moving() ? "moving" : "gathering");
-    audience_.tell_state(state_text(view_, numbers, flags()));
+    numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : std::nullopt);
+    numbers.input = input_;
+    numbers.steerer = steerer_;
+    numbers.clock = clock_;
+    if (!time_matters()) numbers.clock.end_s = 0;
+    numbers.path = &camera_.path();
+    audience_.tell_state(state_text(view_, numbers));
 }
 
 } // namespace pertev

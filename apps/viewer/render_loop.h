@@ -1,13 +1,14 @@
 #pragma once
 
-// The render's thread: takes what clients ask for, steps the camera, asks the frame source for pictures and publishes
-// them. It renders only while somebody looks and there is something left to do.
+// The render's thread: takes what clients ask for, lets time pass, steps the camera, asks the frame source for pictures
+// and publishes them. It renders only while somebody looks and there is something left to do.
 
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "apps/viewer/packer.h"
+#include "apps/viewer/view_camera.h"
 #include "apps/viewer/viewer.h"
 
 namespace pertev {
@@ -24,16 +25,21 @@ public:
 private:
     void handle(const Command& command);
     void steer(const Steer& steer);
-    void step_camera(const ClientMessage& message);
+    void steer_time(const ClientMessage& message);
+    void steer_path(const Steer& steer);
     void pick(const Steer& steer);
     void set(const Steer& steer);
+    void let_time_pass();
+    void follow_time();
+    std::optional<ShownFrame> next_frame(const FrameRequest& request);
     void show_next();
     void save_pictures();
+    PictureRecord record() const;
     void tell_state();
-    Camera camera() const;
+    bool time_matters() const;
+    bool time_runs() const;
     bool is_moving() const;
     FrameRequest request() const;
-    std::string flags() const;
 
     const ViewerStart& start_;
     FrameSource& source_;
@@ -44,12 +50,12 @@ private:
 
     ViewState view_;
     ViewState shown_; // of the last picture: what to go back to where a setting cannot be had
-    Camera base_;     // the camera that the pose was taken from, as it is until a step is made
-    Pose pose_;
-    std::string camera_name_;
-    bool has_moved_ = false;
+    ViewCamera camera_;
+    SceneClock clock_;
+    std::optional<double> followed_s_, shown_s_; // time that scene and camera are at, and that of the last picture
+    double clocked_at_s_ = 0;
     float speed_;
-    uint32_t input_ = 0;
+    uint32_t input_ = 0, steerer_ = 0; // number of the last input, and the client that it came from
     double moved_at_s_ = -1e9, told_at_s_ = -1e9, framed_at_s_ = -1e9;
     double frames_per_second_ = 0;
     double budget_s_ = 0.1;          // of the next picture at rest

@@ -1,8 +1,12 @@
 #include "apps/viewer/session_frames.h"
 
 #include <algorithm>
+#include <bit>
+
+#include <fmt/format.h>
 
 #include "apps/viewer/layer_colors.h"
+#include "apps/viewer/reference_is_better.h"
 #include "apps/viewer/steering.h"
 #include "base/error.h"
 #include "base/limits.h"
@@ -14,9 +18,8 @@
 namespace pertev {
 namespace {
 
-// Samples from which on a picture at rest is shown in place of a reconstruction: fewer are noisier.
-constexpr uint32_t kBetterThanReconstruction = 8;
-constexpr double kPass = 0.03; // seconds after which a render looks whether it is still wanted
+constexpr uint32_t kFramesOfLayer = 32; // at rest, after which a layer of the reconstruction stays as it is
+constexpr double kPass = 0.03;          // seconds after which a render looks whether it is still wanted
 
 /// What the film must hold beside the picture for this layer.
 uint32_t aovs_of(ShownLayer layer) {
@@ -24,6 +27,8 @@ uint32_t aovs_of(ShownLayer layer) {
     case ShownLayer::Beauty:
     case ShownLayer::NodeHeat:
     case ShownLayer::TriangleHeat:
+    case ShownLayer::Motion:
+    case ShownLayer::Deviation:
         return 0;
     case ShownLayer::Albedo:
         return kAovAlbedo;
@@ -41,10 +46,34 @@ uint32_t aovs_of(ShownLayer layer) {
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
+/// Of the reconstruction, so that they are there only with it.
+bool is_reconstructed(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
+
+bool same_metering(const RenderSettings& a, const RenderSettings& b) {
+    return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
+}
+
 } // namespace
 
-SessionFrames::SessionFrames(Session& session, double frame_s) : session_(session), pace_(frame_s) {
+SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s)
+    : session_(session), scene_(scene), pace_(frame_s) {
     session_.abandon_when(&abandon_);
+}
+
+void SessionFrames::set_time(double time_s) {
+    if (scene_.time_s() == time_s && !is_behind_) return;
+    const Stopwatch watch;
+    Messages said_already; // what there is to say of the scene was said at the start
+    const bool was_behind = std::exchange(is_behind_, true);
+    const uint32_t parts = scene_.set_time(time_s, said_already);
+    if (was_behind) {
+        session_.set_scene(scene_.prepared());
+    } else if (parts != 0) {
+        session_.update_scene(scene_.prepared(), parts);
+    }
+    is_behind_ = false;
+    scene_changes_ += was_behind || parts != 0;
+    update_s_ += watch.seconds();
 }
 
 RenderSettings SessionFrames::settings_for(const FrameRequest& request, float scale) {
@@ -54,7 +83,7 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.height = scaled_side(settings.height, scale);
     settings.aovs |= aovs_of(request.view.layer);
     // Layers and heat maps need no light.
-    if (!is_beauty(request.view.layer)) settings.path.max_depth = 0;
+    if (!is_beauty(request.view.layer) && !is_reconstructed(request.view.layer)) settings.path.max_depth = 0;
     settings.pass_samples = 1;
     if (sample_s_ > 0 && scale == 1)
         settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
@@ -80,7 +109,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     const uint32_t width = session_.settings().width, height = session_.settings().height;
     switch (request.view.layer) {
     case ShownLayer::Beauty:
-        return session_.display(request.view.display.exposure_stops, request.view.display.tone_map);
+        return session_.display(frame.exposure_stops, request.view.display.tone_map);
     case ShownLayer::Albedo:
         return show_albedo(session_.layers().front().image);
     case ShownLayer::Normal:
@@ -97,13 +126,15 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
         return show_ids(session_.film().ids(), width, height, IdKind::Material);
     case ShownLayer::NodeHeat:
     case ShownLayer::TriangleHeat:
+    case ShownLayer::Motion:
+    case ShownLayer::Deviation:
         break;
     }
     const bool nodes = request.view.layer == ShownLayer::NodeHeat;
     const std::vector<RayWork> work = session_.count_camera_work();
     if (work.empty()) {
         frame.caption = "this walk cannot count what one ray tests: its rays go together";
-        return session_.display(request.view.display.exposure_stops, request.view.display.tone_map);
+        return session_.display(frame.exposure_stops, request.view.display.tone_map);
     }
     uint32_t most = 0;
     Rgba8Image image = show_work(work, width, height, nodes ? WorkKind::Nodes : WorkKind::Triangles, most);
@@ -112,32 +143,85 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     return image;
 }
 
+Rgba8Image shown_picture(Reconstruction& frame, ToneMap tone_map, float exposure_stops) {
+    const uint8_t* const shown = frame.display(tone_map, exposure_stops);
+    return {frame.width(), frame.height(), {shown, shown + std::size_t(4) * frame.width() * frame.height()}};
+}
+
+/// What the layer of the last reconstructed frame looks like.
+Rgba8Image SessionFrames::show_layer(const FrameRequest& request, ShownFrame& frame) {
+    float most = 0;
+    if (request.view.layer == ShownLayer::Motion) {
+        Rgba8Image image = show_motion(session_.frame().motion(), most);
+        frame.caption = fmt::format("grey: still; to the right red, down green; full at {:.3g} pixels a frame", most);
+        return image;
+    }
+    Rgba8Image image = show_deviation(session_.frame().deviation(), most);
+    frame.caption = fmt::format("deviation of the signals: black: none; pale yellow: {:.3g}, or not known", most);
+    return image;
+}
+
+/// The stops that the present picture is shown with.
+void SessionFrames::expose(const FrameRequest& request, ShownFrame& frame) {
+    frame.found_stops = exposure_.stops();
+    frame.exposure_stops = request.view.display.exposure_stops;
+    if (request.view.finds_exposure) frame.exposure_stops += frame.found_stops;
+}
+
+/// A picture at rest has the exposure that pertev render meters for it.
+void SessionFrames::meter_still(const FrameRequest& request) {
+    if (!request.view.finds_exposure) return;
+    const Metered& last = metered_;
+    if (last.is_there && same_metering(last.picture, request.view.picture) && last.camera == request.camera &&
+        last.tone_map == request.view.display.tone_map && last.scene_changes == scene_changes_) {
+        return;
+    }
+    begin_exposed(request, session_.meter(request.view.display.tone_map));
+}
+
+void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
+    metered_ = {request.view.picture, request.camera, request.view.display.tone_map, scene_changes_, true};
+    exposure_.set(stops);
+}
+
 ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) {
     const Stopwatch whole;
+    const double update_s = std::exchange(update_s_, 0);
+    const bool goes_on = std::exchange(shows_reconstruction_, false);
+    const uint32_t width_before = session_.settings().width;
     use(settings_for(request, scale));
-    const bool is_still = session_.camera() == request.camera && shows_reconstruction_;
+    const bool is_still =
+        session_.camera() == request.camera && goes_on && update_s == 0 && session_.settings().width == width_before;
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
-    session_.render_frame(next_sample_, {});
+    const bool shows_layer = is_reconstructed(request.view.layer);
+    session_.render_frame(next_sample_, {.keep_layers = shows_layer});
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
+    shows_layer_ = shows_layer;
+    reconstruction_.pixels.clear();
     ShownFrame frame;
     frame.rays = session_.frame_rays();
     const double reconstruction_s = session_.frame().seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
-    const uint8_t* const shown =
-        session_.frame().display(request.view.display.tone_map, request.view.display.exposure_stops);
-    const Reconstruction& of = session_.frame();
-    frame.image = {of.width(), of.height(), {shown, shown + std::size_t(4) * of.width() * of.height()}};
-    frame.stages = {{"render", 1e3 * frame.render_s},
-                    {"reconstruction", 1e3 * reconstruction_s},
-                    {"tone map", 1e3 * display.seconds()}};
+    if (request.view.finds_exposure && !shows_layer) {
+        exposure_.next(session_.frame_tones(), request.view.display.tone_map);
+        metered_.is_there = false;
+    }
+    expose(request, frame);
+    frame.image = shows_layer ? show_layer(request, frame)
+                              : shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
+    if (update_s > 0) frame.stages.emplace_back("scene", 1e3 * update_s);
+    frame.stages.insert(frame.stages.end(), {{"render", 1e3 * frame.render_s},
+                                             {"reconstruction", 1e3 * reconstruction_s},
+                                             {"tone map", 1e3 * display.seconds()}});
     frame.full_width = request.view.picture.width;
     frame.full_height = request.view.picture.height;
     frame.scale = scale;
     frame.samples = still_frames_;
+    frame.is_final = shows_layer && !request.is_moving && still_frames_ >= kFramesOfLayer;
     pace_.took(scale, whole.seconds());
     return frame;
 }
@@ -145,30 +229,55 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
 const std::string& SessionFrames::film_hash() {
     const History& now = session_.history();
     const bool is_known = !hashed_.hash.empty() && hashed_.cuts == now.cuts && hashed_.samples == now.samples &&
-                          hashed_.camera == session_.camera();
+                          hashed_.scene_changes == scene_changes_ && hashed_.camera == session_.camera();
     if (!is_known) {
-        hashed_ = {picture_hash(session_.picture()).hex(), session_.camera(), now.cuts, now.samples};
+        hashed_ = {picture_hash(session_.picture()).hex(), session_.camera(), now.cuts, scene_changes_, now.samples};
     }
     return hashed_.hash;
+}
+
+/// Whether the picture at rest is to be shown in place of the reconstruction. Told at powers of two alone, each of
+/// which has that before it as its half.
+bool SessionFrames::beats_reconstruction(const FrameRequest& request) {
+    const uint32_t samples = session_.history().samples;
+    if (!std::has_single_bit(samples)) return false;
+    ShownFrame frame; // shown as the reconstruction is
+    expose(request, frame);
+    Rgba8Image whole = session_.display(frame.exposure_stops, request.view.display.tone_map);
+    const bool is_better =
+        half_samples_ > 0 && 2 * half_samples_ == samples && reference_is_better(whole, half_, reconstruction_);
+    half_ = std::move(whole);
+    half_samples_ = samples;
+    return is_better;
 }
 
 std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
     const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
+    if (is_reconstructed(request.view.layer)) return reconstruct(request, scale);
     if (is_small && is_beauty(request.view.layer) && request.view.is_reconstructed) return reconstruct(request, scale);
+    update_s_ = 0;
+    const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer);
+    if (competes && reconstruction_.pixels.empty()) { // before another size forgets it
+        ShownFrame frame;
+        expose(request, frame);
+        reconstruction_ = session_.frame().display(request.view.display.tone_map, frame.exposure_stops);
+    }
     use(settings_for(request, scale));
     session_.set_camera(request.camera);
     const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
     const uint32_t before = session_.history().samples;
     const bool was_begun = before > 0;
+    if (!was_begun) half_samples_ = 0;
+    const uint32_t until = competes ? std::min(wanted, std::bit_floor(before) * 2 + !was_begun) : wanted;
     // A picture of the movement is finished whatever comes: input comes faster than pictures, and would break off each.
     session_.abandon_when(is_small ? nullptr : &abandon_);
     const Stopwatch render;
     ShownFrame frame;
     uint32_t added = 0;
     if (before < wanted) {
-        added = session_.render(is_small ? 1 : wanted - before, [&](const RenderProgress& now) {
+        added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
             return (is_small || !abandon_) && now.seconds < request.budget_s;
         });
@@ -178,11 +287,10 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (abandon_ && !is_small) return std::nullopt;
     frame.samples = session_.history().samples;
     if (frame.samples == 0) return std::nullopt;
-    if (shows_reconstruction_ && !is_small && is_beauty(request.view.layer) && frame.samples < wanted &&
-        frame.samples < kBetterThanReconstruction) {
-        return std::nullopt;
-    }
+    if (competes && frame.samples < wanted && !beats_reconstruction(request)) return std::nullopt;
     shows_reconstruction_ = false;
+    if (!is_small && is_beauty(request.view.layer)) meter_still(request);
+    expose(request, frame);
     const Stopwatch display;
     frame.image = show(request, frame);
     const double display_s = display.seconds();

@@ -1,46 +1,73 @@
 #pragma once
 
-// The pictures of a Session, as the viewer shows them. While the camera moves: frames of one sample, reconstructed with
-// what those before have seen, at the resolution that keeps the frame rate. At rest: samples gather at full size until
-// all that were asked for are there; that film is the one of `pertev render`, to the bit.
+// The pictures of a Session, as the viewer shows them. While the camera or time moves: frames of one sample,
+// reconstructed with what those before have seen, at the resolution that keeps the frame rate. At rest: samples gather
+// at full size until all that were asked for are there; that film is the one of `pertev render`, to the bit.
 
 #include "apps/viewer/frame_pace.h"
 #include "apps/viewer/frame_source.h"
+#include "session/adaptive_exposure.h"
+#include "session/moving_scene.h"
 #include "session/session.h"
 
 namespace pertev {
 
 class SessionFrames final : public FrameSource {
 public:
-    /// `frame_s`: seconds that a frame may take while the camera moves. The session outlives it.
-    SessionFrames(Session& session, double frame_s);
+    /// `frame_s`: seconds that a frame may take while the view moves. `session` has the scene of `scene`; both outlive
+    /// it.
+    SessionFrames(Session& session, MovingScene& scene, double frame_s);
 
+    void set_time(double time_s) override;
     std::optional<ShownFrame> next(const FrameRequest& request) override;
     std::atomic<bool>& abandon() override { return abandon_; }
     std::optional<PickedPoint> pick(const Camera& camera, float x, float y) override;
     float meter(const FrameRequest& request) override;
     RenderResult result() override { return session_.result(); }
+    /// What the meter has found for this view, so that it need not look again.
+    void begin_exposed(const FrameRequest& request, float stops);
 
 private:
     ShownFrame reconstruct(const FrameRequest& request, float scale);
     RenderSettings settings_for(const FrameRequest& request, float scale);
     void use(const RenderSettings& settings);
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
+    Rgba8Image show_layer(const FrameRequest& request, ShownFrame& frame);
+    void expose(const FrameRequest& request, ShownFrame& frame);
+    bool beats_reconstruction(const FrameRequest& request);
+    void meter_still(const FrameRequest& request);
 
     Session& session_;
+    MovingScene& scene_;
+    uint64_t scene_changes_ = 0;
+    bool is_behind_ = false; // the last set_time threw
+    double update_s_ = 0;    // of the scene, since the last frame
     FramePace pace_;
     std::atomic<bool> abandon_{false};
     uint32_t next_sample_ = 0;  // of the frames in real time
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
     bool shows_reconstruction_ = false;
+    bool shows_layer_ = false;  // of it
+    Rgba8Image reconstruction_; // the last, as it is shown; empty while nothing competes with it
+    Rgba8Image half_;           // the picture at rest that is not shown yet, at half_samples_ of its samples
+    uint32_t half_samples_ = 0;
     /// The hash of the film as it is; the one before where that is the same film.
     const std::string& film_hash();
     struct Hashed {
         std::string hash;
         Camera camera;
-        uint64_t cuts = 0;
+        uint64_t cuts = 0, scene_changes = 0;
         uint32_t samples = 0;
     } hashed_;
+    AdaptiveExposure exposure_;
+    /// The view that exposure_ was metered for, as long as no frame has moved it on.
+    struct Metered {
+        RenderSettings picture;
+        Camera camera;
+        ToneMap tone_map = ToneMap::Agx;
+        uint64_t scene_changes = 0;
+        bool is_there = false;
+    } metered_;
     double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known
 };
 

@@ -40,6 +40,22 @@ float allowed_pitch(Vec3 back, Vec3 up, float pitch) {
 
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
+std::string lens_flags(const Camera& camera) {
+    std::string flags;
+    switch (camera.projection) {
+    case Projection::Perspective:
+        flags += fmt::format(" --fov {}", degrees_for(camera.fov_y));
+        break;
+    case Projection::Orthographic:
+        flags += fmt::format(" --projection orthographic --view-height {}", camera.ortho_height);
+        break;
+    }
+    if (camera.aperture_radius > 0) {
+        flags += fmt::format(" --aperture {} --focus {}", camera.aperture_radius, camera.focus_distance);
+    }
+    return flags;
+}
+
 } // namespace
 
 Pose pose_of(const Camera& camera, std::optional<Vec3> target, std::optional<Vec3> up, float distance) {
@@ -127,18 +143,11 @@ std::string camera_flags(const Pose& pose, const Camera& camera, const std::stri
     if (!name.empty()) flags += fmt::format("--camera '{}' ", name);
     flags += fmt::format("--eye {} --target {}", text_of(pose.eye), text_of(pose.target));
     if (pose.up != Vec3{0, 1, 0}) flags += fmt::format(" --up {}", text_of(pose.up));
-    switch (camera.projection) {
-    case Projection::Perspective:
-        flags += fmt::format(" --fov {}", degrees_for(camera.fov_y));
-        break;
-    case Projection::Orthographic:
-        flags += fmt::format(" --projection orthographic --view-height {}", camera.ortho_height);
-        break;
-    }
-    if (camera.aperture_radius > 0) {
-        flags += fmt::format(" --aperture {} --focus {}", camera.aperture_radius, camera.focus_distance);
-    }
-    return flags;
+    return flags + lens_flags(camera);
+}
+
+std::string scene_camera_flags(const Camera& camera, const std::string& name) {
+    return fmt::format("--camera '{}'", name) + lens_flags(camera);
 }
 
 Camera camera_through(const Camera& camera, float aspect, float x, float y) {

@@ -43,6 +43,8 @@ float metres_of(const ClientMessage& message, float speed);
 /// The flags of pertev render that place this camera: --eye --target --up, and the lens, as far as it is not what they
 /// leave as it is. `name`: of --camera; empty for none.
 std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name);
+/// The same of the scene's camera `name`, where it stands, with the lens of `camera`.
+std::string scene_camera_flags(const Camera& camera, const std::string& name);
 /// Degrees that the command line makes this angle of, to the bit where there are such.
 float degrees_for(float radians);
 

@@ -17,8 +17,8 @@ namespace {
 
 using Kind = ViewSetting::Kind;
 
-constexpr const char* kLayers[] = {"picture",   "albedo",    "normal",      "depth",          "instances",
-                                   "triangles", "materials", "heat: nodes", "heat: triangles"};
+constexpr const char* kLayers[] = {"picture",   "albedo",      "normal",          "depth",  "instances", "triangles",
+                                   "materials", "heat: nodes", "heat: triangles", "motion", "deviation"};
 
 constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
 constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
@@ -121,8 +121,18 @@ std::vector<ViewSetting> make_settings() {
             s.layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
             return std::string();
         });
+    choice(
+        "exposed", "Exposure", "Picture", {"auto", "fixed"},
+        [](const ViewState& s) { return s.finds_exposure ? "auto" : "fixed"; },
+        [](ViewState& s, const std::string& name) {
+            const bool finds = name == "auto";
+            if (finds == s.finds_exposure) return std::string();
+            s.display.exposure_stops = finds ? 0 : clamp(s.found_stops + s.display.exposure_stops, -60.0f, 60.0f);
+            s.finds_exposure = finds;
+            return std::string();
+        });
     numeric(
-        "exposure", "Exposure, stops", "Picture", Kind::Number, -60, 60, 0.25,
+        "exposure", "Stops", "Picture", Kind::Number, -60, 60, 0.25,
         [](const ViewState& s) { return s.display.exposure_stops; },
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
     choice(

@@ -24,12 +24,16 @@ enum class ShownLayer : uint8_t {
     Materials,
     NodeHeat,
     TriangleHeat,
+    Motion,
+    Deviation,
 };
 
 struct ViewState {
     RenderSettings picture; // at rest: size, light, number of samples, tracers
-    Display display;
-    Camera lens; // angle of view, aperture, focus; its place is the pose's
+    Display display;        // where the exposure is found by itself, its stops are added to that
+    bool finds_exposure = false;
+    float found_stops = 0; // of the last picture
+    Camera lens;           // angle of view, aperture, focus; its place is the pose's
     ShownLayer layer = ShownLayer::Beauty;
     bool is_real_time = false;    // also at rest, pictures are those of the movement
     bool is_reconstructed = true; // of the movement: by what frames before have seen (denoise/)

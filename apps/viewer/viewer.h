@@ -7,7 +7,8 @@
 #include <string>
 
 #include "apps/viewer/frame_source.h"
-#include "apps/viewer/steering.h"
+#include "apps/viewer/scene_clock.h"
+#include "apps/viewer/view_camera.h"
 #include "apps/viewer/web_server.h"
 #include "scene/scene.h"
 #include "session/picture_metadata.h"
@@ -22,13 +23,13 @@ struct ViewerOptions {
 
 /// What is looked at, and how it begins.
 struct ViewerStart {
-    const Scene* scene = nullptr; // outlives the viewer
+    const Scene* scene = nullptr; // outlives the viewer; at the time that the frame source was put to
+    bool is_animated = false;     // whether time moves it
     ViewState view;
-    Camera camera;
-    Pose pose;
-    std::string camera_name; // of the scene's, for flags; empty for none
-    PictureRecord record;    // for pictures that are saved
-    float speed = 1;         // metres a second of keys
+    StartCamera camera;
+    SceneClock clock;
+    PictureRecord record; // for pictures that are saved
+    float speed = 1;      // metres a second of keys
 };
 
 /// Listens, calls `listening` with the address that lets in whoever has it, and goes on as long as `goes_on` says so;

@@ -4,8 +4,10 @@
 #include "denoise/accumulate_signals.h"
 #include "denoise/anti_alias.h"
 #include "denoise/compose_picture.h"
+#include "denoise/keep_layers.h"
 #include "denoise/limit_history.h"
 #include "denoise/split_signals.h"
+#include "denoise/sum_blocks.h"
 #include "denoise/wavelet_pass.h"
 #include "device/launch.h"
 
@@ -54,6 +56,11 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
            AccumulateSignals{noisy, a, scene, scene_before, cameras, now, before, was_at, settings.history,
                              settings.limit_fireflies, has_gloss, has_history});
     launch(*queue_, "limit_history", pixels, LimitHistory{now, b, width_, height_, settings.limit_history, has_gloss});
+    if (settings.keep_layers) {
+        if (layers_.size() != pixels) layers_ = {*queue_, pixels, "layers of the reconstruction"};
+        launch(*queue_, "keep_layers", pixels,
+               KeepLayers{was_at, b, width_, has_history, has_gloss, layers_.data()});
+    }
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
                WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, has_gloss});
@@ -81,6 +88,48 @@ Image Reconstruction::picture() const {
         const Rgb light = light_of_shown(rgb_of(p));
         image.pixels.insert(image.pixels.end(), {light.r, light.g, light.b});
     }
+    return image;
+}
+
+FrameTones Reconstruction::tones(const NoisyFrame& frame) const {
+    PERTEV_CHECK(frames_ > 0 && frame.width() == width_ && frame.height() == height_);
+    const uint32_t side = block_side(width_, height_);
+    const uint32_t columns = (width_ + side - 1) / side, rows = (height_ + side - 1) / side;
+    const std::size_t row_sums = std::size_t(columns) * height_, blocks = std::size_t(columns) * rows;
+    Float4* const room = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_; // signals' room: 4 a pixel
+    const BlockSums sums = {room, room + row_sums}, means = {room + 2 * row_sums, room + 2 * row_sums + blocks};
+    launch(*queue_, "sum_block_rows", static_cast<uint32_t>(row_sums),
+           SumBlockRows{history(frames_).shown, frame.view(), width_, side, columns, sums});
+    launch(*queue_, "mean_of_block_rows", static_cast<uint32_t>(blocks),
+           MeanOfBlockRows{sums, height_, side, columns, means});
+    std::vector<Float4> both(2 * blocks);
+    queue_->copy_to_host(both.data(), means.scattered, both.size() * sizeof(Float4));
+    FrameTones tones = {{columns, rows, 4, {}}, {columns, rows, 3, {}}};
+    for (std::size_t i = 0; i < blocks; ++i) {
+        const Float4 a = both[i], b = both[blocks + i];
+        tones.scattered.pixels.insert(tones.scattered.pixels.end(), {a.x, a.y, a.z, a.w});
+        tones.all.pixels.insert(tones.all.pixels.end(), {b.x, b.y, b.z});
+    }
+    return tones;
+}
+
+std::vector<Float4> Reconstruction::kept_layers() const {
+    const std::size_t pixels = std::size_t(width_) * height_;
+    PERTEV_CHECK(frames_ > 0 && layers_.size() == pixels);
+    std::vector<Float4> layers(pixels);
+    queue_->copy_to_host(layers.data(), layers_.data(), pixels * sizeof(Float4));
+    return layers;
+}
+
+Image Reconstruction::motion() const {
+    Image image{width_, height_, 2, {}};
+    for (const Float4& p : kept_layers()) image.pixels.insert(image.pixels.end(), {p.x, p.y});
+    return image;
+}
+
+Image Reconstruction::deviation() const {
+    Image image{width_, height_, 1, {}};
+    for (const Float4& p : kept_layers()) image.pixels.push_back(sqrt(p.z + p.w));
     return image;
 }
 

@@ -19,6 +19,13 @@
 
 namespace pertev {
 
+/// Means of a frame over square blocks of pixels, some 40 along its longer side.
+struct FrameTones {
+    Image scattered; // RGBA: what surfaces scatter to the camera, without lamps and sky that are seen directly; the
+                     // share of the block that this is true of, with which the others are multiplied already
+    Image all;       // RGB
+};
+
 class Reconstruction {
 public:
     Reconstruction(Queue& queue, uint32_t width, uint32_t height);
@@ -42,9 +49,20 @@ public:
     Image picture() const;
     /// The same as a display shows it, times 2^exposure_stops: RGBA, [height * width * 4], until the next call.
     const uint8_t* display(ToneMap tone_map, float exposure_stops);
+    /// Of the last frame, which was made of `frame`.
+    FrameTones tones(const NoisyFrame& frame) const;
+
+    // Of the last frame, where ReconstructionSettings::keep_layers was set.
+
+    /// Two channels: pixels that what is seen has moved since the frame before, to the right and down.
+    Image motion() const;
+    /// One channel: deviation of the luminance of both signals together, as it leads the filter; 1000 and more: not
+    /// known yet.
+    Image deviation() const;
 
 private:
     HistoryView history(uint32_t frame) const;
+    std::vector<Float4> kept_layers() const;
 
     Queue* queue_;
     uint32_t width_, height_, frames_ = 0;
@@ -53,6 +71,7 @@ private:
     Buffer<Float4> wide_; // arrays of Float4, of both histories and of signals
     Buffer<Vec2> narrow_;
     std::unique_ptr<HostCopy> display_; // none before it is asked for
+    Buffer<Float4> layers_; // empty until somebody asks for them
 };
 
 } // namespace pertev

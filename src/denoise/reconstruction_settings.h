@@ -13,6 +13,7 @@ struct ReconstructionSettings {
     bool limit_fireflies = true; // biased: darkens what is far brighter than all around it
     bool limit_history = true;   // biased: pulls long means towards recent frames where they disagree, against ghosts
     bool anti_alias = true;      // biased: the mean of shown frames is held within colours around it
+    bool keep_layers = false;    // for Reconstruction::motion() and deviation(); the frame stays the same
 
     bool operator==(const ReconstructionSettings&) const = default;
 };

@@ -8,8 +8,6 @@
 namespace pertev {
 namespace {
 
-constexpr double kFewestThatCount = 0.01; // share of the picture; with less there is nothing but lamps and sky
-
 /// The meter's settings: the picture's light paths and shape, and the same device; all else fixed.
 RenderSettings meter_settings(const RenderSettings& picture) {
     // Of the ratio in lowest terms, so that 1280x720 and 640x360 have one meter.
@@ -48,7 +46,8 @@ Image scattered_light(Image light, const Image& emitted) {
     return light;
 }
 
-/// Share of the picture that light is scattered from. It takes lit pixels: black ones tell nothing.
+} // namespace
+
 double share_that_counts(const Image& scattered) {
     double sum = 0;
     for (std::size_t i = 0; i < scattered.pixels.size(); i += 4) {
@@ -56,8 +55,6 @@ double share_that_counts(const Image& scattered) {
     }
     return sum / (static_cast<double>(scattered.width) * scattered.height);
 }
-
-} // namespace
 
 float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
                      const std::function<Image(const RenderSettings&)>& render) {

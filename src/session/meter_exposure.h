@@ -14,6 +14,11 @@ namespace pertev {
 /// Of the meter's pictures: about 6400 pixels of the picture's shape, 16 samples each, whatever the picture has.
 inline constexpr uint32_t kMeterPixels = 6400, kMeterSamples = 16;
 
+/// Share of a picture, RGBA without lamps and sky, that light is scattered from. It takes lit pixels: black ones tell
+/// nothing. With less than the fewest that count there is nothing but lamps and sky.
+double share_that_counts(const Image& scattered);
+inline constexpr double kFewestThatCount = 0.01;
+
 /// Stops for the picture that `settings` ask for, shown by `tone_map` (image/auto_exposure.h says which): a multiple of
 /// 1/100 within [-60, 60]. Judged by what surfaces scatter towards the camera. Lamps and sky that are seen directly do
 /// not count, unless there is nothing else. A function of scene, camera and what `settings` say of light paths and of

@@ -1,5 +1,6 @@
 #include "session/moving_scene.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "render/place_meshes.h"
@@ -13,6 +14,12 @@ MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOption
     if (time_s) posed_.set_time(*time_s);
     prepared_ = prepare_scene(posed_.scene(), options_, messages);
     if (time_s) prepared_.poses = posed_.poses();
+}
+
+double MovingScene::end_s() const {
+    double end_s = 0;
+    for (const Animation& animation : scene().animations) end_s = std::max(end_s, animation.end_s());
+    return end_s;
 }
 
 uint32_t MovingScene::set_time(double time_s, Messages& messages) {

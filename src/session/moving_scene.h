@@ -27,6 +27,7 @@ public:
     const Scene& scene() const { return posed_.scene(); }
     const PreparedScene& prepared() const { return prepared_; }
     bool is_animated() const { return posed_.is_animated(); }
+    double end_s() const; // all animations have come to their end, seconds; 0 without any
     std::optional<double> time_s() const { return time_s_; } // none: at rest
 
     /// Goes to `time_s`. Returns the parts (ScenePart) that Session::update_scene must take of prepared(): 0 where the

@@ -288,6 +288,8 @@ Reconstruction& Session::frame() {
     return *reconstruction_;
 }
 
+FrameTones Session::frame_tones() const { return frame().tones(*noisy_frame_); }
+
 Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
     return current_film().display(history_.samples, tone_map, exposure_stops, settings_.transparent);
 }

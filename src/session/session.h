@@ -97,6 +97,8 @@ public:
     /// a function of scene, camera, settings and number of each of these frames, on every device alike. Throws
     /// Error(OutOfMemory, DeviceFault).
     void render_frame(uint32_t number, const ReconstructionSettings& settings);
+    /// Of the last render_frame, for its exposure (session/adaptive_exposure.h). Throws as render_frame.
+    FrameTones frame_tones() const;
     /// Of the last render_frame.
     Reconstruction& frame();
     /// Rays of the last render_frame.

@@ -13,11 +13,11 @@ from cli_run import PROGRAM, CliTest, main, write
 TINY = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--exposure", "0"]
 
 
-def moving_gltf():
-    """A triangle that goes along x by 1 m/s for 2 s and a camera that goes along with another node; a lamp."""
+def moving_gltf(way=2):
+    """A triangle that goes along x by this way in 2 s and a camera that goes along with another node; a lamp."""
     numbers = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0)  # 0: positions
     numbers += struct.pack("<2f", 0, 2)  # 36: times
-    numbers += struct.pack("<6f", 0, 0, 0, 2, 0, 0)  # 44: translations
+    numbers += struct.pack("<6f", 0, 0, 0, way, 0, 0)  # 44: translations
     numbers += struct.pack("<6f", 0, 0, 4, 0, 1, 4)  # 68: of the camera
     views = [(0, 36), (36, 8), (44, 24), (68, 24)]
     uri = "data:application/octet-stream;base64," + base64.b64encode(numbers).decode()

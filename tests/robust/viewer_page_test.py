@@ -5,12 +5,15 @@ does what its help says. Skipped where there is no Chromium."""
 import json
 import os
 import re
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 from chromium import Chromium, find_chromium
-from cli_run import SANITIZED, main
+from cli_frames_test import moving_gltf
+from cli_run import PROGRAM, SANITIZED, main, write
 from viewer_client import Client, Tunnel, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
@@ -117,7 +120,13 @@ class Page(unittest.TestCase):
         page.click(640, 690, count=2)
         page.until("document.querySelector('#notice').innerText.includes('turns about')")
         page.click(640, 690, modifiers=1)
-        page.until("document.querySelector('#notice').innerText.includes('in focus')")
+        page.until("document.querySelector('#notice').innerText.includes('in focus:')")
+        page.click(640, 690, count=2)
+        page.until("document.querySelector('#notice').innerText.includes('turns about')")
+        page.value("[...document.querySelectorAll('#buttons button')].find((b) => b.textContent == 'Focus').click()")
+        page.until("document.querySelector('#notice').innerText.includes('click on what')")
+        page.click(640, 690)
+        page.until("document.querySelector('#notice').innerText.includes('in focus:')")
         page.click(5, 5)
 
     def test_fingers_turn_and_zoom(self):
@@ -155,13 +164,74 @@ class Page(unittest.TestCase):
         self.set_to("max_depth", 3)
         page.key("KeyT", "t")
         self.set_to("mode", "real time")
-        # The page has heard of it too: it takes pictures while another state is on its way.
-        page.until("document.querySelector('#setting-mode').value == 'real time'")
         page.key("KeyT", "t")
         self.set_to("mode", "reference")
+        # However soon the next comes: what the page says is older than what was pressed does not count.
+        before = page.value("Number(document.querySelector('#setting-exposure').value)")
+        for _ in range(3):
+            page.key("KeyT", "t")
+            page.key("BracketRight", "]")
+        self.set_to("mode", "real time")
+        page.until(f"Math.abs(document.querySelector('#setting-exposure').value - {before} - 0.75) < 1e-6")
+        page.key("KeyT", "t")
+        self.set_to("mode", "reference")
+        for _ in range(3):
+            page.key("BracketLeft", "[")
         page.value("const f = document.querySelector('#setting-walk'); f.value = 'while-while';"
                    "f.dispatchEvent(new Event('change'))")
         self.set_to("walk", "while-while")
+
+    def choose(self, name, value):
+        self.browser.value(f"(() => {{ const f = document.querySelector('#setting-{name}'); f.value = '{value}';"
+                           "f.dispatchEvent(new Event('change')); })()")
+        self.set_to(name, value)
+
+    def test_the_exposure_is_found_or_fixed_and_layers_of_the_reconstruction_show(self):
+        page = self.browser
+        self.choose("exposed", "fixed")
+        page.until("document.querySelector('#setting-exposure').value != '0'")
+        fixed = page.value("document.querySelector('#setting-exposure').value")
+        page.until(f"document.querySelector('#readings').innerText.includes('{float(fixed):+.2f} stops')")
+        self.choose("exposed", "auto")
+        page.until("document.querySelector('#setting-exposure').value == '0'")
+        for layer, says in [("motion", "pixels a frame"), ("deviation", "deviation of the signals")]:
+            self.choose("layer", layer)
+            page.until(f"document.querySelector('#readings').innerText.includes('{says}') && document.body.dataset.phase == 'done'")
+            self.moved(lambda: page.drag("left", 40, 0))
+        self.choose("layer", "picture")
+
+    def test_where_nothing_moves_there_is_no_time_line_until_a_path_is_played(self):
+        page = self.browser
+        self.assertTrue(page.value("document.querySelector('#time').hidden"))
+        self.moved(lambda: page.drag("left", 60, 20))
+        add = "document.querySelector('#key-add').click()"
+        page.value(add)
+        page.until("document.querySelectorAll('#keys .key').length == 1")
+        self.moved(lambda: page.drag("left", 60, 20))
+        page.value("document.querySelector('#key-time').value = '1.5'; " + add)
+        page.until("document.querySelectorAll('#keys .key').length == 2")
+        self.moved(lambda: page.drag("left", 60, 20))
+        page.value("document.querySelector('#key-time').value = '9'; " + add)
+        page.until("document.querySelectorAll('#keys .key').length == 3")
+        page.value("document.querySelector('#key-remove-2').click()")
+        page.until("document.querySelectorAll('#keys .key').length == 2 && document.querySelector('#keys').innerText.includes('1.5 s')")
+        page.value("document.querySelector('#path-download').click()")
+        file = os.path.join(page.downloads, "camera-path.json")
+        page.wait(lambda: os.path.exists(file))
+        page.value("document.querySelector('#path-play').click()")
+        page.until("!document.querySelector('#time').hidden && document.body.dataset.plays == 'true'")
+        page.key("Space", " ")
+        page.until("document.body.dataset.plays == 'false' && document.body.dataset.phase == 'done'")
+        done = self.eye.done(lambda s: not s["clock"]["on"] and s["clock"]["end"] > 0)
+        rendered = render("cornell-box", "--camera-path", file, "--time", done["clock"]["at"], "--max-depth",
+                          done["values"]["max_depth"], size="160x120", spp=2)
+        self.assertEqual(done["hash"], rendered)
+        page.drag("left", 60, 20)  # one's own
+        page.until("document.querySelector('#time').hidden")
+        for _ in range(2):
+            page.value("document.querySelector('#key-remove-0').click()")
+            time.sleep(0.1)
+        page.until("document.querySelectorAll('#keys .key').length == 0")
 
     def test_panel_help_and_flags(self):
         page = self.browser
@@ -197,6 +267,41 @@ class Page(unittest.TestCase):
         if not SANITIZED:  # which keeps freed memory
             self.assertLess(self.viewer.resident_bytes() - resident, 32 << 20)
         print(f"input to picture: median {sorted(waits)[len(waits) // 2]} ms of {len(waits)}", file=sys.stderr)
+
+
+class Moving(unittest.TestCase):
+    def test_the_time_line_and_space_steer_time_and_r_gives_the_camera_back(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "m.gltf")
+            write(scene, moving_gltf())
+            with Viewer(scene=scene, size="160x120", spp=2) as viewer, Chromium() as page:
+                page.go(viewer.address)
+                page.until("document.body.dataset.plays == 'true' && !document.querySelector('#time').hidden")
+                page.until("document.querySelector('#time-text').innerText.endsWith('of 2.00')")
+                page.key("Space", " ")
+                page.until("document.body.dataset.plays == 'false' && document.body.dataset.phase == 'done'")
+                at = page.value("document.body.dataset.time")
+                self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--time", at, size="160x120", spp=2))
+                page.value("const t = document.querySelector('#time-at'); t.focus(); t.value = '0.5';"
+                           "t.dispatchEvent(new Event('input')); t.dispatchEvent(new Event('change'))")
+                scrubbed = page.until("document.body.dataset.flags.endsWith('--time 0.5')"
+                                      "&& document.body.dataset.phase == 'done' && document.body.dataset.hash")
+                self.assertEqual(scrubbed, render(scene, "--time", "0.5", size="160x120", spp=2))
+                page.key("KeyW", "w", 0.2)
+                page.until(f"document.body.dataset.phase == 'done' && document.body.dataset.hash != '{scrubbed}'")
+                page.key("KeyR", "r")
+                page.until(f"document.body.dataset.phase == 'done' && document.body.dataset.hash == '{scrubbed}'")
+                page.value("const l = document.querySelector('#time-loops'); l.checked = false; l.dispatchEvent(new Event('change'));"
+                           "const v = document.querySelector('#time-speed'); v.value = '4'; v.dispatchEvent(new Event('change'));"
+                           "document.querySelector('#play').click()")
+                page.until("document.body.dataset.time == '2' && document.body.dataset.plays == 'false'")
+                page.key("Space", " ")  # from its beginning
+                page.key("Space", " ")  # and at once again: each counts
+                page.until("document.body.dataset.time < 2 && document.body.dataset.plays == 'false'"
+                           "&& document.body.dataset.phase == 'done'")
+                with Client(viewer, key="eye") as eye:
+                    self.assertLess(eye.done()["clock"]["at"], 2)
+                self.assertEqual(page.errors, [])
 
 
 class Comings(unittest.TestCase):
@@ -235,6 +340,14 @@ class Comings(unittest.TestCase):
             second.until("document.body.dataset.steers == 'true'")
             first.until("document.body.dataset.steers == 'false'")
             self.assertEqual(first.errors + second.errors, [])
+
+
+def render(scene, *arguments, size, spp):
+    """The film's hash of a picture by pertev render."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([PROGRAM, "render", scene, "-o", os.path.join(folder, "x.png"), "--size", size, "--spp", str(spp),
+                               "--device", "cpu", "--json", *map(str, arguments)], check=True, stdout=subprocess.PIPE)
+    return next(event["hash"] for event in map(json.loads, done.stdout.splitlines()) if event["event"] == "done")
 
 
 def numbers(flags):

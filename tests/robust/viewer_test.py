@@ -50,7 +50,7 @@ class Access(WithViewer):
 
     def test_all_files_of_the_page_come_with_the_cookie_and_their_type(self):
         for path, kind in [("/", "text/html"), ("/main.js", "text/javascript"), ("/link.js", "text/javascript"),
-                           ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/style.css", "text/css"),
+                           ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/time.js", "text/javascript"), ("/style.css", "text/css"),
                            ("/icon.svg", "image/svg+xml")]:
             status, headers, body = self.get(path)
             self.assertEqual((status, headers["content-type"].split(";")[0]), (200, kind), path)
@@ -145,7 +145,10 @@ class Fuzzed(WithViewer):
                         "AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n\x81\x80aaaa".encode())
         messages = ['{"type":"orbit","n":1,"dx":0.1,"dy":0.1}', '{"type":"set","n":2,"name":"exposure","value":1}',
                     '{"type":"move","n":1,"right":1,"up":0,"forward":0,"ms":10,"pace":"fast"}',
-                    '{"type":"pick","n":3,"x":0.5,"y":0.5,"use":"orbit"}', '{"type":"ack","frame":1,"ms":1}',
+                    '{"type":"pick","n":3,"x":0.5,"y":0.5,"use":"orbit"}',
+                    '{"type":"play","n":4,"on":true,"loops":false,"speed":2}', '{"type":"time","n":5,"at":1}',
+                    '{"type":"key","n":6,"at":2}', '{"type":"unkey","n":7,"index":0}', '{"type":"follow","n":8}',
+                    '{"type":"ack","frame":1,"ms":1}',
                     '{"type":"set","n":2,"name":"walk","value":"packet"}', '{"type":"hand","to":1}', '{"type":"meter","n":3}']
         client, before = None, 0
         for number in range(FUZZED // 2):
@@ -217,14 +220,45 @@ class Pictures(CliTest):
             whole = client.done()
             seen = set()
             for layer in ["albedo", "normal", "depth", "instances", "triangles", "materials", "heat: nodes",
-                          "heat: triangles"]:
+                          "heat: triangles", "motion", "deviation"]:
                 last = client.set("layer", layer)
                 header, data = client.picture(lambda h, n=last: h["input"] == n and h["kind"] == 2)
                 self.assertEqual((header["width"], header["height"]), (64, 48))
                 seen.add(data)
-            self.assertEqual(len(seen), 8)
+            self.assertEqual(len(seen), 10)
             client.set("layer", "picture")
             self.assertEqual(client.done(lambda s: s["values"]["layer"] == "picture")["hash"], whole["hash"])
+
+    def test_the_exposure_follows_while_moving_and_the_still_picture_is_exposed_as_a_render_is(self):
+        def stops(state):
+            return next(value for _, label, value in state["rows"] if label == "exposed by")
+
+        with Viewer() as viewer, Client(viewer) as client:
+            home = client.done()
+            # Up to the lamp, which leaves little but a wall behind it.
+            last = client.steer(type="move", right=0, up=0.5, forward=1, ms=250, pace="fast")
+            for _ in range(30):
+                last = client.steer(type="look", dx=0.001, dy=0.012)
+                client.picture(lambda h, n=last: h["input"] >= n)
+            png = client.png()
+            state = client.done(lambda s: s["input"] >= last)
+            self.assertNotEqual(stops(state), stops(home))
+            words = state["flags"].replace("'", "").split()
+            self.assertEqual((state["hash"], png), self.rendered(*words))
+            client.set("exposure", -1.5)
+            less = client.done(lambda s: s["values"]["exposure"] == -1.5)
+            self.assertAlmostEqual(float(stops(less).split()[0]), float(stops(state).split()[0]) - 1.5, 5)
+            client.set("exposed", "fixed")
+            fixed = client.done(lambda s: s["values"]["exposed"] == "fixed")
+            self.assertEqual(stops(fixed), stops(less))
+            self.assertAlmostEqual(fixed["values"]["exposure"], float(stops(less).split()[0]), 2)
+            back = client.done(lambda s, n=client.steer(type="home"): s["input"] >= n)
+            self.assertEqual(stops(back), stops(fixed))
+            client.set("exposed", "auto")
+            self.assertEqual(stops(client.done(lambda s: s["values"]["exposed"] == "auto")), stops(home))
+        with Viewer("--exposure", "1") as viewer, Client(viewer) as client:
+            state = client.done()
+            self.assertEqual((stops(state), state["values"]["exposed"]), ("+1.00 stops", "fixed"))
 
     def test_saved_files_are_those_of_a_render(self):
         with Viewer() as viewer:

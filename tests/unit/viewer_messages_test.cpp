@@ -31,6 +31,11 @@ constexpr const char* kGood[] = {
     R"({"type":"ack","frame":4294967295,"ms":12})",
     R"({"type":"ask"})",
     R"({"type":"hand","to":2})",
+    R"({"type":"play","n":19,"on":true,"loops":false,"speed":0.25})",
+    R"({"type":"time","n":20,"at":1.5})",
+    R"({"type":"key","n":21,"at":0})",
+    R"({"type":"unkey","n":22,"index":1})",
+    R"({"type":"follow","n":23})",
 };
 
 } // namespace
@@ -52,6 +57,11 @@ TEST_CASE("every kind of message is read with its values") {
     CHECK(std::get<double>(parse_client_message(kGood[10])->value) == -1.5);
     CHECK(std::get<std::string>(parse_client_message(kGood[11])->value) == "aces");
     CHECK(parse_client_message(kGood[13])->frame == 4294967295u);
+    const auto play = parse_client_message(kGood[16]);
+    CHECK(play->on);
+    CHECK_FALSE(play->loops);
+    CHECK(play->speed == 0.25f);
+    CHECK(parse_client_message(kGood[17])->at == 1.5f);
 }
 
 TEST_CASE("what is not exactly a message is none") {

@@ -7,6 +7,8 @@
 
 #include "apps/viewer/audience.h"
 #include "apps/viewer/frame_pace.h"
+#include "apps/viewer/reference_is_better.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
 
@@ -67,6 +69,33 @@ TEST_CASE("a view that becomes dear makes pictures smaller within a few frames")
     CHECK(frame_time(1.5, pace.scale()) < 0.2);
     CHECK(scaled_side(1, 0.0625f) == 1);
     CHECK(scaled_side(1280, 0.375f) == 480);
+}
+
+TEST_CASE("a picture at rest takes the place of a reconstruction once its own error is the smaller one") {
+    // Grey pictures about a truth of 100; `blur` is what the reconstruction is off by, `noise` a half's deviation.
+    const auto picture = [](uint32_t size, auto value) {
+        Rgba8Image made = {size, size, std::vector<uint8_t>(std::size_t(4) * size * size, 255)};
+        for (std::size_t i = 0; i < std::size_t(size) * size; ++i) {
+            const auto grey = static_cast<uint8_t>(std::clamp(100.5 + value(i), 0.0, 255.0));
+            made.pixels[4 * i] = made.pixels[4 * i + 1] = made.pixels[4 * i + 2] = grey;
+        }
+        return made;
+    };
+    test::Random random(3);
+    const auto better = [&](double noise, double blur) {
+        std::vector<double> a(64 * 64), b(64 * 64);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            a[i] = noise * 1.732 * (random.below(2001) / 1000.0 - 1); // even, of this deviation
+            b[i] = noise * 1.732 * (random.below(2001) / 1000.0 - 1);
+        }
+        const Rgba8Image half = picture(64, [&](std::size_t i) { return a[i]; });
+        const Rgba8Image whole = picture(64, [&](std::size_t i) { return 0.5 * (a[i] + b[i]); });
+        return reference_is_better(whole, half, picture(16, [&](std::size_t i) { return i % 2 == 0 ? blur : -blur; }));
+    };
+    CHECK_FALSE(better(20, 0));  // nothing beats the truth
+    CHECK_FALSE(better(20, 10)); // 14 against what is left of 10 when it is stretched
+    CHECK(better(20, 40));
+    CHECK(better(4, 10));
 }
 
 TEST_CASE("two pictures at most are under way to a client, and acknowledging one takes those before it along") {

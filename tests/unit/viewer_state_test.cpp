@@ -46,6 +46,19 @@ TEST_CASE("every setting takes each of its choices or its bounds, gives it back,
     CHECK_FALSE(set_view_setting(state, "max_depth", 1.5).empty());
 }
 
+TEST_CASE("an exposure that is fixed stays where it was found, and one that is found begins without more or less") {
+    ViewState state;
+    state.finds_exposure = true;
+    state.found_stops = 2;
+    CHECK(set_view_setting(state, "exposure", 0.5) == "");
+    CHECK(set_view_setting(state, "exposed", "fixed") == "");
+    CHECK(state.display.exposure_stops == 2.5f);
+    CHECK(set_view_setting(state, "exposed", "fixed") == "");
+    CHECK(state.display.exposure_stops == 2.5f);
+    CHECK(set_view_setting(state, "exposed", "auto") == "");
+    CHECK(state.display.exposure_stops == 0);
+}
+
 TEST_CASE("structures and walks that go together are chosen together, for all kinds of ray") {
     ViewState state;
     CHECK(set_view_setting(state, "structure", "octree") == "");
@@ -72,10 +85,13 @@ TEST_CASE("texts to the page are JSON") {
     frame.stages = {{"render", 1.5}};
     ViewNumbers numbers;
     numbers.frame = &frame;
+    numbers.flags = "--eye '1'";
+    const CameraPath path = {{{.time_s = 0.5, .eye = {1, 2, 3}, .fov_deg = 40}, {.time_s = 2}}};
+    numbers.path = &path;
     const PickedPoint point;
-    for (const std::string& text : {welcome_text(start), state_text(start.view, numbers, "--eye '1'"),
-                                    state_text(start.view, {}, ""), notice_text("error", "\"quoted\""),
-                                    picked_text(scene, &point, 0.5f, 0.5f), picked_text(scene, nullptr, 0, 0)}) {
+    for (const std::string& text : {welcome_text(start), state_text(start.view, numbers), state_text(start.view, {}),
+                                    notice_text("error", "\"quoted\""), picked_text(scene, &point, 0.5f, 0.5f),
+                                    picked_text(scene, nullptr, 0, 0)}) {
         simdjson::dom::parser parser;
         std::string_view type;
         CHECK_MESSAGE(parser.parse(text)["type"].get_string().get(type) == simdjson::SUCCESS, text);
@@ -89,6 +105,14 @@ TEST_CASE("layers have the colours that they are described by") {
     const Rgba8Image far = show_depth(depth);
     CHECK(far.pixels[0] > far.pixels[4]); // near is bright
     CHECK(far.pixels[8] == 0);
+    float full = 0;
+    const Rgba8Image motion = show_motion({2, 1, 2, {0, 0, -8, 4}}, full);
+    CHECK(full == 8);
+    CHECK(motion.pixels == std::vector<uint8_t>{128, 128, 128, 255, 0, 191, 159, 255});
+    const Rgba8Image deviation = show_deviation({3, 1, 1, {0.1f, 2, 1e4f}}, full);
+    CHECK(full == 2);
+    CHECK(deviation.pixels[0] < deviation.pixels[4]);
+    CHECK(deviation.pixels[4] == deviation.pixels[8]); // what is not known is bright
     const PixelIds ids[] = {{0, 0, 0}, {1, 0, 0}, {0, 5, 0}, {kNoHit, 0, 0}};
     const Rgba8Image instances = show_ids(ids, 4, 1, IdKind::Instance);
     const auto color = [&](std::size_t i) {

@@ -15,8 +15,9 @@ export const kKeys = [
   { keys: ["wheel"], text: "closer, away" },
   { keys: ["click"], text: "what is there: instance, mesh, material" },
   { keys: ["double click"], text: "the centre to turn about" },
-  { keys: ["Alt", "click"], text: "bring into focus" },
+  { keys: ["Alt", "click"], text: "bring into focus (or the panel's Focus, then click)" },
   { keys: ["R"], text: "home: the camera of the start" },
+  { keys: ["Space"], text: "time runs, or stands" },
   { keys: ["T"], text: "at rest: the reference, or real time" },
   { keys: ["[", "]"], text: "exposure down, up" },
   { keys: ["0", "…", "9"], text: "scatterings, at most" },
@@ -49,7 +50,7 @@ export class Controls {
     this.button = -1;
     this.travelled = 0;
     this.drag = { kind: "", dx: 0, dy: 0 };
-    this.clickTimer = 0;
+    this.nextUse = "show"; // of the next click
     addEventListener("keydown", (event) => this.keyDown(event));
     addEventListener("keyup", (event) => this.held.delete(event.code));
     addEventListener("blur", () => this.held.clear());
@@ -67,7 +68,7 @@ export class Controls {
   keyDown(event) {
     if (event.ctrlKey || event.metaKey) return;
     const target = event.target;
-    const types = target instanceof HTMLInputElement;
+    const types = target instanceof HTMLInputElement && target.type === "number";
     if (types && event.code !== "Tab" && event.code !== "F12" && event.code !== "Escape") return;
     if (event.code === "Escape" && target instanceof HTMLElement) target.blur();
     if (event.code in kAxes || event.code.startsWith("Shift") || event.code === "KeyZ") {
@@ -79,7 +80,7 @@ export class Controls {
     const action = this.actions[event.code];
     if (!action || event.altKey) return;
     event.preventDefault();
-    action(event);
+    if (!event.repeat || event.code.startsWith("Bracket")) action(event);
   }
 
   /** Once a frame of the browser.
@@ -150,11 +151,8 @@ export class Controls {
     if (!this.pointers.delete(event.pointerId) || this.pointers.size > 0) return;
     this.canvas.classList.remove("dragging");
     if (event.type !== "pointerup" || this.travelled >= kClickPixels || this.button !== 0) return;
-    if (event.altKey) {
-      this.pick(event, "focus");
-    } else {
-      this.pick(event, "show");
-    }
+    this.pick(event, event.altKey ? "focus" : this.nextUse);
+    this.nextUse = "show";
   }
 
   /** @param {MouseEvent} event @param {string} use */

@@ -77,13 +77,14 @@ export class Link {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  /** Something whose picture is to be waited for.
+  /** Something whose picture is to be waited for. Gives its number.
    * @param {object} message */
   sendInput(message) {
     this.input += 1;
     if (this.sentAt.size > 200) this.sentAt.clear();
     this.sentAt.set(this.input, performance.now());
     this.send({ ...message, n: this.input });
+    return this.input;
   }
 
   /** Milliseconds from the input that this picture shows first; nothing where it shows none.

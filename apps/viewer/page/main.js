@@ -3,6 +3,7 @@
 import { Controls, kKeys } from "./keys.js";
 import { Link } from "./link.js";
 import { Settings, element, make, showRows } from "./panel.js";
+import { Recorder, TimeLine } from "./time.js";
 
 // The key is in a cookie now: it need not stand in the address, where others may read it.
 history.replaceState(null, "", location.pathname);
@@ -23,7 +24,9 @@ let mark = null;
 const shown = { times: /** @type {number[]} */ ([]), latency: 0, lastInput: 0, final: false, samples: 0 };
 
 const link = new Link({ onText: receive, onPicture: receivePicture, onState: showLink });
-const settings = new Settings(element("settings"), (name, value) => link.sendInput({ type: "set", name, value }));
+const settings = new Settings(element("settings"), set);
+const timeLine = new TimeLine(link);
+const recorder = new Recorder(link);
 
 /** Where the picture lies in the window, in CSS pixels. */
 function place() {
@@ -99,7 +102,9 @@ function receive(message) {
         mark = null; // what was picked lies elsewhere now
         draw();
       }
-      settings.show(message.values);
+      settings.tell(message, people.you);
+      timeLine.tell(message, people.you);
+      recorder.show(message.keys);
       showReadings();
       break;
     case "notice":
@@ -142,6 +147,8 @@ function showReadings() {
 function showPeople() {
   const place = element("people"), steers = people.steers === people.you;
   settings.allow(steers);
+  timeLine.allow(steers);
+  recorder.allow(steers);
   document.body.dataset.steers = String(steers);
   place.hidden = people.people.length < 2 && steers;
   place.replaceChildren(make("h2", "Who is here"));
@@ -174,7 +181,8 @@ function buildButtons(cameras) {
   const place = element("buttons");
   place.replaceChildren(
     button("Home", () => link.sendInput({ type: "home" })), button("Meter", () => link.sendInput({ type: "meter" })),
-    button("Copy flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
+    button("Focus", () => { controls.nextUse = "focus"; notify("click on what is to be in focus"); }),
+    button("Flags", copyFlags), button("PNG", () => save("png")), button("EXR", () => save("exr")),
     button("Keys", () => help.showModal()));
   if (cameras.length > 0) {
     const list = document.createElement("select");
@@ -234,8 +242,9 @@ function save(format) {
 
 /** @param {string} name @param {string | number} value */
 function set(name, value) {
+  if (people.steers !== people.you) return notify("somebody else steers");
   if (state) state.values[name] = value; // so that a key pressed twice counts twice before the viewer answers
-  link.sendInput({ type: "set", name, value });
+  settings.wish(name, value, link.sendInput({ type: "set", name, value }));
 }
 
 function toggleHelp() {
@@ -258,6 +267,7 @@ function buildHelp() {
 /** @type {Record<string, (event: KeyboardEvent) => void>} */
 const actions = {
   KeyR: () => link.sendInput({ type: "home" }),
+  Space: () => timeLine.toggle(),
   KeyT: () => state && set("mode", state.values.mode === "reference" ? "real time" : "reference"),
   BracketLeft: () => state && set("exposure", state.values.exposure - 0.25),
   BracketRight: () => state && set("exposure", state.values.exposure + 0.25),
@@ -271,7 +281,7 @@ const actions = {
 };
 for (let depth = 0; depth <= 9; ++depth) actions[`Digit${depth}`] = () => set("max_depth", depth);
 
-new Controls(canvas, link, place, actions);
+const controls = new Controls(canvas, link, place, actions);
 buildHelp();
 addEventListener("resize", draw);
 setInterval(showReadings, 500);

@@ -41,6 +41,28 @@ export function showRows(place, rows) {
   });
 }
 
+/** Something that was asked for: until a state tells of it, older ones that are still on their way do not count. */
+export class Asked {
+  constructor() {
+    this.input = 0;
+    this.at = -Infinity;
+  }
+
+  /** @param {number} input its number */
+  ask(input) {
+    this.input = input;
+    this.at = performance.now();
+  }
+
+  /** @param {{input: number, steerer: number}} state @param {number} you this page's own number */
+  isKnownTo(state, you) {
+    if (performance.now() - this.at > kPatience) return true; // it was not heard: somebody else steers
+    return state.steerer === you && state.input >= this.input;
+  }
+}
+
+const kPatience = 4000; // milliseconds
+
 export class Settings {
   /** @param {HTMLElement} place @param {(name: string, value: string | number) => void} onChange */
   constructor(place, onChange) {
@@ -48,8 +70,8 @@ export class Settings {
     this.onChange = onChange;
     /** @type {Map<string, HTMLInputElement | HTMLSelectElement>} */
     this.fields = new Map();
-    /** @type {Map<string, Setting>} */
-    this.known = new Map();
+    /** @type {Map<string, {asked: Asked, value: string | number}>} */
+    this.wishes = new Map();
   }
 
   /** @param {Setting[]} settings */
@@ -70,13 +92,25 @@ export class Settings {
       row.append(make("span", setting.label), field);
       this.place.append(row);
       this.fields.set(setting.name, field);
-      this.known.set(setting.name, setting);
     }
   }
 
-  /** @param {Record<string, string | number>} values */
-  show(values) {
-    for (const [name, value] of Object.entries(values)) {
+  /** Something was set, by input number `input`.
+   * @param {string} name @param {string | number} value @param {number} input */
+  wish(name, value, input) {
+    const asked = new Asked();
+    asked.ask(input);
+    this.wishes.set(name, { asked, value });
+  }
+
+  /** Values of a state, with what was set since.
+   * @param {any} state @param {number} you */
+  tell(state, you) {
+    for (const [name, { asked, value }] of this.wishes) {
+      if (asked.isKnownTo(state, you)) this.wishes.delete(name);
+      else state.values[name] = value;
+    }
+    for (const [name, value] of Object.entries(state.values)) {
       const field = this.fields.get(name);
       if (!field || field === document.activeElement) continue;
       field.value = typeof value === "number" ? String(Number(value.toPrecision(6))) : value;

@@ -1,0 +1,203 @@
+#include "apps/viewer/view_camera.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "math/portable_math.h"
+#include "session/choose_camera.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kRadiansPerDegree = kPi / 180.0f;
+constexpr float kLeastFov = 0.01f, kMostFov = 179; // degrees, as a path's file may have them
+constexpr float kFarthest = 1e9f;                  // metres that anybody may go
+
+bool is_finite_place(const Transform& m) {
+    return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
+}
+
+/// `now`, where the lens was as `before` had it: what was set by hand stays.
+void follow(float& lens, float before, float now) {
+    if (lens == before) lens = now;
+}
+
+} // namespace
+
+ViewCamera::ViewCamera(const StartCamera& start, const Scene& scene)
+    : start_(start), scene_(scene), base_(start.camera), pose_(start.pose), name_(start.name), path_(start.path),
+      is_path_of_file_(!start.path.keys.empty()) {
+    if (is_path_of_file_) guide_ = Guide::Path;
+    for (CameraKey& key : path_.keys) { // so that keys of one's own can join them
+        if (key.fov_deg == 0) key.fov_deg = degrees_for(start.camera.fov_y);
+    }
+}
+
+Camera ViewCamera::camera(const Camera& lens) const {
+    Camera camera = base_;
+    camera.fov_y = lens.fov_y;
+    camera.aperture_radius = lens.aperture_radius;
+    camera.focus_distance = lens.focus_distance;
+    return is_own_ ? camera_at(pose_, camera) : camera;
+}
+
+bool ViewCamera::is_said_by_pose() const {
+    return is_own_ || look_at(pose_.eye, pose_.target, pose_.up) == base_.world_from_camera;
+}
+
+bool ViewCamera::moves_with_time() const {
+    if (is_own_) return false;
+    switch (guide_) {
+    case Guide::Start:
+        return start_.moves;
+    case Guide::SceneCamera:
+        return !scene_.animations.empty();
+    case Guide::Path:
+        return path_.keys.size() > 1;
+    }
+    return false;
+}
+
+void ViewCamera::place(const CameraSource& source, Camera& lens) {
+    const Camera before = base_;
+    base_ = source.camera;
+    pose_ = pose_of(base_, source.target, source.up, length(pose_.target - pose_.eye));
+    is_own_ = false;
+    follow(lens.fov_y, before.fov_y, base_.fov_y);
+    follow(lens.aperture_radius, before.aperture_radius, base_.aperture_radius);
+    follow(lens.focus_distance, before.focus_distance, base_.focus_distance);
+}
+
+CameraSource ViewCamera::on_path(double time_s) const {
+    const CameraKey key = sample_path(path_, time_s);
+    CameraSource source = {.camera = start_.camera, .name = {}, .target = key.target, .up = key.up};
+    source.camera.world_from_camera = look_at(key.eye, key.target, key.up);
+    source.camera.fov_y = key.fov_deg * kRadiansPerDegree;
+    source.camera.focus_distance = start_.focus_m.value_or(length(key.target - key.eye));
+    return source;
+}
+
+void ViewCamera::go_to(std::optional<double> time_s, Camera& lens) {
+    if (is_own_) return;
+    switch (guide_) {
+    case Guide::Start:
+        if (start_.at && time_s) place(start_.at(*time_s), lens);
+        return;
+    case Guide::SceneCamera:
+        if (!(scene_.cameras[index_] == base_)) place({.camera = scene_.cameras[index_]}, lens);
+        return;
+    case Guide::Path: {
+        const CameraSource source = on_path(time_s.value_or(path_.keys.front().time_s));
+        // Where a path leads through what it looks at, there is no view: it stays at the one before.
+        if (is_finite_place(source.camera.world_from_camera)) place(source, lens);
+        return;
+    }
+    }
+}
+
+void ViewCamera::go_home(std::optional<double> time_s, Camera& lens) {
+    if (is_path_of_file_) {
+        lens = start_.camera;
+        follow_path(time_s, lens);
+        return;
+    }
+    guide_ = Guide::Start;
+    name_ = start_.name;
+    base_ = lens = start_.camera;
+    pose_ = start_.pose;
+    is_own_ = false;
+    go_to(time_s, lens);
+}
+
+bool ViewCamera::take_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens) {
+    if (index >= scene_.cameras.size()) return false;
+    guide_ = Guide::SceneCamera;
+    index_ = index;
+    name_ = fmt::format("{}", index);
+    pose_ = start_.pose; // how far away it looks
+    place({.camera = scene_.cameras[index]}, lens);
+    lens = base_;
+    go_to(time_s, lens);
+    return true;
+}
+
+bool ViewCamera::follow_path(std::optional<double> time_s, Camera& lens) {
+    if (path_.keys.empty()) return false;
+    guide_ = Guide::Path;
+    name_ = start_.name;
+    is_own_ = false;
+    base_ = start_.camera;
+    pose_ = start_.pose;
+    go_to(time_s, lens);
+    lens.fov_y = base_.fov_y; // keys say these
+    lens.focus_distance = base_.focus_distance;
+    return true;
+}
+
+void ViewCamera::step(const ClientMessage& message, const Camera& lens, float speed) {
+    const Pose before = pose_;
+    const bool is_flat = base_.projection == Projection::Orthographic;
+    const float height = is_flat ? base_.ortho_height : 2 * tan(0.5f * lens.fov_y);
+    if (message.kind == MessageKind::Move) {
+        const float metres = metres_of(message, speed);
+        pose_ = fly(pose_, metres * message.right, metres * message.up, metres * message.forward);
+    } else if (message.kind == MessageKind::Orbit) {
+        pose_ = orbit(pose_, message.dx, message.dy);
+    } else if (message.kind == MessageKind::Look) {
+        pose_ = look(pose_, message.dx, message.dy, is_flat ? 1.0f : lens.fov_y);
+    } else if (message.kind == MessageKind::Pan) {
+        pose_ = pan(pose_, message.dx, message.dy, height, is_flat);
+    } else if (is_flat) {
+        base_.ortho_height = clamp(base_.ortho_height * pow(6.0f / 7.0f, message.steps), 1e-6f, 1e12f);
+    } else {
+        pose_ = zoom(pose_, message.steps);
+    }
+    const bool is_good = is_finite_place(look_at(pose_.eye, pose_.target, pose_.up)) &&
+                         max_component(abs(pose_.eye)) < kFarthest && max_component(abs(pose_.target)) < kFarthest;
+    if (!is_good) pose_ = before; // a step too far
+    is_own_ = true;
+}
+
+bool ViewCamera::add_key(float time_s, const Camera& lens) {
+    const CameraKey key = {.time_s = static_cast<double>(time_s),
+                           .eye = pose_.eye,
+                           .target = pose_.target,
+                           .up = pose_.up,
+                           .fov_deg = clamp(degrees_for(lens.fov_y), kLeastFov, kMostFov)};
+    std::vector<CameraKey>& keys = path_.keys;
+    const auto place = std::ranges::lower_bound(keys, key.time_s, {}, &CameraKey::time_s);
+    if (place != keys.end() && place->time_s == key.time_s) {
+        *place = key;
+    } else if (keys.size() < kMostKeys) {
+        keys.insert(place, key);
+    } else {
+        return false;
+    }
+    is_path_of_file_ = false;
+    return true;
+}
+
+void ViewCamera::remove_key(uint32_t index) {
+    if (index >= path_.keys.size()) return;
+    path_.keys.erase(path_.keys.begin() + index);
+    is_path_of_file_ = false;
+    if (path_.keys.empty() && guide_ == Guide::Path) { // it stays where it is
+        guide_ = Guide::Start;
+        is_own_ = true;
+    }
+}
+
+std::string ViewCamera::flags(const Camera& lens, std::optional<double> time_s) const {
+    const std::string time = time_s ? fmt::format(" --time {}", *time_s) : "";
+    if (!is_said_by_pose() && !name_.empty()) {
+        const Camera* own = scene_camera(name_, scene_);
+        if (own->world_from_camera == base_.world_from_camera && own->projection == base_.projection &&
+            own->ortho_height == base_.ortho_height) {
+            return scene_camera_flags(camera(lens), name_) + time;
+        }
+    }
+    return camera_flags(pose_, camera(lens), name_) + time;
+}
+
+} // namespace pertev

@@ -1,0 +1,163 @@
+// Time in the viewer: how it runs and stands (scene_clock.h), and who leads the camera meanwhile (view_camera.h).
+
+#include <doctest/doctest.h>
+
+#include "apps/viewer/scene_clock.h"
+#include "apps/viewer/view_camera.h"
+#include "session/choose_camera.h"
+
+using namespace pertev;
+
+namespace {
+
+ClientMessage step_forward() { return {.kind = MessageKind::Move, .forward = 1, .seconds = 0.1f}; }
+
+/// A scene with one camera, which an animation may move (where it stands at a time is the test's to say).
+Scene scene_with_camera() {
+    Scene scene;
+    Camera camera;
+    camera.world_from_camera = look_at({0, 1, 5}, {0, 1, 0}, {0, 1, 0});
+    scene.cameras.push_back(camera);
+    scene.animations.emplace_back();
+    return scene;
+}
+
+StartCamera start_at(const Scene& scene) {
+    StartCamera start;
+    start.camera = scene.cameras[0];
+    start.pose = pose_of(start.camera, {}, {}, 5);
+    start.name = "0";
+    start.at = [&scene](double) { return CameraSource{.camera = scene.cameras[0]}; };
+    start.moves = true;
+    return start;
+}
+
+} // namespace
+
+TEST_CASE("time begins at 0, runs at its speed, begins anew at its end or stops there, and goes on from there") {
+    SceneClock clock = {.end_s = 4};
+    clock.advance(1);
+    CHECK_FALSE(clock.time_s.has_value()); // it stands
+    clock.play(true);
+    clock.advance(1);
+    CHECK(clock.time_s == 0);
+    clock.speed = 0.5;
+    clock.advance(3);
+    CHECK(clock.time_s == 1.5);
+    clock.speed = 1;
+    clock.advance(3);
+    CHECK(clock.time_s == 0.5);
+    clock.loops = false;
+    clock.advance(10);
+    CHECK(clock.time_s == 4);
+    CHECK_FALSE(clock.plays);
+    clock.play(true);
+    CHECK(clock.time_s == 0);
+    clock.go_to(9);
+    CHECK(clock.time_s == 4);
+}
+
+TEST_CASE("time moves a camera of the scene until somebody steps; then it is their own until they go home") {
+    Scene scene = scene_with_camera();
+    const StartCamera start = start_at(scene);
+    ViewCamera view(start, scene);
+    Camera lens = start.camera;
+    CHECK(view.moves_with_time());
+    scene.cameras[0].world_from_camera = look_at({1, 1, 5}, {0, 1, 0}, {0, 1, 0});
+    scene.cameras[0].fov_y = 0.5f;
+    view.go_to(1.0, lens);
+    CHECK(view.camera(lens).world_from_camera == scene.cameras[0].world_from_camera);
+    CHECK(lens.fov_y == 0.5f);
+    lens.fov_y = 0.6f; // set by hand: it stays
+    scene.cameras[0].fov_y = 0.4f;
+    view.go_to(1.5, lens);
+    CHECK(lens.fov_y == 0.6f);
+    view.step(step_forward(), lens, 1);
+    CHECK(view.is_own());
+    CHECK_FALSE(view.moves_with_time());
+    const Camera own = view.camera(lens);
+    scene.cameras[0].world_from_camera = look_at({2, 1, 5}, {0, 1, 0}, {0, 1, 0});
+    view.go_to(2.0, lens);
+    CHECK(view.camera(lens) == own);
+    view.go_home(2.0, lens);
+    CHECK(view.camera(lens).world_from_camera == scene.cameras[0].world_from_camera);
+    CHECK(lens.fov_y == 0.4f);
+    CHECK(view.moves_with_time());
+}
+
+TEST_CASE("flags say a camera's place to the bit, or the name of the scene's where words cannot") {
+    Scene scene = scene_with_camera();
+    Transform turned = look_at({0, 1, 5}, {0.3f, 1.1f, 0}, {0, 1, 0});
+    turned.row0.x = std::nextafter(turned.row0.x, 0.0f); // as no look_at has it
+    scene.cameras[0].world_from_camera = turned;
+    const StartCamera start = start_at(scene);
+    ViewCamera view(start, scene);
+    Camera lens = start.camera;
+    CHECK_FALSE(view.is_said_by_pose());
+    CHECK(view.flags(lens, 1.25).starts_with("--camera '0' --fov "));
+    CHECK(view.flags(lens, 1.25).ends_with(" --time 1.25"));
+    view.step(step_forward(), lens, 1);
+    CHECK(view.is_said_by_pose());
+    CHECK(view.flags(lens, {}).find("--eye") != std::string::npos);
+    CHECK(view.flags(lens, {}).find("--time") == std::string::npos);
+}
+
+TEST_CASE("keys that are taken lie in the order of their times, and the camera goes through them to the bit") {
+    const Scene scene = scene_with_camera();
+    const StartCamera start = start_at(scene);
+    ViewCamera view(start, scene);
+    Camera lens = start.camera;
+    CHECK_FALSE(view.follow_path(0.0, lens)); // there is none
+    view.step(step_forward(), lens, 1);
+    const Camera second = view.camera(lens);
+    CHECK(view.add_key(2, lens));
+    view.step(step_forward(), lens, 5);
+    lens.fov_y = 0.5f;
+    const Camera first = view.camera(lens);
+    CHECK(view.add_key(0.5f, lens));
+    REQUIRE(view.path().keys.size() == 2);
+    CHECK(view.path().keys[0].time_s == 0.5);
+    CHECK(view.follow_path(0.5, lens));
+    CHECK(view.moves_with_time());
+    CHECK(view.camera(lens).world_from_camera == first.world_from_camera);
+    CHECK(view.camera(lens).fov_y == first.fov_y);
+    view.go_to(2.0, lens);
+    CHECK(view.camera(lens).world_from_camera == second.world_from_camera);
+    CHECK(view.is_said_by_pose());
+    CHECK(view.add_key(2, lens)); // in place of the one there
+    CHECK(view.path().keys.size() == 2);
+    view.remove_key(7);
+    view.remove_key(0);
+    view.remove_key(0);
+    CHECK(view.path().keys.empty());
+    CHECK(view.camera(lens).world_from_camera == second.world_from_camera); // it stays where it is
+    view.go_home(2.0, lens);
+    CHECK(view.camera(lens).world_from_camera == start.camera.world_from_camera);
+    for (std::size_t i = 0; i < ViewCamera::kMostKeys; ++i) CHECK(view.add_key(static_cast<float>(i), lens));
+    CHECK_FALSE(view.add_key(1e6f, lens));
+    CHECK(view.add_key(3, lens));
+}
+
+TEST_CASE("a path of the start leads the camera, and home is that path") {
+    const Scene scene = scene_with_camera();
+    StartCamera start = start_at(scene);
+    start.path.keys = {{.time_s = 0, .eye = {0, 0, 3}, .target = {0, 0, 0}},
+                       {.time_s = 1, .eye = {0, 0, 1}, .target = {0, 0, 0}},
+                       {.time_s = 2, .eye = {0, 0, -1}, .target = {0, 0, 0}}};
+    start.camera.world_from_camera = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0});
+    ViewCamera view(start, scene);
+    Camera lens = start.camera;
+    CHECK(view.moves_with_time());
+    CHECK(view.path().keys[0].fov_deg > 0); // so that keys can join it
+    view.go_to(1.0, lens);
+    CHECK(view.camera(lens).world_from_camera.translation == Vec3{0, 0, 1});
+    CHECK(view.camera(lens).fov_y == start.camera.fov_y);
+    const Camera before = view.camera(lens);
+    view.go_to(1.5, lens); // through what it looks at: no view
+    CHECK(is_finite(view.camera(lens).world_from_camera.row0));
+    view.go_to(1.0, lens);
+    CHECK(view.camera(lens) == before);
+    view.step(step_forward(), lens, 1);
+    view.go_home(1.0, lens);
+    CHECK(view.camera(lens) == before);
+}
