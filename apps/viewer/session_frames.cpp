@@ -53,6 +53,11 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
 
+Rgba8Image shown_picture(Reconstruction& frame, ToneMap tone_map, float exposure_stops) {
+    const uint8_t* const shown = frame.display(tone_map, exposure_stops);
+    return {frame.width(), frame.height(), {shown, shown + std::size_t(4) * frame.width() * frame.height()}};
+}
+
 } // namespace
 
 SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s)
@@ -141,11 +146,6 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     frame.caption = std::string("black: none; pale yellow: ") + std::to_string(most) +
                     (nodes ? " nodes a camera ray" : " triangles a camera ray");
     return image;
-}
-
-Rgba8Image shown_picture(Reconstruction& frame, ToneMap tone_map, float exposure_stops) {
-    const uint8_t* const shown = frame.display(tone_map, exposure_stops);
-    return {frame.width(), frame.height(), {shown, shown + std::size_t(4) * frame.width() * frame.height()}};
 }
 
 /// What the layer of the last reconstructed frame looks like.
