@@ -12,9 +12,8 @@
 #include "math/rgb.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
-#include "render/camera_view.h"
 #include "render/noisy_frame_view.h"
-#include "render/scene_view.h"
+#include "render/reproject.h"
 
 namespace pertev {
 
@@ -34,21 +33,6 @@ struct SignalsView {
     Float4* diffuse; // rgb, variance
     Float4* gloss;
 };
-
-/// Where a scene's things stood in the frame before: the present ones where nothing has moved.
-struct PreviousScene {
-    const InstanceView* instances;
-    const MeshView* meshes;
-};
-
-struct FrameCameras {
-    CameraView now, before;
-    uint32_t width, height; // pixels, of both frames
-};
-
-HD inline Rgb rgb_of(Float4 a) { return {a.x, a.y, a.z}; }
-HD inline Vec3 vec3_of(Float4 a) { return {a.x, a.y, a.z}; }
-HD inline Float4 with_w(Rgb c, float w) { return {c.r, c.g, c.b, w}; }
 
 /// Least share of light that a signal is divided by.
 inline constexpr float kLeastAlbedo = 0.01f;

@@ -28,6 +28,7 @@
 #include "render/picture_view.h"
 #include "render/prepare_scene.h"
 #include "render/scene_on_device.h"
+#include "restir/restir.h"
 #include "session/render_settings.h"
 
 namespace pertev {
@@ -87,13 +88,14 @@ public:
 
     /// A frame of a sequence: renders sample `number` of each pixel and reconstructs the picture from it and from the
     /// frames since the last cut, each of which had its own scene and camera. The film stays as it is. The frame is
-    /// a function of scene, camera, settings and number of each of these frames, on every device alike. Throws
+    /// a function of scene, camera, settings and number of each of these frames, on every device alike. `restir`:
+    /// nothing is shared by pixels where the path settings ask for less than all light by both strategies. Throws
     /// Error(OutOfMemory, DeviceFault).
-    void render_frame(uint32_t number, const ReconstructionSettings& settings);
+    void render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir = {});
     /// Of the last render_frame.
     const Reconstruction& frame() const;
     /// Rays of the last render_frame.
-    RayCounts frame_rays() const { return frame_rays_; }
+    RayCounts frame_rays() const;
     /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this
     /// depth, and `settings.samples` samples. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
     RenderResult look_aside(const Camera& camera, const RenderSettings& settings);
@@ -114,6 +116,7 @@ private:
     void begin_film();
     void keep_places();
     void take_tracer();
+    Restir* restir_for(const RestirSettings& settings);
     void upload(const PreparedScene& scene, uint32_t parts);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
     void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
@@ -132,6 +135,8 @@ private:
     std::optional<Film> film_, meter_film_;
     std::optional<NoisyFrame> noisy_frame_;
     std::optional<Reconstruction> reconstruction_;
+    std::optional<Restir> restir_;       // of frames that ask for it
+    RestirSettings restir_settings_;     // of the last frame
     Buffer<InstanceView> places_before_; // of instances, in the frame before
     uint32_t instance_count_ = 0;
     bool has_moved_ = false; // since the last frame: places_before_ counts

@@ -1,0 +1,157 @@
+// ReSTIR is without bias: the mean over many frames that know nothing of each other is the path tracer's. With history
+// each frame leans on those before, and its mean stays near.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "formats/read_scene.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr uint32_t kWidth = 40, kHeight = 28, kBlocks = 4; // along each side
+constexpr ReconstructionSettings kAsTheyAre = {
+    .history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false};
+
+struct Case {
+    std::string name;
+    Scene scene;
+    Camera camera;
+};
+
+Case builtin(const std::string& name) {
+    Messages messages;
+    Scene scene = read_scene(name, {}, messages);
+    const Camera camera = scene.cameras.at(0);
+    return {name, std::move(scene), camera};
+}
+
+/// The mixed scene by its panorama alone.
+Case under_a_sky() {
+    Scene scene = make_mixed_scene();
+    scene.lights.clear();
+    for (Material& material : scene.materials) material.emission = {0, 0, 0};
+    return {"sky", std::move(scene), mixed_scene_camera()};
+}
+
+/// The mixed scene by its lamps alone: one that is met and three that are not, on metal, plastic and glass.
+Case glossy() {
+    Scene scene = make_mixed_scene();
+    scene.environment.reset();
+    return {"glossy", std::move(scene), mixed_scene_camera()};
+}
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    all.push_back(builtin("cornell-box"));
+    all.push_back(glossy());
+    all.push_back(under_a_sky());
+    all.push_back(builtin("many-lights"));
+    return all;
+}
+
+RenderSettings small_settings() {
+    RenderSettings settings;
+    settings.width = kWidth, settings.height = kHeight;
+    settings.path.max_depth = 3;
+    return settings;
+}
+
+/// Sums over pixels and channels, of the picture and of its blocks.
+struct Means {
+    double whole = 0;
+    std::vector<double> blocks = std::vector<double>(kBlocks * kBlocks);
+
+    void add(const Image& image, double scale) {
+        for (uint32_t y = 0; y < kHeight; ++y) {
+            for (uint32_t x = 0; x < kWidth; ++x) {
+                double sum = 0;
+                for (int c = 0; c < 3; ++c) sum += static_cast<double>(image.at(x, y)[c]);
+                whole += scale * sum;
+                blocks[y * kBlocks / kHeight * kBlocks + x * kBlocks / kWidth] += scale * sum;
+            }
+        }
+    }
+    /// What the camera's first `samples` rays meet themselves, which is noisy where lamps are small.
+    void take_out_lamps(Session& session, uint32_t samples) {
+        RenderSettings settings = session.settings();
+        settings.path.max_depth = 0;
+        settings.samples = samples;
+        add(session.look_aside(session.camera(), settings).picture, -1);
+    }
+};
+
+/// Of light that surfaces scatter, as the path tracer finds it by `samples`.
+Means scattered(Session& session, uint32_t samples) {
+    Means means;
+    session.cut();
+    session.render(samples);
+    means.add(session.picture(), 1);
+    means.take_out_lamps(session, samples);
+    return means;
+}
+
+/// The same of `frames` frames, of which those before `settled` do not count.
+Means scattered_in_frames(Session& session, const RestirSettings& restir, uint32_t frames, uint32_t settled) {
+    Means means;
+    session.cut();
+    for (uint32_t k = 0; k < settled + frames; ++k) {
+        session.render_frame(k < settled ? frames + k : k - settled, kAsTheyAre, restir);
+        if (k >= settled) means.add(session.frame().picture(), 1.0 / frames);
+    }
+    means.take_out_lamps(session, frames);
+    return means;
+}
+
+void check_equal(const Means& means, const Means& expected, double whole, double block) {
+    CHECK(expected.whole > 0);
+    CHECK(means.whole == doctest::Approx(expected.whole).epsilon(whole));
+    for (std::size_t i = 0; i < means.blocks.size(); ++i) {
+        CAPTURE(i);
+        // Dark blocks hold a few pixels of something bright: also of the blocks' mean.
+        const double least = 0.01 * expected.whole / (kBlocks * kBlocks);
+        CHECK(std::fabs(means.blocks[i] - expected.blocks[i]) <= block * expected.blocks[i] + least);
+    }
+}
+
+} // namespace
+
+TEST_CASE("without history the mean over frames with ReSTIR is the path tracer's") {
+    for (const Case& c : cases()) {
+        CAPTURE(c.name);
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, c.camera, small_settings());
+        // By the same samples: the noise of what ReSTIR leaves to the paths is then the same.
+        const auto frames = static_cast<uint32_t>(effort(384, 8192));
+        const Means expected = scattered(session, frames);
+        for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
+            CAPTURE(static_cast<int>(light));
+            const RestirSettings restir = {.light = light, .radius = 6, .history = 0};
+            check_equal(scattered_in_frames(session, restir, frames, 0), expected, 0.005, 0.03);
+        }
+    }
+}
+
+TEST_CASE("with history the mean over frames with ReSTIR stays near the path tracer's") {
+    for (const Case& c : {builtin("cornell-box"), builtin("many-lights")}) {
+        CAPTURE(c.name);
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, c.camera, small_settings());
+        const auto frames = static_cast<uint32_t>(effort(192, 8192));
+        const Means expected = scattered(session, frames);
+        const RestirSettings restir = {.light = RestirLight::Indirect, .radius = 6};
+        // Frames lean on twenty before, so that their mean is known less well.
+        check_equal(scattered_in_frames(session, restir, frames, 20), expected, 0.015, 0.06);
+    }
+}
