@@ -20,12 +20,13 @@ import sys
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/many-lights/many-lights.gltf"
 SWARMS, TRIANGLES = 100, 100
 HALF_WIDTH, HEIGHT, HALF_LENGTH = 8.0, 6.0, 12.0
-SIZE = 0.035  # about the length of a triangle's edges
-EMISSION = 120.0  # W/(sr m2), of the brightest channel
+RADIUS = 0.4  # of a swarm
+SIZE = 0.015  # about the length of a triangle's edges
+EMISSION = 800.0  # W/(sr m2), of the brightest channel
 
 
 def swarm(random_):
-    """Corners of triangles within a ball of radius 1.2, turned every way."""
+    """Corners of triangles within a ball, turned every way."""
     corners = []
     for _ in range(TRIANGLES):
         while True:
@@ -33,8 +34,17 @@ def swarm(random_):
             if sum(c * c for c in centre) <= 1:
                 break
         for _ in range(3):
-            corners.append([1.2 * c + random_.uniform(-SIZE, SIZE) for c in centre])
+            corners.append([RADIUS * c + random_.uniform(-SIZE, SIZE) for c in centre])
     return corners
+
+
+def place_apart(random_, places):
+    """A place in the hall that is apart from the others, so that no ball reaches into another."""
+    while True:
+        at = [random_.uniform(-7.3, 7.3), random_.uniform(0.6, 5.4), random_.uniform(-11.3, 7)]
+        if all(math.dist(at, other) > 2 * RADIUS for other in places):
+            places.append(at)
+            return at
 
 
 def box(low, high, inward=False):
@@ -122,13 +132,14 @@ def make():
                                     ("boxes", boxes, surface((0.5, 0.5, 0.55), 0.7))):
         document.nodes.append({"name": name, "mesh": document.mesh(name, document.positions(corners), material)})
     lights = document.positions(swarm(random_))
+    places = []
     for k in range(SWARMS):
         color = [round(c, 4) for c in colorsys.hsv_to_rgb(random_.random(), random_.uniform(0.55, 0.95), 1)]
         black = surface((0, 0, 0), 1)
         mesh = document.mesh(f"swarm {k}", lights, {
             **black, "emissiveFactor": color, "doubleSided": True,
             "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": EMISSION}}})
-        at = [random_.uniform(-6.5, 6.5), random_.uniform(1.5, 4.6), random_.uniform(-10.5, 8)]
+        at = place_apart(random_, places)
         half = 0.5 * random_.uniform(0, 2 * math.pi)
         document.nodes.append({
             "name": f"swarm {k}", "mesh": mesh, "translation": [round(c, 4) for c in at],

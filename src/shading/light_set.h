@@ -140,8 +140,8 @@ HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float dist
     return falloff;
 }
 
-/// The place `b` (weights of the second and third vertex) on triangle light `light` as sample_light would have drawn it.
-/// False where nothing arrives.
+/// The place `b` (weights of the second and third vertex) on triangle light `light` as sample_light would have drawn
+/// it. False where nothing arrives.
 template <bool kTextures>
 HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, Vec3 from_point, Vec2 b,
                                  LightSample& sample) {

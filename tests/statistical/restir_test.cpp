@@ -16,17 +16,17 @@ using namespace pertev::test;
 
 namespace {
 
-constexpr uint32_t kWidth = 40, kHeight = 28, kBlocks = 4; // along each side
+constexpr uint32_t kRestirWidth = 40, kRestirHeight = 28, kRestirBlocks = 4; // along each side
 constexpr ReconstructionSettings kAsTheyAre = {
     .history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false};
 
-struct Case {
+struct RestirCase {
     std::string name;
     Scene scene;
     Camera camera;
 };
 
-Case builtin(const std::string& name) {
+RestirCase builtin_case(const std::string& name) {
     Messages messages;
     Scene scene = read_scene(name, {}, messages);
     const Camera camera = scene.cameras.at(0);
@@ -34,7 +34,7 @@ Case builtin(const std::string& name) {
 }
 
 /// The mixed scene by its panorama alone.
-Case under_a_sky() {
+RestirCase sky_case() {
     Scene scene = make_mixed_scene();
     scene.lights.clear();
     for (Material& material : scene.materials) material.emission = {0, 0, 0};
@@ -42,40 +42,41 @@ Case under_a_sky() {
 }
 
 /// The mixed scene by its lamps alone: one that is met and three that are not, on metal, plastic and glass.
-Case glossy() {
+RestirCase glossy_case() {
     Scene scene = make_mixed_scene();
     scene.environment.reset();
     return {"glossy", std::move(scene), mixed_scene_camera()};
 }
 
-std::vector<Case> cases() {
-    std::vector<Case> all;
-    all.push_back(builtin("cornell-box"));
-    all.push_back(glossy());
-    all.push_back(under_a_sky());
-    all.push_back(builtin("many-lights"));
+std::vector<RestirCase> restir_cases() {
+    std::vector<RestirCase> all;
+    all.push_back(builtin_case("cornell-box"));
+    all.push_back(glossy_case());
+    all.push_back(sky_case());
+    all.push_back(builtin_case("many-lights"));
     return all;
 }
 
-RenderSettings small_settings() {
+RenderSettings restir_settings() {
     RenderSettings settings;
-    settings.width = kWidth, settings.height = kHeight;
+    settings.width = kRestirWidth, settings.height = kRestirHeight;
     settings.path.max_depth = 3;
     return settings;
 }
 
 /// Sums over pixels and channels, of the picture and of its blocks.
-struct Means {
+struct BlockMeans {
     double whole = 0;
-    std::vector<double> blocks = std::vector<double>(kBlocks * kBlocks);
+    std::vector<double> blocks = std::vector<double>(kRestirBlocks * kRestirBlocks);
 
     void add(const Image& image, double scale) {
-        for (uint32_t y = 0; y < kHeight; ++y) {
-            for (uint32_t x = 0; x < kWidth; ++x) {
+        for (uint32_t y = 0; y < kRestirHeight; ++y) {
+            for (uint32_t x = 0; x < kRestirWidth; ++x) {
                 double sum = 0;
                 for (int c = 0; c < 3; ++c) sum += static_cast<double>(image.at(x, y)[c]);
                 whole += scale * sum;
-                blocks[y * kBlocks / kHeight * kBlocks + x * kBlocks / kWidth] += scale * sum;
+                blocks[y * kRestirBlocks / kRestirHeight * kRestirBlocks + x * kRestirBlocks / kRestirWidth] +=
+                    scale * sum;
             }
         }
     }
@@ -89,8 +90,8 @@ struct Means {
 };
 
 /// Of light that surfaces scatter, as the path tracer finds it by `samples`.
-Means scattered(Session& session, uint32_t samples) {
-    Means means;
+BlockMeans scattered_light(Session& session, uint32_t samples) {
+    BlockMeans means;
     session.cut();
     session.render(samples);
     means.add(session.picture(), 1);
@@ -99,8 +100,9 @@ Means scattered(Session& session, uint32_t samples) {
 }
 
 /// The same of `frames` frames, of which those before `settled` do not count.
-Means scattered_in_frames(Session& session, const RestirSettings& restir, uint32_t frames, uint32_t settled) {
-    Means means;
+BlockMeans scattered_light_in_frames(Session& session, const RestirSettings& restir, uint32_t frames,
+                                     uint32_t settled) {
+    BlockMeans means;
     session.cut();
     for (uint32_t k = 0; k < settled + frames; ++k) {
         session.render_frame(k < settled ? frames + k : k - settled, kAsTheyAre, restir);
@@ -110,13 +112,13 @@ Means scattered_in_frames(Session& session, const RestirSettings& restir, uint32
     return means;
 }
 
-void check_equal(const Means& means, const Means& expected, double whole, double block) {
+void check_equal_light(const BlockMeans& means, const BlockMeans& expected, double whole, double block) {
     CHECK(expected.whole > 0);
     CHECK(means.whole == doctest::Approx(expected.whole).epsilon(whole));
     for (std::size_t i = 0; i < means.blocks.size(); ++i) {
         CAPTURE(i);
         // Dark blocks hold a few pixels of something bright: also of the blocks' mean.
-        const double least = 0.01 * expected.whole / (kBlocks * kBlocks);
+        const double least = 0.01 * expected.whole / (kRestirBlocks * kRestirBlocks);
         CHECK(std::fabs(means.blocks[i] - expected.blocks[i]) <= block * expected.blocks[i] + least);
     }
 }
@@ -124,34 +126,34 @@ void check_equal(const Means& means, const Means& expected, double whole, double
 } // namespace
 
 TEST_CASE("without history the mean over frames with ReSTIR is the path tracer's") {
-    for (const Case& c : cases()) {
+    for (const RestirCase& c : restir_cases()) {
         CAPTURE(c.name);
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
         Queue queue = queue_asked_for();
-        Session session(queue, prepared, c.camera, small_settings());
+        Session session(queue, prepared, c.camera, restir_settings());
         // By the same samples: the noise of what ReSTIR leaves to the paths is then the same.
         const auto frames = static_cast<uint32_t>(effort(384, 8192));
-        const Means expected = scattered(session, frames);
+        const BlockMeans expected = scattered_light(session, frames);
         for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
             CAPTURE(static_cast<int>(light));
             const RestirSettings restir = {.light = light, .radius = 6, .history = 0};
-            check_equal(scattered_in_frames(session, restir, frames, 0), expected, 0.005, 0.03);
+            check_equal_light(scattered_light_in_frames(session, restir, frames, 0), expected, 0.005, 0.03);
         }
     }
 }
 
 TEST_CASE("with history the mean over frames with ReSTIR stays near the path tracer's") {
-    for (const Case& c : {builtin("cornell-box"), builtin("many-lights")}) {
+    for (const RestirCase& c : {builtin_case("cornell-box"), builtin_case("many-lights")}) {
         CAPTURE(c.name);
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
         Queue queue = queue_asked_for();
-        Session session(queue, prepared, c.camera, small_settings());
+        Session session(queue, prepared, c.camera, restir_settings());
         const auto frames = static_cast<uint32_t>(effort(192, 8192));
-        const Means expected = scattered(session, frames);
+        const BlockMeans expected = scattered_light(session, frames);
         const RestirSettings restir = {.light = RestirLight::Indirect, .radius = 6};
         // Frames lean on twenty before, so that their mean is known less well.
-        check_equal(scattered_in_frames(session, restir, frames, 20), expected, 0.015, 0.06);
+        check_equal_light(scattered_light_in_frames(session, restir, frames, 20), expected, 0.015, 0.06);
     }
 }

@@ -11,7 +11,7 @@ using namespace pertev::test;
 namespace {
 
 /// Two squares of lamps, a point light, a directional one, and a sky of 4 x 2 pixels.
-Scene make_lamps() {
+Scene make_kept_lamps() {
     Scene scene;
     add_emitter(scene, make_square(2), {1, 2, 3}, make_translation({0, 3, 0}));
     add_emitter(scene, make_square(1), {4, 1, 1}, make_translation({2, 2, 1}));
@@ -26,7 +26,7 @@ Scene make_lamps() {
 } // namespace
 
 TEST_CASE("a light that is found again at its place is the one that was drawn") {
-    const Lights lights(make_lamps());
+    const Lights lights(make_kept_lamps());
     Random random(3);
     uint32_t triangles = 0, punctual = 0, sky = 0;
     const Vec3 from = {0.3f, 0.2f, -0.4f};
@@ -63,12 +63,12 @@ TEST_CASE("a light that is found again at its place is the one that was drawn") 
 }
 
 TEST_CASE("nothing arrives from nowhere, nor from a lamp that is none any more") {
-    const Lights lights(make_lamps());
+    const Lights lights(make_kept_lamps());
     LightSample sample;
     float measure = 0;
     CHECK_FALSE(find_light(lights.view, {}, {0, 0, 0}, sample, measure));
     CHECK_FALSE(find_light(lights.view, {kPunctualPlace, 2, 0, 0}, {0, 0, 0}, sample, measure));
-    Scene dark = make_lamps();
+    Scene dark = make_kept_lamps();
     dark.materials[1].emission = {0, 0, 0};
     CHECK_FALSE(find_light(Lights(dark).view, {1, 0, 0.2f, 0.2f}, {2, 0, 1}, sample, measure));
 }
