@@ -41,11 +41,17 @@ RestirCase sky_case() {
     return {"sky", std::move(scene), mixed_scene_camera()};
 }
 
-/// The mixed scene by its lamps alone: one that is met and three that are not, on metal, plastic and glass.
+/// The Cornell box with walls of rough plastic and blocks of metal.
 RestirCase glossy_case() {
-    Scene scene = make_mixed_scene();
-    scene.environment.reset();
-    return {"glossy", std::move(scene), mixed_scene_camera()};
+    RestirCase box = builtin_case("cornell-box");
+    box.name = "glossy";
+    for (std::size_t i = 0; i < box.scene.materials.size(); ++i) {
+        Material& material = box.scene.materials[i];
+        material.kind = MaterialKind::MetallicRoughness;
+        material.metallic = i == 0 ? 0.8f : 0.0f;
+        material.roughness = 0.3f;
+    }
+    return box;
 }
 
 std::vector<RestirCase> restir_cases() {
