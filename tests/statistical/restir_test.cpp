@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/read_scene.h"
+#include "render/update_scene.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -162,4 +163,33 @@ TEST_CASE("with history the mean over frames with ReSTIR stays near the path tra
         // Frames lean on twenty before, so that their mean is known less well.
         check_equal_light(scattered_light_in_frames(session, restir, frames, 20), expected, 0.015, 0.06);
     }
+}
+
+TEST_CASE("while a lamp moves the mean over frames with ReSTIR stays near the path tracer's") {
+    constexpr uint32_t kMoving = 48;
+    const auto mean_of_motion = [&](const RestirSettings& restir) {
+        Messages messages;
+        RestirCase box = builtin_case("cornell-box");
+        const uint32_t lamp = static_cast<uint32_t>(box.scene.instances.size() - 1);
+        PreparedScene prepared = prepare_scene(box.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, box.camera, restir_settings());
+        BlockMeans means;
+        for (uint32_t k = 0; k < kMoving; ++k) {
+            if (k > 0) {
+                box.scene.instances[lamp].world_from_local.translation += Vec3{0.002f, -0.003f, -0.002f};
+                SceneUpdate update;
+                update.moved_instances = {lamp};
+                prepared = update_scene(prepared, box.scene, update, messages);
+                session.update_scene(prepared, parts_of(update));
+            }
+            session.render_frame(k, kAsTheyAre, restir);
+            means.add(session.frame().picture(), 1.0 / kMoving);
+        }
+        return means;
+    };
+    const BlockMeans expected = mean_of_motion({});
+    check_equal_light(mean_of_motion({.light = RestirLight::Indirect, .radius = 6}), expected, 0.03, 0.25);
+    check_equal_light(mean_of_motion({.light = RestirLight::Indirect, .radius = 6, .history = 0}), expected, 0.03,
+                      0.25);
 }
