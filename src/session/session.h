@@ -88,8 +88,8 @@ public:
 
     /// A frame of a sequence: renders sample `number` of each pixel and reconstructs the picture from it and from the
     /// frames since the last cut, each of which had its own scene and camera. The film stays as it is. The frame is
-    /// a function of scene, camera, settings and number of each of these frames, on every device alike. `restir`:
-    /// nothing is shared by pixels where the path settings ask for less than all light by both strategies. Throws
+    /// a function of scene, camera, settings and number of each of these frames, on every device alike. `restir` is
+    /// off where the path settings ask for indirect light alone, or find lights by one strategy alone. Throws
     /// Error(OutOfMemory, DeviceFault).
     void render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir = {});
     /// Of the last render_frame.
