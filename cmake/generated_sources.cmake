@@ -1,7 +1,8 @@
 # Sources that the build writes: the version (looked at in every build) and the built-in scenes.
 
 set(PERTEV_GENERATED_DIR ${PROJECT_BINARY_DIR}/generated)
-set(PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/cornell-box/cornell-box.gltf)
+set(PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/cornell-box/cornell-box.gltf
+    ${PROJECT_SOURCE_DIR}/scenes/many-lights/many-lights.gltf)
 
 add_custom_target(pertev_version BYPRODUCTS ${PERTEV_GENERATED_DIR}/version.cpp
   COMMAND ${CMAKE_COMMAND} -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}

@@ -28,6 +28,7 @@ ALLOWED = {
 }
 ALLOWED["integrators"] = ALLOWED["render"] | {"render"}
 ALLOWED["denoise"] = ALLOWED["render"] | {"render"}
+ALLOWED["restir"] = ALLOWED["render"] | {"render"}
 ALLOWED["session"] = set(ALLOWED)
 ALLOWED["lab"] = set(ALLOWED)
 
@@ -119,6 +120,8 @@ CASES = [
     ("integrators/integrator.h", '#include "formats/read_scene.h"', False),
     ("denoise/filter.h", '#include "render/film.h"', True),
     ("denoise/filter.h", '#include "integrators/integrator.h"', False),
+    ("restir/reservoir.h", '#include "render/surface.h"', True),
+    ("restir/reservoir.h", '#include "denoise/filter.h"', False),
     ("session/open.cpp", '#include "formats/read_scene.h"', True),
     ("session/open.cpp", '#include "lab/report.h"', False),
     ("math/vec3.h", '#include "math/vec3.h"', False),

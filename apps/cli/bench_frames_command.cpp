@@ -14,6 +14,7 @@
 #include "base/limits.h"
 #include "device/device_timer.h"
 #include "image/flip.h"
+#include "image/metrics.h"
 #include "image/picture_hash.h"
 #include "image/write_png.h"
 #include "math/portable_math.h"
@@ -28,7 +29,8 @@ struct FramesFlags {
     bool still = false;
     ReconstructionFlags reconstruction;
     std::string write;
-    uint32_t reference = 0;
+    uint32_t reference = 0, restir_history = RestirSettings{}.history;
+    std::string restir{name_of(RestirLight::Off)};
 };
 
 /// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
@@ -58,6 +60,9 @@ struct FrameFigures {
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
     const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
+    RestirSettings restir;
+    restir.light = restir_named(flags.restir).value();
+    restir.history = flags.restir_history;
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction;
     FrameFigures figures;
@@ -66,7 +71,7 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         throw_if_interrupted();
         timer.start();
         if (!flags.still) session.set_camera(camera_of(first, frame, scene_size));
-        session.render_frame(frame, settings);
+        session.render_frame(frame, settings, restir);
         const uint8_t* const shown = session.frame().display(tone_map, exposure);
         timer.stop();
         reporter.progress((frame + 1.0) / flags.frames, fmt::format("frame {} of {}", frame + 1, flags.frames));
@@ -89,7 +94,8 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
 
 /// How like the last frame is to a picture of many samples of the same view; means over channels and pixels.
 struct Likeness {
-    double flip = 0, flip_of_sample = 0; // HDR-FLIP of the frame, and of its sample alone
+    double flip = 0, flip_of_sample = 0;       // HDR-FLIP of the frame, and of a sample alone
+    double rel_mse = 0, rel_mse_of_sample = 0; // relative_error's
     double mean = 0, reference_mean = 0;
 };
 
@@ -106,7 +112,12 @@ Likeness compare_last(Session& session, uint32_t samples, Reporter& reporter) {
     });
     throw_if_interrupted();
     const Image reference = session.picture();
-    return {hdr_flip(last, reference).mean, hdr_flip(noisy, reference).mean, mean_of(last), mean_of(reference)};
+    return {hdr_flip(last, reference).mean,
+            hdr_flip(noisy, reference).mean,
+            relative_error(last, reference).rel_mse,
+            relative_error(noisy, reference).rel_mse,
+            mean_of(last),
+            mean_of(reference)};
 }
 
 int bench_frames(const FramesFlags& flags) {
@@ -127,25 +138,28 @@ int bench_frames(const FramesFlags& flags) {
     if (reporter.json()) {
         const auto part = [&](double Likeness::*of) { return likeness ? json_number(*likeness.*of) : "null"; };
         reporter.event(fmt::format(
-            R"({{"event":"frames","scene":{},"device":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
+            R"({{"event":"frames","scene":{},"device":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"restir":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
             json_string(flags.render.scene.scene), json_string(queue->device_name()), settings.width, settings.height,
-            flags.render.max_depth, flags.frames, flags.still, json_number(figures.whole.median),
-            json_number(figures.whole.least), json_number(figures.whole.greatest),
+            flags.render.max_depth, flags.frames, flags.still, json_string(flags.restir),
+            json_number(figures.whole.median), json_number(figures.whole.least), json_number(figures.whole.greatest),
             json_number(figures.reconstruction.median), rays_a_second, part(&Likeness::flip),
-            part(&Likeness::flip_of_sample), part(&Likeness::mean), part(&Likeness::reference_mean), hash));
+            part(&Likeness::flip_of_sample), part(&Likeness::rel_mse), part(&Likeness::rel_mse_of_sample),
+            part(&Likeness::mean), part(&Likeness::reference_mean), hash));
         return 0;
     }
-    reporter.answer(fmt::format(
-        "{} on {}: {}x{}, at most {} scatterings, {} frames, camera {}\n{:.3f} ms a frame (median; {:.3f} to {:.3f}), "
-        "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
-        flags.render.scene.scene, queue->device_name(), settings.width, settings.height, flags.render.max_depth,
-        flags.frames, flags.still ? "still" : "moving", figures.whole.median * 1e3, figures.whole.least * 1e3,
-        figures.whole.greatest * 1e3, 1 / figures.whole.median, figures.reconstruction.median * 1e3, rays_a_second,
-        hash));
+    reporter.answer(fmt::format("{} on {}: {}x{}, at most {} scatterings, {} frames, camera {}, ReSTIR {}\n{:.3f} ms a "
+                                "frame (median; {:.3f} to {:.3f}), "
+                                "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
+                                flags.render.scene.scene, queue->device_name(), settings.width, settings.height,
+                                flags.render.max_depth, flags.frames, flags.still ? "still" : "moving", flags.restir,
+                                figures.whole.median * 1e3, figures.whole.least * 1e3, figures.whole.greatest * 1e3,
+                                1 / figures.whole.median, figures.reconstruction.median * 1e3, rays_a_second, hash));
     if (likeness) {
         reporter.answer(fmt::format(
-            "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; mean {:.5f} of {:.5f}\n",
-            flags.reference, likeness->flip, likeness->flip_of_sample, likeness->mean, likeness->reference_mean));
+            "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; relMSE {:.4f} and {:.4f}; "
+            "mean {:.5f} of {:.5f}\n",
+            flags.reference, likeness->flip, likeness->flip_of_sample, likeness->rel_mse, likeness->rel_mse_of_sample,
+            likeness->mean, likeness->reference_mean));
     }
     return 0;
 }
@@ -167,6 +181,16 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
     add_reconstruction_flags(verb, flags->reconstruction);
+    verb.add_option("--restir", flags->restir,
+                    "light that pixels share: off, di (what lights send to the\nfirst surface), gi (what its "
+                    "surroundings send there, too)")
+        ->type_name("NAME")
+        ->check(one_of(restir_names()))
+        ->capture_default_str();
+    verb.add_option("--restir-history", flags->restir_history, "frames that it takes from the ones before for at most")
+        ->type_name("N")
+        ->check(whole_between(0, 1024))
+        ->capture_default_str();
     verb.add_option("--reference", flags->reference,
                     "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")
         ->type_name("SPP")

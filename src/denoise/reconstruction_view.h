@@ -12,9 +12,8 @@
 #include "math/rgb.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
-#include "render/camera_view.h"
 #include "render/noisy_frame_view.h"
-#include "render/scene_view.h"
+#include "render/reproject.h"
 
 namespace pertev {
 
@@ -65,17 +64,6 @@ struct SignalsView {
     Float4* gloss;
 };
 
-/// Where a scene's things stood in the frame before: the present ones where nothing has moved.
-struct PreviousScene {
-    const InstanceView* instances;
-    const MeshView* meshes;
-};
-
-struct FrameCameras {
-    CameraView now, before;
-    uint32_t width, height; // pixels, of both frames
-};
-
 // Sums of products in one rounding each, which is also one instruction each.
 HD inline float fused_dot(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 HD inline float fused_luminance(Rgb c) { return fma(0.2126f, c.r, fma(0.7152f, c.g, 0.0722f * c.b)); }
@@ -85,10 +73,6 @@ HD inline Rgb add_scaled(Rgb sum, float scale, Rgb c) {
 
 /// `x + offset` held within [0, count).
 HD inline int held(int x, int offset, int count) { return clamp(x + offset, 0, count - 1); }
-
-HD inline Rgb rgb_of(Float4 a) { return {a.x, a.y, a.z}; }
-HD inline Vec3 vec3_of(Float4 a) { return {a.x, a.y, a.z}; }
-HD inline Float4 with_w(Rgb c, float w) { return {c.r, c.g, c.b, w}; }
 
 /// Least share of light that a signal is divided by.
 inline constexpr float kLeastAlbedo = 0.01f;

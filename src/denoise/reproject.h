@@ -13,32 +13,6 @@ namespace pertev {
 /// Of taps that fit, below which they tell nothing.
 inline constexpr float kEnoughWeight = 0.01f;
 
-/// Of the frame before.
-struct Reprojection {
-    Vec2 pixel;  // place of a pixel's centre
-    float depth; // that what is seen there must have, metres
-};
-
-/// The world's point at `place` (NoisyFrameView).
-HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 place) {
-    const InstanceView& instance = instances[bits_of(place.x)];
-    const MeshView& mesh = meshes[instance.mesh];
-    const Vec3 local = interpolate(mesh.positions, triangle_indices(mesh, bits_of(place.y)), place.z, place.w);
-    return transform_point(instance.world_from_local, local);
-}
-
-/// Of `pixel`, whose sample met the surface at `place`. The sample lay somewhere about the pixel's centre; the centre
-/// is taken to move as it does.
-HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
-                                         const PreviousScene& before, Vec2 centre, Float4 place) {
-    const Vec3 point = point_at(scene.instances, scene.meshes, place);
-    const bool is_still = before.instances == scene.instances && before.meshes == scene.meshes;
-    const SeenPoint now = see_point(cameras.now, point);
-    const SeenPoint then =
-        see_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, place));
-    return {centre + (then.pixel - now.pixel), then.depth};
-}
-
 /// Of a reflection seen at the pixel's centre: of the virtual point `distance` metres behind the surface.
 HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centre, float depth, float distance) {
     const Ray ray = make_camera_ray(cameras.now, centre, {0, 0});
@@ -75,7 +49,8 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
         const Float4 then = before.guide[py * w + px];
         if (object_of(then) != object) return false;
         if (!(depth > 0)) return true;
-        return abs(depth_of(then) - depth) <= 0.05f * depth && fused_dot(normal_of(then), normal) > 0.5f;
+        const Vec3 n = normal_of(then);
+        return is_seen_alike({n.x, n.y, n.z, depth_of(then)}, depth, normal);
     };
     const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;
     const int column = to_int(left, -1, w), row = to_int(top, -1, h);

@@ -32,6 +32,11 @@ HD inline float alpha_at(const SceneView& scene, const MaterialView& material, c
     return alpha;
 }
 
+/// The coin of blended surfaces that the ray of a sample's path tosses after `depth` scatterings.
+HD inline uint32_t coin_key(SampleKey sample, uint32_t depth, bool is_shadow) {
+    return hash_words(sample.pixel, sample.sample, sample.seed, depth * 2 + (is_shadow ? 1u : 0u)).x;
+}
+
 struct AcceptHit {
     const SceneView& scene;
     TriangleId start, target; // not hit by this ray

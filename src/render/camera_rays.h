@@ -5,10 +5,14 @@
 
 #include <cstdint>
 
+#include "math/sampler.h"
 #include "render/camera_view.h"
 #include "render/pixel_filter.h"
 
 namespace pertev {
+
+/// The first groups of a sample's random numbers (math/sampler.h): place in the pixel; place on the lens.
+enum CameraGroup : uint32_t { kGroupCamera, kGroupLens, kCameraGroups };
 
 struct CameraRays {
     CameraView view;
@@ -23,6 +27,11 @@ struct CameraRays {
         const Vec2 place = {static_cast<float>(pixel % width) + 0.5f + offset.x,
                             static_cast<float>(row) + 0.5f + offset.y};
         return make_camera_ray(view, place, on_lens);
+    }
+    /// The ray of a sample: of `key.pixel`, by its own numbers.
+    HD Ray ray(SamplerKind sampler, SampleKey key) const {
+        const Vec2 in_filter = sample_2d(sampler, key, kGroupCamera);
+        return ray(key.pixel, in_filter, has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{});
     }
     HD bool has_lens() const { return view.aperture_radius > 0; }
 };

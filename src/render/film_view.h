@@ -53,6 +53,15 @@ HD inline void store_sample(const FilmView& film, uint32_t pixel, Rgb radiance, 
     if (film.frame.splits_light()) film.frame.diffuse[pixel] = {diffuse.r, diffuse.g, diffuse.b, 0};
 }
 
+/// More light of a frame's sample, as store_sample takes it.
+HD inline void add_to_sample(const FilmView& film, uint32_t pixel, Rgb radiance, Rgb diffuse) {
+    const Float4 before = film.frame.light[pixel];
+    if (before.w == 0) return; // invalid
+    const bool splits_light = film.frame.splits_light();
+    const Float4 d = splits_light ? film.frame.diffuse[pixel] : Float4{0, 0, 0, 0};
+    store_sample(film, pixel, Rgb{before.x, before.y, before.z} + radiance, Rgb{d.x, d.y, d.z} + diffuse);
+}
+
 /// Adds a value to an auxiliary channel; an invalid one adds 0.
 HD inline void add_channel(const FilmView& film, uint32_t pixel, uint32_t channel, float value) {
     if (is_valid_sample(value)) atomic_add(&film.pixel(pixel)[channel], to_fixed(value));

@@ -12,6 +12,8 @@ class NoisyFrame {
 public:
     /// `splits_light`: the scene has surfaces that scatter by other than diffuse lobes.
     NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light);
+    /// What its samples leave to another, whose arrays these are, from now on.
+    void leave(const FirstBounceView& first_bounce) { view_.first_bounce = first_bounce; }
 
     static std::size_t predicted_bytes(uint32_t width, uint32_t height, bool splits_light);
 

@@ -75,6 +75,25 @@ struct Surface {
 /// Bound of the rounding of a point on a light, per component: 16 units, as of an instance that is not turned.
 HD inline Vec3 light_point_error(Vec3 point) { return 0x1p-20f * abs(point); }
 
+/// The ray from a point of a surface, known to `error`, of unit normal `normal`, to what was drawn of a light; it ends
+/// there.
+HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal) {
+    Ray ray;
+    ray.origin = offset_ray_origin(position, error, normal, light.wi);
+    if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
+        Vec3 end = light.light_point;
+        if (light.instance != kNoLight) {
+            end = offset_ray_origin(end, light_point_error(end), light.light_normal, -light.wi);
+        }
+        ray.direction = end - ray.origin;
+        ray.t_max = 1;
+    } else {
+        ray.direction = light.wi;
+        ray.t_max = kInfinity;
+    }
+    return ray;
+}
+
 /// Corners and everything else of a triangle that make_surface looks at twice.
 struct PlacedTriangle {
     TriangleIndices i;

@@ -133,6 +133,7 @@ void Session::cut() {
     history_.previous_camera.reset();
     ++history_.cuts;
     if (reconstruction_) reconstruction_->cut();
+    if (restir_) restir_->cut();
     has_moved_ = false;
     camera_before_.reset();
     begin_film();
@@ -257,7 +258,26 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     return history_.samples - first;
 }
 
-void Session::render_frame(uint32_t number, const ReconstructionSettings& settings) {
+/// The reservoirs of frames with these settings; none: samples keep all light. Others than the last frame's begin anew.
+Restir* Session::restir_for(const RestirSettings& settings) {
+    const PathSettings& path = settings_.path;
+    const bool has_light = path.light != PathLight::Indirect && path.strategy == LightStrategy::Mis;
+    if (settings.light == RestirLight::Off || !has_light || path.max_depth == 0) {
+        restir_.reset();
+        return nullptr;
+    }
+    const bool fits = restir_ && restir_->light() == settings.light && restir_->width() == settings_.width &&
+                      restir_->height() == settings_.height;
+    if (!fits) {
+        restir_.reset(); // before the new one, so that both need not fit
+        restir_.emplace(queue_, settings_.width, settings_.height, settings.light);
+    }
+    if (settings != restir_settings_) restir_->cut();
+    restir_settings_ = settings;
+    return &*restir_;
+}
+
+void Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
     const bool splits_light = scene_.value().view().known == MaterialsKnown::Nothing;
     const uint32_t width = settings_.width, height = settings_.height;
     if (!noisy_frame_ || noisy_frame_->width() != width || noisy_frame_->height() != height ||
@@ -271,17 +291,25 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         camera_before_.reset();
         has_moved_ = false;
     }
+    Restir* const shared = restir_for(restir);
     begin(camera_, settings_of_frames(settings_), 1);
     noisy_frame_->begin();
+    noisy_frame_->leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
     integrator_->render(number, 1, noisy_frame_->film_view());
     frame_rays_ = integrator_->rays();
     const PictureView picture = view_of(camera_, settings_);
     const SceneView& scene = picture.scene;
     const PreviousScene before = has_moved_ ? PreviousScene{places_before_.data(), scene_->meshes_before()}
                                             : PreviousScene{scene.instances, scene.meshes};
+    if (shared != nullptr) {
+        const PathSettings& path = settings_.path;
+        shared->add(*noisy_frame_, picture, {path.sampler, number, path.seed}, *tracer_, before, restir);
+    }
     reconstruction_->add(*noisy_frame_, picture.camera.view, scene, before, settings);
     has_moved_ = false;
 }
+
+RayCounts Session::frame_rays() const { return restir_ ? frame_rays_ + RayCounts{0, 0, restir_->rays()} : frame_rays_; }
 
 Reconstruction& Session::frame() {
     PERTEV_CHECK(reconstruction_.has_value());

@@ -28,6 +28,7 @@
 #include "render/picture_view.h"
 #include "render/prepare_scene.h"
 #include "render/scene_on_device.h"
+#include "restir/restir.h"
 #include "session/render_settings.h"
 
 namespace pertev {
@@ -94,15 +95,16 @@ public:
 
     /// A frame of a sequence: renders sample `number` of each pixel and reconstructs the picture from it and from the
     /// frames since the last cut, each of which had its own scene and camera. The film stays as it is. The frame is
-    /// a function of scene, camera, settings and number of each of these frames, on every device alike. Throws
+    /// a function of scene, camera, settings and number of each of these frames, on every device alike. `restir` is
+    /// off where the path settings ask for indirect light alone, or find lights by one strategy alone. Throws
     /// Error(OutOfMemory, DeviceFault).
-    void render_frame(uint32_t number, const ReconstructionSettings& settings);
+    void render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir = {});
     /// Of the last render_frame, for its exposure (session/adaptive_exposure.h). Throws as render_frame.
     FrameTones frame_tones() const;
     /// Of the last render_frame.
     Reconstruction& frame();
     /// Rays of the last render_frame.
-    RayCounts frame_rays() const { return frame_rays_; }
+    RayCounts frame_rays() const;
     /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this
     /// depth, and `settings.samples` samples. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
     RenderResult look_aside(const Camera& camera, const RenderSettings& settings);
@@ -125,6 +127,7 @@ private:
     void copy_places();
     bool take_tracer();
     void fit_trees();
+    Restir* restir_for(const RestirSettings& settings);
     void upload(const PreparedScene& scene, uint32_t parts);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
     void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
@@ -145,6 +148,8 @@ private:
     std::optional<Film> film_, meter_film_;
     std::optional<NoisyFrame> noisy_frame_;
     std::optional<Reconstruction> reconstruction_;
+    std::optional<Restir> restir_;       // of frames that ask for it
+    RestirSettings restir_settings_;     // of the last frame
     Buffer<InstanceView> places_before_; // of instances, in the frame before
     uint32_t instance_count_ = 0;
     bool has_poses_ = false;              // PreparedScene's

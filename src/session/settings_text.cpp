@@ -10,6 +10,7 @@ constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
                                     PixelFilter::BlackmanHarris};
+constexpr RestirLight kRestirLights[] = {RestirLight::Off, RestirLight::Direct, RestirLight::Indirect};
 constexpr ToneMap kToneMaps[] = {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral};
 
 std::string_view name_of(PathLight light) {
@@ -88,6 +89,21 @@ std::string_view name_of(PixelFilter filter) {
 
 std::optional<PixelFilter> filter_named(std::string_view name) { return value_named(kFilters, name); }
 std::vector<std::string> filter_names() { return names_of(kFilters); }
+
+std::string_view name_of(RestirLight light) {
+    switch (light) {
+    case RestirLight::Off:
+        return "off";
+    case RestirLight::Direct:
+        return "di";
+    case RestirLight::Indirect:
+        return "gi";
+    }
+    return "";
+}
+
+std::optional<RestirLight> restir_named(std::string_view name) { return value_named(kRestirLights, name); }
+std::vector<std::string> restir_names() { return names_of(kRestirLights); }
 
 std::vector<std::string> tone_map_names() { return names_of(kToneMaps); }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "restir/restir_settings.h"
 #include "session/render_settings.h"
 
 namespace pertev {
@@ -25,6 +26,11 @@ std::vector<std::string> sampler_names();
 std::string_view name_of(PixelFilter filter);
 std::optional<PixelFilter> filter_named(std::string_view name);
 std::vector<std::string> filter_names();
+
+/// "off", "di" or "gi": of ReSTIR.
+std::string_view name_of(RestirLight light);
+std::optional<RestirLight> restir_named(std::string_view name);
+std::vector<std::string> restir_names();
 
 /// Of image/tone_map_image.h, which has name_of and tone_map_named.
 std::vector<std::string> tone_map_names();

@@ -102,7 +102,7 @@ struct LightSample {
     Rgb radiance;          // what arrives along wi: W/(sr m2); delta lights: W/m2 on a surface that faces them
     float pdf = 0;         // 1/sr, probability of the light included; delta lights: that probability
     bool is_delta = false; // no other way of finding a direction can hit this light
-    uint32_t instance = kNoLight, primitive = kNoLight; // of a triangle, or kNoLight
+    uint32_t instance = kNoLight, primitive = kNoLight; // of a triangle, or kNoLight and a punctual light's number
     float b1 = 0, b2 = 0;                               // weights of its second and third vertex
 };
 
@@ -140,11 +140,12 @@ HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float dist
     return falloff;
 }
 
+/// The place `b` (weights of the second and third vertex) on triangle light `light` as sample_light would have drawn
+/// it. False where nothing arrives.
 template <bool kTextures>
-HD inline bool sample_triangle_light(const LightSetView& view, uint32_t light, Vec3 from_point, Vec2 u,
-                                     LightSample& sample) {
+HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, Vec3 from_point, Vec2 b,
+                                 LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
-    const Vec2 b = sample_uniform_triangle(u);
     const Vec3 point = triangle.a + (b.x * triangle.ab + b.y * triangle.ac);
     const Vec3 to_light = point - from_point;
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
@@ -193,12 +194,15 @@ HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBit
     if (source.index < view.emitter_count) {
         const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
         const uint32_t first = view.emitters[source.index].first_triangle;
-        return sample_triangle_light<kTextures>(view, first + view.triangle_order[first + triangle.index], from_point,
-                                                {rest_of(source), rest_of(triangle)}, sample);
+        return triangle_light_at<kTextures>(view, first + view.triangle_order[first + triangle.index], from_point,
+                                            sample_uniform_triangle({rest_of(source), rest_of(triangle)}), sample);
     }
     const float pmf = ordered_pmf(source.owned);
     if (source.index != view.environment_source) {
-        return sample_punctual_light(view.punctual[source.index - view.emitter_count], pmf, from_point, sample);
+        const uint32_t punctual = source.index - view.emitter_count;
+        const bool arrives = sample_punctual_light(view.punctual[punctual], pmf, from_point, sample);
+        sample.primitive = punctual;
+        return arrives;
     }
     EnvironmentSample from_environment;
     if (!sample_environment(view.environment, {number_of_rest(source), u.y}, from_environment)) return false;

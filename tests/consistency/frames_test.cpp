@@ -32,11 +32,11 @@ Camera moved(Camera camera, uint32_t frame) {
 }
 
 /// Hash of the last of `frames`, from frame `first` on.
-Hash128 hash_of_frames(Session& session, const Camera& camera, uint32_t frames,
-                       const ReconstructionSettings& settings) {
+Hash128 hash_of_frames(Session& session, const Camera& camera, uint32_t frames, const ReconstructionSettings& settings,
+                       const RestirSettings& restir = {}) {
     for (uint32_t k = 0; k < frames; ++k) {
         session.set_camera(moved(camera, k));
-        session.render_frame(k, settings);
+        session.render_frame(k, settings, restir);
     }
     return picture_hash(session.frame().picture());
 }
@@ -51,6 +51,14 @@ struct Scenes {
     Scene scene;
     Camera camera;
 };
+
+constexpr uint32_t kRestirFrames = 6;
+
+Scenes diffuse_scene() {
+    Scenes result = {make_mixed_scene(), mixed_scene_camera()};
+    for (Material& material : result.scene.materials) material.kind = MaterialKind::Diffuse;
+    return result;
+}
 
 std::vector<Scenes> scenes() { return {{make_mixed_scene(), mixed_scene_camera()}}; }
 
@@ -90,7 +98,7 @@ TEST_CASE("frame 30 has the same bytes on every device, by every body and batch,
 namespace {
 
 /// Ten frames in which the first instance that is not baked moves aside.
-Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves) {
+Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves, const RestirSettings& restir = {}) {
     Messages messages;
     Scene scene = make_mixed_scene();
     PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -105,7 +113,7 @@ Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves)
             prepared = update_scene(prepared, scene, update, messages);
             session.update_scene(prepared, parts_of(update));
         }
-        session.render_frame(k, {});
+        session.render_frame(k, {}, restir);
     }
     return picture_hash(session.frame().picture());
 }
@@ -115,14 +123,68 @@ Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves)
 TEST_CASE("frames of what moves have the same bytes on every device and by every body") {
     Queue cpu = Queue::make_cpu();
     const RenderSettings settings = frame_settings();
-    const Hash128 expected = hash_of_motion(cpu, settings, true);
-    CHECK(expected != hash_of_motion(cpu, settings, false));
-    RenderSettings wavefront = settings;
-    wavefront.body = PathBody::Wavefront;
-    CHECK(hash_of_motion(cpu, wavefront, true) == expected);
-    if (cuda_requested()) {
-        Queue cuda = make_cuda_queue();
-        CHECK(hash_of_motion(cuda, settings, true) == expected);
+    for (const RestirLight light : {RestirLight::Off, RestirLight::Indirect}) {
+        const RestirSettings restir = {.light = light};
+        const Hash128 expected = hash_of_motion(cpu, settings, true, restir);
+        CHECK(expected != hash_of_motion(cpu, settings, false, restir));
+        RenderSettings wavefront = settings;
+        wavefront.body = PathBody::Wavefront;
+        CHECK(hash_of_motion(cpu, wavefront, true, restir) == expected);
+        if (cuda_requested()) {
+            Queue cuda = make_cuda_queue();
+            CHECK(hash_of_motion(cuda, settings, true, restir) == expected);
+        }
+    }
+}
+
+TEST_CASE("frames with ReSTIR have the same bytes on every device, by every body and batch, and after a cut") {
+    Messages messages;
+    const Scene mixed = make_mixed_scene();
+    // In one all surfaces are diffuse, so that frames split no light.
+    for (const Scenes& s : {Scenes{mixed, mixed_scene_camera()}, diffuse_scene()}) {
+        const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
+        Queue cpu = Queue::make_cpu();
+        Session session(cpu, prepared, s.camera, frame_settings());
+        const Hash128 off = hash_of_frames(session, s.camera, kRestirFrames, {});
+        for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
+            const RestirSettings restir = {.light = light};
+            session.cut();
+            const Hash128 expected = hash_of_frames(session, s.camera, kRestirFrames, {}, restir);
+            CHECK(expected != off);
+            session.cut();
+            CHECK(hash_of_frames(session, s.camera, kRestirFrames, {}, restir) == expected);
+            RenderSettings wavefront = frame_settings();
+            wavefront.body = PathBody::Wavefront;
+            wavefront.batch = 1000;
+            Session other(cpu, prepared, s.camera, wavefront);
+            CHECK(hash_of_frames(other, s.camera, kRestirFrames, {}, restir) == expected);
+            if (cuda_requested()) {
+                Queue cuda = make_cuda_queue();
+                Session there(cuda, prepared, s.camera, frame_settings());
+                CHECK(hash_of_frames(there, s.camera, kRestirFrames, {}, restir) == expected);
+            }
+        }
+        session.cut();
+        CHECK(hash_of_frames(session, s.camera, kRestirFrames, {}) == off);
+    }
+}
+
+TEST_CASE("a frame with ReSTIR counts its rays, and takes the bytes that are said beforehand") {
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = queue_asked_for();
+    const RenderSettings settings = frame_settings();
+    Session session(queue, prepared, mixed_scene_camera(), settings);
+    session.render_frame(0, {});
+    const uint64_t bounces = session.frame_rays().bounce;
+    for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
+        session.render_frame(0, {}, {.light = light});
+        CHECK(session.frame_rays().bounce == bounces);
+        CHECK(session.frame_rays().shadow > settings.width * settings.height / 2);
+        const std::size_t before = queue.allocated_bytes();
+        const Restir restir(queue, settings.width, settings.height, light);
+        CHECK(queue.allocated_bytes() - before == Restir::predicted_bytes(settings.width, settings.height, light));
     }
 }
 

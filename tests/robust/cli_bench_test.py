@@ -130,6 +130,10 @@ class Bench(CliTest):
         self.assertLess(still["hdr_flip"], 0.7 * still["hdr_flip_of_sample"])
         self.assertGreater(still["reference_mean"], still["mean"])  # in so small a picture the lamp is all edge
         self.assertRegex(self.succeed(*line, "--reference", "4").stdout, r"ms a frame .*\nHDR-FLIP of the last frame against 4 spp")
+        shared = [self.succeed(*line, "--restir", name, "--json").events("frames")[0] for name in ("di", "gi")]
+        self.assertEqual([event["restir"] for event in [made[0], *shared]], ["off", "di", "gi"])
+        self.assertEqual(len({event["picture"] for event in [made[0], *shared]}), 3)
+        self.refuse(2, *line, "--restir", "all", says=["--restir", "off", "di", "gi"])
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
         self.refuse(6, *line, "--write", "/nowhere/at/all", says=["/nowhere/at/all"])
 

@@ -53,9 +53,14 @@ PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round, bool splits_li
             set.throughput.data(), set.radiance.data(), splits_light ? set.diffuse.data() : nullptr};
 }
 
-ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light) const {
-    return {shadow_rays.data(), shadow_starts.data(), shadow_targets.data(),
-            shadow_keys.data(), contribution.data(),  splits_light ? shadow_diffuse.data() : nullptr};
+ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light, bool tells_bounce) const {
+    return {shadow_rays.data(),
+            shadow_starts.data(),
+            shadow_targets.data(),
+            shadow_keys.data(),
+            contribution.data(),
+            splits_light ? shadow_diffuse.data() : nullptr,
+            tells_bounce ? shadow_sent.data() : nullptr};
 }
 
 std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda) {
@@ -102,13 +107,21 @@ void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film
     }
 }
 
+/// What ReSTIR takes over from the first surface on goes through no roulette there.
+PathSettings PathIntegrator::settings_for(const FilmView& film) const {
+    PathSettings settings = settings_;
+    if (film.frame.first_bounce.leaves_direct_light()) settings.roulette_depth = std::max(settings.roulette_depth, 2u);
+    return settings;
+}
+
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
+    const PathSettings settings = settings_for(film);
     std::atomic<uint64_t> bounces{0}, shadows{0};
     parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
         if (abandon_ != nullptr && *abandon_) return;
         RayCounts counts;
-        render_pixels(picture_, settings_, trees, film, {begin, end, first, count}, counts);
+        render_pixels(picture_, settings, trees, film, {begin, end, first, count}, counts);
         bounces += counts.bounce;
         shadows += counts.shadow;
     });
@@ -118,7 +131,8 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
-    const Work work = {first, uint64_t(picture_.camera.width) * picture_.camera.height * count, film};
+    const Work work = {first, uint64_t(picture_.camera.width) * picture_.camera.height * count, film,
+                       settings_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
     const int going = in_turns ? 1 : static_cast<int>(wavefronts_.size());
@@ -129,6 +143,9 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
         w.known = {};
         w.is_done = false;
         if (film.frame.splits_light()) w.split_light(queue_);
+        if (film.frame.first_bounce.tells_bounce() && w.shadow_sent.size() == 0) {
+            w.shadow_sent = {queue_, w.capacity, "shadow rays"};
+        }
         w.counts.zero();
         w.path_stream = i;
         w.light_stream = in_turns ? i : going + i;
@@ -165,7 +182,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const bool any_alpha = picture_.scene.any_alpha != 0;
     const bool splits_light = work.film.frame.splits_light();
     const PathQueueView paths = w.paths(w.round, splits_light), next = w.paths(w.round + 1, splits_light);
-    const ShadowQueueView shadows = w.shadows(splits_light);
+    const ShadowQueueView shadows = w.shadows(splits_light, work.film.frame.first_bounce.tells_bounce());
     const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
     RoundCounts* const counts = w.counts.data() + w.round % 2;
     // Once all paths have begun, a round has no more of them than the one before.
@@ -183,15 +200,22 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
             launch(queue_, "generate_paths", fresh,
-                   GeneratePaths{picture_.camera, settings_, counts, pixels, last, any_alpha, paths});
+                   GeneratePaths{picture_.camera, work.settings, counts, pixels, last, any_alpha, paths});
             tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh,
                                {hits.places + last, hits.instances + last, -1});
         }
         const WorkCount active = {most, &counts->active};
-        const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
+        const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave>() {
             launch(queue_, "shade_hits", active,
-                   ShadeHits<kKnown, kMayBeFrame>{picture_, settings_, work.film, paths, next, hits, shadows, counts,
-                                                  last});
+                   ShadeHits<kKnown, kMayBeFrame, kMayLeave>{picture_, work.settings, work.film, paths, next, hits,
+                                                             shadows, counts, last});
+        };
+        const bool leaves_light = work.film.frame.first_bounce.leaves_direct_light();
+        const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
+            if constexpr (kMayBeFrame) {
+                if (leaves_light) return shade_as.operator()<kKnown, true, true>();
+            }
+            shade_as.operator()<kKnown, kMayBeFrame, false>();
         };
         switch (picture_.scene.known) {
         case MaterialsKnown::Nothing:
@@ -213,7 +237,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const Queue::OnStream on(queue_, w.light_stream);
     const WorkCount asked = {most, &counts->shadows};
     tracer_->find_occlusions(shadows.query(), asked, {nullptr, shadows.keys}); // a ray's key has been used by then
-    launch(queue_, "add_light", asked, AddLight{shadows, next});
+    launch(queue_, "add_light", asked, AddLight{shadows, next, work.film.frame.first_bounce});
     launch(queue_, "add_to_film", {most, &counts->ended}, AddToFilm{work.film, next, last});
     ++w.round;
 }

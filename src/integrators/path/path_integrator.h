@@ -52,7 +52,9 @@ private:
         uint32_t first_sample;
         uint64_t samples; // of pixels
         FilmView film;
+        PathSettings settings;
     };
+    PathSettings settings_for(const FilmView& film) const;
     struct Wavefront;
     void give_rounds(int going, const Work& work);
     void give_round(Wavefront& wavefront, const Work& work);
@@ -73,7 +75,7 @@ private:
         /// Takes what a frame that splits light needs; it is kept.
         void split_light(Queue& queue);
         PathQueueView paths(uint32_t of_round, bool splits_light) const;
-        ShadowQueueView shadows(bool splits_light) const;
+        ShadowQueueView shadows(bool splits_light, bool tells_bounce) const;
 
         struct Paths {
             Paths(Queue& queue, uint32_t capacity);
@@ -88,6 +90,7 @@ private:
         Buffer<uint32_t> path_keys, shadow_keys;
         Buffer<Float4> contribution, hit_places;
         Buffer<Float4> shadow_diffuse; // where frames split light
+        Buffer<Float4> shadow_sent;    // where frames tell their first bounce
         Buffer<uint32_t> hit_instances;
         Buffer<RoundCounts> counts; // of two rounds in turns
         Readback<RoundCounts> seen; // of the round given last, at its start

@@ -113,6 +113,7 @@ private:
             if (occluded_[i]) continue;
             const uint32_t path = asked_[i].path;
             paths_[path].radiance += asked_[i].ray.contribution;
+            if (tells_bounce_) film_.frame.first_bounce.add_sent(paths_[path].pixel, asked_[i].ray.sent);
             if (splits_light_) {
                 const Rgb add = asked_[i].ray.diffuse;
                 Float4& d = diffuse_[path];
@@ -148,6 +149,7 @@ private:
     const HostTrees& trees_;
     const FilmView& film_;
     const bool splits_light_ = film_.frame.splits_light();
+    const bool tells_bounce_ = film_.frame.first_bounce.tells_bounce();
     uint32_t count_ = 0, going_on_ = 0; // paths; of which those that are not new
     PathState paths_[kPaths];
     Float4 diffuse_[kPaths]; // LightSplit's, where a frame splits light

@@ -84,16 +84,21 @@ struct ShadowQueueView {
     uint32_t* keys;       // then what the ray met
     Float4* contribution; // rgb, bits of the path's place in the next round's arrays
     Float4* diffuse;      // ShadowRay's; null unless a frame splits light
+    Float4* sent;         // ShadowRay's, bits of the pixel; null unless a frame tells its first bounce
 
     RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets, .keys = keys}; }
 
-    HD void store(uint32_t i, const ShadowRay& ray, uint32_t path, TriangleId start, uint32_t key) const {
+    /// `kMayTell`: `sent` may be there.
+    template <bool kMayTell>
+    HD void store(uint32_t i, const ShadowRay& ray, uint32_t path, uint32_t pixel, TriangleId start,
+                  uint32_t key) const {
         store_ray(rays + i, {ray.origin, 0.0f, ray.direction, ray.t_max});
         starts[i] = {start.instance, start.primitive};
         targets[i] = {ray.target.instance, ray.target.primitive};
         keys[i] = key;
         contribution[i] = {ray.contribution.r, ray.contribution.g, ray.contribution.b, float_of(path)};
         if (diffuse != nullptr) diffuse[i] = {ray.diffuse.r, ray.diffuse.g, ray.diffuse.b, 0};
+        if (kMayTell && sent != nullptr) sent[i] = {ray.sent.r, ray.sent.g, ray.sent.b, float_of(pixel)};
     }
 };
 

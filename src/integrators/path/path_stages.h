@@ -51,8 +51,8 @@ struct GeneratePaths {
     }
 };
 
-/// `kMayBeFrame`: as shade_hit has it.
-template <MaterialsKnown kKnown, bool kMayBeFrame>
+/// `kMayBeFrame`, `kMayLeave`: as shade_hit has them.
+template <MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave>
 struct ShadeHits {
     PictureView picture;
     PathSettings settings;
@@ -75,7 +75,8 @@ struct ShadeHits {
         LightSplit split;
         if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
         uint32_t to = 0;
-        const bool goes_on = shade_hit<kKnown, kMayBeFrame>(picture, settings, film, path, hit, shadow, wants_shadow);
+        const bool goes_on =
+            shade_hit<kKnown, kMayBeFrame, kMayLeave>(picture, settings, film, path, hit, shadow, wants_shadow);
         if (splits_light) split.put_back(path);
         if (goes_on) {
             to = atomic_add(&round->next, 1u);
@@ -85,7 +86,9 @@ struct ShadeHits {
             next.store_ended(to, path);
         }
         if (splits_light) next.diffuse[to] = split.diffuse;
-        if (wants_shadow) shadows.store(atomic_add(&round->shadows, 1u), shadow, to, here, key);
+        if (wants_shadow) {
+            shadows.store<kMayLeave>(atomic_add(&round->shadows, 1u), shadow, to, path.pixel, here, key);
+        }
     }
 };
 
@@ -93,12 +96,17 @@ struct ShadeHits {
 struct AddLight {
     ShadowQueueView shadows; // keys: what a tracer found, kNoHit where the ray met nothing
     PathQueueView next;
+    FirstBounceView first_bounce;
 
     HD void operator()(uint32_t i) const {
         if (shadows.keys[i] != kNoHit) return;
         const Float4 c = shadows.contribution[i];
         next.add_radiance(bits_of(c.w), {c.x, c.y, c.z});
         if (shadows.diffuse != nullptr) next.add_diffuse(bits_of(c.w), shadows.diffuse[i]);
+        if (shadows.sent != nullptr) {
+            const Float4 sent = shadows.sent[i];
+            first_bounce.add_sent(bits_of(sent.w), {sent.x, sent.y, sent.z});
+        }
     }
 };
 

@@ -8,6 +8,7 @@
 #include "math/rgb.h"
 #include "math/sampler.h"
 #include "render/accept_hit.h"
+#include "render/camera_rays.h"
 #include "trace/ray.h"
 
 namespace pertev {
@@ -31,6 +32,7 @@ struct ShadowRay {
     TriangleId target; // the light's triangle
     Rgb contribution;
     Rgb diffuse; // of it, what goes through diffuse lobes of the first vertex; where a frame splits light alone
+    Rgb sent;    // of it, what goes through those of the second one; where a frame tells its first bounce alone
 };
 
 /// Which part of a path's radiance went through diffuse lobes of its first vertex. Beside the path, as frames that
@@ -62,7 +64,7 @@ struct LightSplit {
 ///   lens           place on the lens, time, one kept
 ///   scatter, of v  direction from vertex v, then the light of vertex v + 1: both decide what v gathers over one bounce
 ///   choices, of v  lobe, roulette, two kept for lobes
-enum SampleGroup : uint32_t { kGroupCamera, kGroupLens, kGroupFirstVertex };
+inline constexpr uint32_t kGroupFirstVertex = kCameraGroups;
 enum VertexGroup : uint32_t { kGroupScatter, kGroupChoices, kGroupsPerVertex };
 inline constexpr uint32_t kNumberLobe = 0, kNumberRoulette = 1;
 
@@ -77,7 +79,7 @@ HD inline uint32_t light_group(const PathState& path) {
 
 /// The coin of blended surfaces for a path's ray at its depth; shadow rays toss another one.
 HD inline uint32_t path_key(const PathState& path, uint32_t seed, bool is_shadow) {
-    return hash_words(path.pixel, path.sample, seed, path.depth * 2 + (is_shadow ? 1u : 0u)).x;
+    return coin_key({path.pixel, path.sample, seed}, path.depth, is_shadow);
 }
 
 } // namespace pertev

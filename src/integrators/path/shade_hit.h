@@ -53,10 +53,11 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
     path.radiance += clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
-/// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted.
+/// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
+/// `tells_bounce`: shadow.sent is, of a second vertex.
 template <MaterialsKnown kKnown>
 HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
-                             const Surface& surface, Vec3 wo, bool splits_light, ShadowRay& shadow) {
+                             const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = {path.pixel, path.sample, settings.seed};
@@ -83,19 +84,12 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
             path.depth == 0 ? surface.diffuse_share(wo, light.wi) : grey(path.is_first_diffuse ? 1.0f : 0.0f);
         shadow.diffuse = share * shadow.contribution;
     }
-    shadow.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, light.wi);
+    if (tells_bounce) shadow.sent = surface.diffuse_share(wo, light.wi) * shadow.contribution;
+    const Ray ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+    shadow.origin = ray.origin;
+    shadow.direction = ray.direction;
+    shadow.t_max = ray.t_max;
     shadow.target = {light.instance, light.primitive};
-    if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
-        Vec3 end = light.light_point;
-        if (light.instance != kNoLight) {
-            end = offset_ray_origin(end, light_point_error(end), light.light_normal, -light.wi);
-        }
-        shadow.direction = end - shadow.origin;
-        shadow.t_max = 1;
-    } else {
-        shadow.direction = light.wi;
-        shadow.t_max = kInfinity;
-    }
     return true;
 }
 
@@ -182,6 +176,17 @@ HD inline void store_first_hit(const NoisyFrameView& frame, const PathState& pat
     frame.gloss[path.pixel] = {gloss.reflectance.r, gloss.reflectance.g, gloss.reflectance.b, kFarAway};
 }
 
+/// What a path's first bounce has met, before anything is added there. A place that nobody can share is none.
+HD inline void begin_bounce(const FirstBounceView& left, const PathState& path, const Hit& hit, bool is_shared) {
+    left.place[path.pixel] = {float_of(is_shared ? hit.instance : kNoHit), float_of(hit.primitive), hit.u, hit.v};
+    left.way[path.pixel] = {path.throughput.r, path.throughput.g, path.throughput.b, path.bsdf_pdf};
+    left.sent[path.pixel] = left.onwards[path.pixel] = {0, 0, 0, 0};
+}
+HD inline Rgb share_onwards(const FirstBounceView& left, uint32_t pixel) {
+    const Float4 share = left.onwards[pixel];
+    return {share.x, share.y, share.z};
+}
+
 HD inline void store_emission(const NoisyFrameView& frame, const PathState& path) {
     frame.emission[path.pixel] = {path.radiance.r, path.radiance.g, path.radiance.b, 0};
 }
@@ -196,13 +201,20 @@ HD inline void store_no_hit(const NoisyFrameView& frame, uint32_t pixel) {
 
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
-/// Where `kMayBeFrame` is false `film` is none of a noisy frame: code for frames would cost others registers.
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true>
+/// Where `kMayBeFrame` is false `film` is none of a noisy frame, and where `kMayLeave` is, none that leaves light to
+/// ReSTIR: code for these would cost others registers.
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true, bool kMayLeave = true>
 HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
                          PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow) {
     const SceneView& scene = picture.scene;
     const bool is_frame = kMayBeFrame && film.frame.is_there();
     const bool splits_light = kKnown == MaterialsKnown::Nothing && is_frame && film.frame.splits_light();
+    const FirstBounceView& left = film.frame.first_bounce;
+    const bool leaves_light = kMayLeave && is_frame && left.leaves_direct_light();
+    const bool tells_bounce = leaves_light && left.tells_bounce();
+    if (leaves_light && path.depth == 0) left.light[path.pixel] = {};
+    if (tells_bounce && path.depth == 0) begin_bounce(left, path, {}, false);
+    const Rgb radiance_before = path.radiance;
     wants_shadow = false;
     if (hit.instance == kNoHit) {
         if (path.depth == 0 && (film.aovs & kAovIds) != 0 && path.sample == 0) {
@@ -211,8 +223,15 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
         if (is_frame && path.depth == 0) store_no_hit(film.frame, path.pixel);
         const bool is_hidden = picture.hide_background && path.depth == 0;
         if (scene.lights.has_environment() && !is_hidden) {
-            add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction),
-                         path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f);
+            const float light_pdf = path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f;
+            if (leaves_light && path.depth == 1 && light_pdf > 0) {
+                left.light[path.pixel] = place_in_environment(path.direction);
+            } else {
+                add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction), light_pdf);
+            }
+        }
+        if (tells_bounce && path.depth > 1) {
+            left.add_sent(path.pixel, share_onwards(left, path.pixel) * (path.radiance - radiance_before));
         }
         if (is_frame && path.depth == 0) store_emission(film.frame, path);
         return false;
@@ -226,14 +245,34 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     }
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
-        add_emission(settings, path, surface.emission,
-                     light != kNoLight ? pdf_light_hit(scene.lights, light, path.origin, surface.position) : 0.0f);
+        const float light_pdf =
+            light != kNoLight ? pdf_light_hit(scene.lights, light, path.origin, surface.position) : 0.0f;
+        if (leaves_light && path.depth == 1 && light_pdf > 0) {
+            left.light[path.pixel] = {hit.instance, hit.primitive, hit.u, hit.v};
+        } else {
+            add_emission(settings, path, surface.emission, light_pdf);
+        }
     }
     if (is_frame && path.depth == 0) store_emission(film.frame, path);
+    if (tells_bounce && path.depth > 1) {
+        left.add_sent(path.pixel, share_onwards(left, path.pixel) * (path.radiance - radiance_before));
+    }
     if (surface.is_unlit || path.depth >= settings.max_depth) return false;
     const Vec3 wo = -path.direction;
-    wants_shadow = ask_for_light<kKnown>(scene, settings, path, surface, wo, splits_light, shadow);
-    return scatter(settings, path, surface, wo);
+    // With coat or sheen on top, what leaves it in one direction says little of another.
+    const bool is_bounce = tells_bounce && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
+    if (is_bounce) begin_bounce(left, path, hit, true);
+    wants_shadow = !(leaves_light && path.depth == 0) &&
+                   ask_for_light<kKnown>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow);
+    if (tells_bounce && wants_shadow && !is_bounce) {
+        shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
+    }
+    const bool goes_on = scatter(settings, path, surface, wo);
+    if (is_bounce && goes_on && path.bsdf_pdf > 0) { // by a delta lobe nothing can be shared
+        const Rgb share = surface.diffuse_share(wo, path.direction);
+        left.onwards[path.pixel] = {share.r, share.g, share.b, 0};
+    }
+    return goes_on;
 }
 
 } // namespace pertev

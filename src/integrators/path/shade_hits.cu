@@ -2,8 +2,8 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, false>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, true>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse, true>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse, true>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, false, false>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, true, false>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse, true, false>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse, true, false>&);
 } // namespace pertev

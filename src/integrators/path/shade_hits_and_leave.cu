@@ -1,0 +1,8 @@
+#include "device/launch_body.h"
+#include "integrators/path/path_stages.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, true, true>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse, true, true>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse, true, true>&);
+} // namespace pertev

@@ -1,0 +1,65 @@
+#pragma once
+
+// Where what a pixel shows was in the frame before.
+//
+// Source: Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017, section 4.1.
+
+#include <cstdint>
+
+#include "math/float4.h"
+#include "math/rgb.h"
+#include "math/vec2.h"
+#include "math/vec3.h"
+#include "render/camera_view.h"
+#include "render/scene_view.h"
+
+namespace pertev {
+
+HD inline Rgb rgb_of(Float4 a) { return {a.x, a.y, a.z}; }
+HD inline Vec3 vec3_of(Float4 a) { return {a.x, a.y, a.z}; }
+HD inline Float4 with_w(Rgb c, float w) { return {c.r, c.g, c.b, w}; }
+
+/// Where a scene's things stood in the frame before: the present ones where nothing has moved.
+struct PreviousScene {
+    const InstanceView* instances;
+    const MeshView* meshes;
+};
+
+struct FrameCameras {
+    CameraView now, before;
+    uint32_t width, height; // pixels, of both frames
+};
+
+/// Of the frame before.
+struct Reprojection {
+    Vec2 pixel;  // place of a pixel's centre
+    float depth; // that what is seen there must have, metres
+};
+
+/// The world's point at `place` (NoisyFrameView).
+HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 place) {
+    const InstanceView& instance = instances[bits_of(place.x)];
+    const MeshView& mesh = meshes[instance.mesh];
+    const Vec3 local = interpolate(mesh.positions, triangle_indices(mesh, bits_of(place.y)), place.z, place.w);
+    return transform_point(instance.world_from_local, local);
+}
+
+/// Of `pixel`, whose sample met the surface at `place`. The sample lay somewhere about the pixel's centre; the centre
+/// is taken to move as it does.
+HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
+                                         const PreviousScene& before, Vec2 centre, Float4 place) {
+    const Vec3 point = point_at(scene.instances, scene.meshes, place);
+    const bool is_still = before.instances == scene.instances && before.meshes == scene.meshes;
+    const SeenPoint now = see_point(cameras.now, point);
+    const SeenPoint then =
+        see_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, place));
+    return {centre + (then.pixel - now.pixel), then.depth};
+}
+
+/// Whether a pixel of which this is the normal and depth (NoisyFrameView::normal) shows about what lies at `depth` with
+/// this normal.
+HD inline bool is_seen_alike(Float4 seen, float depth, Vec3 normal) {
+    return abs(seen.w - depth) <= 0.05f * depth && dot(vec3_of(seen), normal) > 0.5f;
+}
+
+} // namespace pertev

@@ -1,0 +1,30 @@
+#pragma once
+
+// Last stage of direct light: what the place in a pixel's reservoir sends there is added to the frame's sample.
+
+#include "render/film_view.h"
+#include "restir/light_reservoir.h"
+
+namespace pertev {
+
+struct AddDirectLight {
+    SceneView scene;
+    PixelSurfaces here;
+    const LightReservoir* reservoirs; // of places that their pixels see
+    FilmView film;                    // of the frame
+
+    HD void operator()(uint32_t pixel) const {
+        const LightReservoir reservoir = reservoirs[pixel];
+        if (!(reservoir.weight > 0)) return;
+        const Vec3 direction = here.direction(pixel), wo = -direction;
+        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        LightSample light;
+        float measure = 1;
+        if (!find_light(scene.lights, reservoir.place, surface.position, light, measure)) return;
+        const Rgb scattered = (reservoir.weight * measure) * (surface.evaluate(wo, light.wi).f * light.radiance);
+        const Rgb share = film.frame.splits_light() ? surface.diffuse_share(wo, light.wi) : grey(1);
+        add_to_sample(film, pixel, scattered, share * scattered);
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,30 @@
+#pragma once
+
+// Last stage of indirect light: what the place in a pixel's reservoir sends there is added to the frame's sample.
+
+#include "render/film_view.h"
+#include "restir/bounce_reservoir.h"
+
+namespace pertev {
+
+struct AddIndirectLight {
+    SceneView scene;
+    PixelSurfaces here;
+    const BounceReservoir* reservoirs; // of places that their pixels see
+    FilmView film;                     // of the frame
+
+    HD void operator()(uint32_t pixel) const {
+        const BounceReservoir reservoir = reservoirs[pixel];
+        if (!(reservoir.weight > 0)) return;
+        const Vec3 direction = here.direction(pixel), wo = -direction;
+        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        const SeenPlace seen = see_place(place_of(scene, reservoir), surface.position);
+        if (!seen.is_there) return;
+        const Surface there = make_surface(scene, reservoir.hit(), seen.wi);
+        const float factor = reservoir.weight * diffuse_passage(there, -seen.wi);
+        const Rgb scattered = factor * light_scattered(scene, surface, wo, reservoir);
+        add_to_sample(film, pixel, scattered, scattered);
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,81 @@
+#pragma once
+
+// What a pixel keeps of indirect light: one place that its surface sees and what the diffuse lobes there send, 48
+// bytes.
+//
+// Diffuse lobes beneath a reflecting layer send A(wo) B: how much passes on the way out, times what has come in, which
+// no direction changes (shading/lobes/passage.h). B is kept, so that a place sends the right light to whoever looks.
+// That is what makes sharing exact; light by other lobes of the place stays with the path that found it. Where a normal
+// map's normal is bent towards an eye at grazing angles (shading_frame.h) the two differ, by a little.
+//
+// Densities of places are counted in weights of their triangle's corners. The ratio of solid angles between two pixels
+// (the Jacobian of Ouyang et al., "ReSTIR GI: Path Resampling for Real-Time Path Tracing", HPG 2021, equation 11) is
+// then in the targets.
+
+#include "restir/light_reservoir.h"
+
+namespace pertev {
+
+struct alignas(16) BounceReservoir {
+    uint32_t instance = kNoHit, primitive = 0;
+    float u = 0, v = 0; // weights of the triangle's second and third vertex
+    Rgb sent;           // B, W/(sr m2)
+    float weight = 0;   // as LightReservoir's
+    float count = 0;
+    float seen = 0;
+    uint32_t source = 0;
+    float side = 0; // 1: `sent` leaves on the side that the corners run counter-clockwise on, or -1
+
+    HD Hit hit() const { return {0, u, v, instance, primitive}; }
+};
+static_assert(sizeof(BounceReservoir) == 48);
+
+/// A place as somebody sees it.
+struct SeenPlace {
+    Vec3 wi;       // unit, towards it
+    float measure; // solid angle over weights of corners
+    float side;    // BounceReservoir's, of the one who looks
+    bool is_there;
+};
+
+HD inline SeenPlace see_place(const PlacedTriangle& triangle, Vec3 from) {
+    const Vec3 way = triangle.position - from;
+    const float distance_squared = length_squared(way);
+    const Vec3 wi = way / sqrt(distance_squared), normal = cross(triangle.ab, triangle.ac);
+    const float facing = dot(normal, wi), measure = abs(facing) / distance_squared;
+    return {wi, measure, facing < 0 ? 1.0f : -1.0f, measure > 0 && is_finite(measure)};
+}
+
+HD inline PlacedTriangle place_of(const SceneView& scene, const BounceReservoir& reservoir) {
+    const InstanceView& instance = scene.instances[reservoir.instance];
+    return place_triangle(instance, scene.meshes[instance.mesh], reservoir.hit());
+}
+
+/// A(wo) of a surface, times its colours' luminance; 0 where it has no diffuse lobes.
+HD inline float diffuse_passage(const Surface& surface, Vec3 wo) {
+    const Vec3 local = surface.frame.to_local(wo);
+    return luminance(surface.bsdf.evaluate(local, {0, 0, copysign(1.0f, local.z)}, only(LobeClass::Diffuse)).f);
+}
+
+/// As that of light: by diffuse lobes of the surface alone, and without A, which the target need not know.
+HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Vec3 wo,
+                              const BounceReservoir& reservoir) {
+    const SeenPlace seen = see_place(place_of(scene, reservoir), surface.position);
+    if (!seen.is_there || seen.side != reservoir.side) return {};
+    return seen.measure * (surface.evaluate(wo, seen.wi, only(LobeClass::Diffuse)).f * reservoir.sent);
+}
+
+HD inline bool find_sight(const SceneView& scene, const BounceReservoir& reservoir, const PlacedTriangle& from,
+                          uint32_t coin, Ray& ray, TriangleId& target) {
+    const PlacedTriangle place = place_of(scene, reservoir);
+    const SeenPlace seen = see_place(place, from.position);
+    if (!seen.is_there || seen.side != reservoir.side) return false;
+    ray.origin = offset_ray_origin(from.position, from.error, from.normal, seen.wi);
+    ray.direction = offset_ray_origin(place.position, place.error, place.normal, -seen.wi) - ray.origin;
+    ray.t_max = 1;
+    target = {reservoir.instance, reservoir.primitive};
+    return scene.any_alpha == 0 || AcceptHit{scene, {}, {}, coin}.passes_alpha(reservoir.instance, reservoir.primitive,
+                                                                               reservoir.u, reservoir.v);
+}
+
+} // namespace pertev

@@ -1,0 +1,80 @@
+#pragma once
+
+// Which pixels a pixel takes from: where its surface was in the frame before, or some about it that see a surface like
+// its own. The choice depends on surfaces alone, never on light: so it bends no mean.
+
+#include "math/sampling.h"
+#include "render/reproject.h"
+#include "restir/light_reservoir.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kNoPixel = 0xffffffffu;
+inline constexpr uint32_t kMostNeighbours = 3;
+
+/// Up to kMostNeighbours pixels, kNoPixel behind the last.
+struct alignas(16) Neighbours {
+    uint32_t pixels[kMostNeighbours] = {kNoPixel, kNoPixel, kNoPixel};
+    uint32_t unused = 0;
+};
+
+/// In the frame before.
+struct FindBefore {
+    SceneView scene;
+    PreviousScene scene_before;
+    FrameCameras cameras;
+    const Float4 *place, *normal;               // NoisyFrameView's
+    const Float4 *place_before, *normal_before; // of the frame before
+    Neighbours* to;
+
+    HD void operator()(uint32_t pixel) const {
+        Neighbours found;
+        const uint32_t object = bits_of(place[pixel].x), width = cameras.width, height = cameras.height;
+        if (object != kNoHit) {
+            const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
+            const Reprojection at = reproject_surface(cameras, scene, scene_before, centre, place[pixel]);
+            const Vec2 p = at.pixel;
+            if (p.x >= 0 && p.y >= 0 && p.x < static_cast<float>(width) && p.y < static_cast<float>(height)) {
+                const uint32_t there = static_cast<uint32_t>(to_int(p.y, 0, static_cast<int>(height) - 1)) * width +
+                                       static_cast<uint32_t>(to_int(p.x, 0, static_cast<int>(width) - 1));
+                if (bits_of(place_before[there].x) == object && at.depth > 0 &&
+                    is_seen_alike(normal_before[there], at.depth, vec3_of(normal[pixel]))) {
+                    found.pixels[0] = there;
+                }
+            }
+        }
+        to[pixel] = found;
+    }
+};
+
+/// In the same frame.
+struct FindBeside {
+    PixelSurfaces here;
+    const Float4* normal; // NoisyFrameView's
+    uint32_t neighbours;
+    float radius;
+    Neighbours* to;
+
+    HD void operator()(uint32_t pixel) const {
+        Neighbours found;
+        if (here.is_there(pixel)) {
+            const int width = static_cast<int>(here.camera.width), height = static_cast<int>(here.camera.height);
+            const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
+            const Float4 own = normal[pixel];
+            uint32_t count = 0;
+            for (uint32_t k = 0; k < neighbours && k < kMostNeighbours; ++k) {
+                const Vec2 u = sample_2d(here.sampler, here.key(pixel), kGroupNeighbours + k);
+                const Vec2 offset = radius * sample_uniform_disk_concentric(u);
+                const int to_x = x + to_int(floor(offset.x + 0.5f), -width, width),
+                          to_y = y + to_int(floor(offset.y + 0.5f), -height, height);
+                if ((to_x == x && to_y == y) || to_x < 0 || to_y < 0 || to_x >= width || to_y >= height) continue;
+                const uint32_t there = static_cast<uint32_t>(to_y * width + to_x);
+                if (!here.is_there(there) || !is_seen_alike(normal[there], own.w, vec3_of(own))) continue;
+                found.pixels[count++] = there;
+            }
+        }
+        to[pixel] = found;
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,131 @@
+#include "restir/restir.h"
+
+#include "base/error.h"
+#include "device/launch.h"
+#include "restir/add_direct_light.h"
+#include "restir/add_indirect_light.h"
+#include "restir/draw_candidates.h"
+#include "restir/take_bounces.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kMostTraces = 20; // of a frame
+constexpr std::size_t kBounceArrays = 4;
+
+} // namespace
+
+Restir::Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light)
+    : queue_(&queue), width_(width), height_(height), pixels_(width * height), light_(light),
+      met_(queue, pixels_, "reservoirs"), reservoirs_(queue, std::size_t(2) * pixels_, "reservoirs"),
+      seen_before_(queue, std::size_t(2) * pixels_, "reservoirs"), neighbours_(queue, pixels_, "reservoirs"),
+      shares_(queue, pixels_, "reservoirs"), rays_(queue, pixels_, "reservoirs' rays"),
+      ray_ends_(queue, std::size_t(2) * pixels_, "reservoirs' rays"),
+      ray_words_(queue, std::size_t(2) * pixels_, "reservoirs' rays"),
+      ray_counts_(queue, kMostTraces, "reservoirs' rays") {
+    if (light == RestirLight::Indirect) {
+        bounces_ = {queue, std::size_t(2) * pixels_, "reservoirs"};
+        bounce_numbers_ = {queue, kBounceArrays * pixels_, "first bounces"};
+    }
+    shares_.zero();
+    ray_counts_.zero();
+}
+
+std::size_t Restir::predicted_bytes(uint32_t width, uint32_t height, RestirLight light) {
+    std::size_t of_pixel = sizeof(LightPlace) + 2 * sizeof(LightReservoir) + 2 * sizeof(Float4) + sizeof(Neighbours) +
+                           sizeof(Shares) + sizeof(Ray) + 2 * sizeof(Uint2) + 2 * sizeof(uint32_t);
+    if (light == RestirLight::Indirect) of_pixel += 2 * sizeof(BounceReservoir) + kBounceArrays * sizeof(Float4);
+    return std::size_t(width) * height * of_pixel + kMostTraces * sizeof(uint32_t);
+}
+
+FirstBounceView Restir::first_bounce() const {
+    if (light_ != RestirLight::Indirect) return {met_.data()};
+    Float4* const numbers = bounce_numbers_.data();
+    const std::size_t pixels = pixels_;
+    return {met_.data(), numbers, numbers + pixels, numbers + 2 * pixels, numbers + 3 * pixels};
+}
+
+uint64_t Restir::rays() const {
+    uint64_t sum = 0;
+    for (const uint32_t count : ray_counts_.download()) sum += count;
+    return sum;
+}
+
+void Restir::add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
+                 const PreviousScene& before, const RestirSettings& settings) {
+    PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
+    const NoisyFrameView& noisy = frame.view();
+    const FilmView film = frame.film_view();
+    const SceneView& scene = picture.scene;
+    Float4 *const place_before = seen_before_.data(), *const normal_before = place_before + pixels_;
+    const PixelSurfaces here = {noisy.place, picture.camera, numbers.sampler, numbers.sample, numbers.seed};
+    const PixelSurfaces there = {place_before, camera_before_, numbers_before_.sampler, numbers_before_.sample,
+                                 numbers_before_.seed};
+    LightReservoir *const fresh = reservoirs_.data(), *const kept = fresh + pixels_;
+    ray_counts_.zero();
+    traced_ = 0;
+
+    BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
+    const bool has_bounces = light_ == RestirLight::Indirect;
+    if (has_bounces) launch(*queue_, "take_bounces", pixels_, TakeBounces{scene, here, film, fresh_bounces});
+    launch(*queue_, "draw_candidates", pixels_, DrawCandidates{scene, here, met_.data(), fresh, settings.candidates});
+    ask(scene, here, fresh, tracer, 0);
+    if (has_history_ && settings.history > 0) {
+        const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
+        launch(*queue_, "find_before", pixels_,
+               FindBefore{scene, before, cameras, noisy.place, noisy.normal, place_before, normal_before,
+                          neighbours_.data()});
+        const auto most = static_cast<float>(settings.history);
+        reuse(scene, here, there, fresh, kept, fresh, most, 2, tracer, kGroupReuse);
+        if (has_bounces) {
+            reuse(scene, here, there, fresh_bounces, kept_bounces, fresh_bounces, most, 2, tracer, kGroupReuse + 1);
+        }
+    }
+    launch(*queue_, "find_beside", pixels_,
+           FindBeside{here, noisy.normal, settings.neighbours, settings.radius, neighbours_.data()});
+    reuse(scene, here, here, fresh, fresh, kept, kInfinity, kMostEntries, tracer, kGroupReuse + 2);
+    launch(*queue_, "add_direct_light", pixels_, AddDirectLight{scene, here, kept, film});
+    if (has_bounces) {
+        reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kInfinity, kMostEntries, tracer,
+              kGroupReuse + 3);
+        launch(*queue_, "add_indirect_light", pixels_, AddIndirectLight{scene, here, kept_bounces, film});
+    }
+
+    queue_->copy_on_device(place_before, noisy.place, pixels_ * sizeof(Float4));
+    queue_->copy_on_device(normal_before, noisy.normal, pixels_ * sizeof(Float4));
+    camera_before_ = picture.camera;
+    numbers_before_ = numbers;
+    has_history_ = true;
+}
+
+/// `own` and `others`, by the neighbours found last, become `to`: of `entries` pixels at most.
+template <class Reservoir>
+void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
+                   const Reservoir* others, Reservoir* to, float most_count, uint32_t entries, SceneTracer& tracer,
+                   uint32_t group) {
+    launch(*queue_, "reuse_reservoirs", pixels_,
+           ReuseReservoirs<Reservoir>{scene, here, there, own, others, neighbours_.data(), to, shares_.data(),
+                                      most_count, group});
+    for (uint32_t entry = 0; entry < entries; ++entry) {
+        ask(scene, entry == 0 ? here : there, to, tracer, entry);
+    }
+    launch(*queue_, "finish_reuse", pixels_, FinishReuse<Reservoir>{to});
+}
+
+/// Of entry `entry`, whether it sees the items of `reservoirs`.
+template <class Reservoir>
+void Restir::ask(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs, SceneTracer& tracer,
+                 uint32_t entry) {
+    PERTEV_CHECK(traced_ < kMostTraces);
+    uint32_t* const count = ray_counts_.data() + traced_++;
+    const SightRaysView rays = {
+        rays_.data(), ray_ends_.data(), ray_ends_.data() + pixels_, ray_words_.data(), ray_words_.data() + pixels_,
+        count};
+    launch(*queue_, "ask_for_sight", pixels_,
+           AskForSight<Reservoir>{scene, surfaces, neighbours_.data(), shares_.data(), reservoirs, rays, entry});
+    const WorkCount asked = {pixels_, count};
+    tracer.find_occlusions(rays.query(), asked, {nullptr, rays.keys});
+    launch(*queue_, "count_sight", asked, CountSight<Reservoir>{rays, shares_.data(), reservoirs, entry});
+}
+
+} // namespace pertev

@@ -1,0 +1,157 @@
+#pragma once
+
+// A pixel's reservoir and those of its neighbours become one: for the frame before, and again for pixels beside.
+// Reservoirs of any kind have what light_reservoir.h and bounce_reservoir.h give theirs: light_scattered and
+// find_sight.
+//
+// Item i, kept by pixel i, is picked by share(i, item i) target(own pixel, item i) weight i, with
+//   share(j, x) = count j target(j, x) / sum over all k of count k target(k, x)
+// the generalised balance heuristic over targets without visibility (Lin et al., "Generalized Resampled Importance
+// Sampling", SIGGRAPH 2022, section 5.1). A pixel's items are all seen by it, so that of the shares of the picked item
+// y only those count whose pixel sees y: AskForSight and CountSight find these, one pixel after the other, and the
+// weight is divided by their sum. So no light is lost or counted twice, whatever lies between, at one ray a neighbour.
+
+#include "restir/find_neighbours.h"
+#include "restir/sight_rays.h"
+#include "restir/weighted_pick.h"
+
+namespace pertev {
+
+/// Pixels whose reservoirs are combined: the own one is entry 0.
+inline constexpr uint32_t kMostEntries = kMostNeighbours + 1;
+
+/// Shares of the picked item, by entry.
+struct alignas(16) Shares {
+    float of[kMostEntries] = {};
+};
+
+template <class Reservoir>
+struct ReuseReservoirs {
+    SceneView scene;
+    PixelSurfaces here, there; // entry 0; the others
+    const Reservoir *own, *others;
+    const Neighbours* neighbours;
+    Reservoir* to;
+    Shares* shares;
+    float most_count; // of a neighbour
+    uint32_t group;   // of random numbers
+
+    HD void operator()(uint32_t pixel) const {
+        const Reservoir first = own[pixel];
+        Reservoir result = first;
+        result.source = 0, result.seen = 1;
+        Shares result_shares;
+        result_shares.of[0] = 1;
+        if (first.count > 0 && neighbours[pixel].pixels[0] != kNoPixel) combine(pixel, first, result, result_shares);
+        to[pixel] = result;
+        shares[pixel] = result_shares;
+    }
+
+private:
+    HD void combine(uint32_t pixel, const Reservoir& first, Reservoir& result, Shares& result_shares) const {
+        Reservoir entries[kMostEntries];
+        float targets[kMostEntries][kMostEntries]; // of pixel j, of item i
+        entries[0] = first;
+        uint32_t count = 1;
+        for (uint32_t k = 0; k < kMostNeighbours && neighbours[pixel].pixels[k] != kNoPixel; ++k) {
+            entries[count] = others[neighbours[pixel].pixels[k]];
+            entries[count].count = min(entries[count].count, most_count);
+            ++count;
+        }
+        for (uint32_t j = 0; j < count; ++j) {
+            for (uint32_t i = 0; i < count; ++i) targets[j][i] = 0;
+            if (!(entries[j].count > 0)) continue;
+            const PixelSurfaces& surfaces = j == 0 ? here : there;
+            const uint32_t seen_by = j == 0 ? pixel : neighbours[pixel].pixels[j - 1];
+            const Vec3 direction = surfaces.direction(seen_by);
+            const Surface surface = make_surface(scene, surfaces.hit(seen_by), direction);
+            for (uint32_t i = 0; i < count; ++i) {
+                if (!(entries[i].weight > 0)) continue;
+                targets[j][i] = luminance(light_scattered(scene, surface, -direction, entries[i]));
+            }
+        }
+        WeightedPick pick = {sample_1d(here.sampler, here.key(pixel), group)};
+        result = {};
+        float picked_sum = 0, all = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            all += entries[i].count;
+            float sum = 0;
+            for (uint32_t j = 0; j < count; ++j) sum += entries[j].count * targets[j][i];
+            const float share = entries[i].count * targets[i][i] / sum;
+            if (!(sum > 0) || !pick.takes(share * targets[0][i] * entries[i].weight)) continue;
+            result = entries[i];
+            result.source = i;
+            picked_sum = sum;
+        }
+        result.count = all;
+        result.weight = 0;
+        if (!(pick.sum > 0)) return;
+        const uint32_t picked = result.source;
+        result.weight = pick.sum / targets[0][picked];
+        if (!is_finite(result.weight)) result.weight = 0;
+        for (uint32_t j = 0; j < kMostEntries; ++j) {
+            result_shares.of[j] = j < count ? entries[j].count * targets[j][picked] / picked_sum : 0.0f;
+        }
+        result.seen = result_shares.of[picked];
+    }
+};
+
+/// Asks whether the pixel of entry `entry` sees the picked item, where that is not known.
+template <class Reservoir>
+struct AskForSight {
+    SceneView scene;
+    PixelSurfaces surfaces; // of that entry
+    const Neighbours* neighbours;
+    const Shares* shares;
+    Reservoir* reservoirs;
+    SightRaysView rays;
+    uint32_t entry;
+
+    HD void operator()(uint32_t pixel) const {
+        const Reservoir& reservoir = reservoirs[pixel];
+        if (!(reservoir.weight > 0) || reservoir.source == entry) return;
+        if (entry > 0 && !(shares[pixel].of[entry] > 0)) return;
+        const uint32_t from = entry == 0 ? pixel : neighbours[pixel].pixels[entry - 1];
+        const PlacedTriangle triangle = surfaces.triangle(scene, from);
+        const uint32_t coin = surfaces.coin(from);
+        Ray ray;
+        TriangleId target;
+        if (find_sight(scene, reservoir, triangle, coin, ray, target)) {
+            const Hit at = surfaces.hit(from);
+            rays.add(ray, {at.instance, at.primitive}, target, coin, pixel);
+        } else if (entry == 0) {
+            reservoirs[pixel].weight = 0;
+        }
+    }
+};
+
+/// What became of the rays.
+template <class Reservoir>
+struct CountSight {
+    SightRaysView rays;
+    const Shares* shares;
+    Reservoir* reservoirs;
+    uint32_t entry;
+
+    HD void operator()(uint32_t i) const {
+        Reservoir& reservoir = reservoirs[rays.pixels[i]];
+        if (rays.is_free(i)) {
+            reservoir.seen += shares[rays.pixels[i]].of[entry];
+        } else if (entry == 0) {
+            reservoir.weight = 0;
+        }
+    }
+};
+
+/// The weight is that of an item which all entries that count could have kept.
+template <class Reservoir>
+struct FinishReuse {
+    Reservoir* reservoirs;
+
+    HD void operator()(uint32_t pixel) const {
+        Reservoir& reservoir = reservoirs[pixel];
+        reservoir.weight = reservoir.weight > 0 ? reservoir.weight / reservoir.seen : 0.0f;
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,33 @@
+#pragma once
+
+// Rays that ask whether two places see each other, side by side as a tracer takes them, each for a pixel.
+
+#include <cstdint>
+
+#include "device/atomic_add.h"
+#include "render/accept_hit.h"
+#include "render/ray_queue.h"
+
+namespace pertev {
+
+struct SightRaysView {
+    Ray* rays;
+    Uint2 *starts, *targets;
+    uint32_t* keys;   // then what the ray met
+    uint32_t* pixels; // whose they are
+    uint32_t* count;
+
+    RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets, .keys = keys}; }
+
+    HD void add(const Ray& ray, TriangleId start, TriangleId target, uint32_t key, uint32_t pixel) const {
+        const uint32_t i = atomic_add(count, 1u);
+        store_ray(rays + i, ray);
+        starts[i] = {start.instance, start.primitive};
+        targets[i] = {target.instance, target.primitive};
+        keys[i] = key;
+        pixels[i] = pixel;
+    }
+    HD bool is_free(uint32_t i) const { return keys[i] == kNoHit; }
+};
+
+} // namespace pertev

@@ -1,0 +1,60 @@
+#pragma once
+
+// First stage of indirect light: the place that each path's first bounce met, with what it was found to send, is taken
+// out of the sample into a reservoir.
+//
+// Source: Ouyang et al. 2021 (bounce_reservoir.h), section 4.1.
+
+#include "render/film_view.h"
+#include "restir/bounce_reservoir.h"
+
+namespace pertev {
+
+struct TakeBounces {
+    SceneView scene;
+    PixelSurfaces here;
+    FilmView film; // of the frame
+    BounceReservoir* to;
+
+    HD void operator()(uint32_t pixel) const {
+        BounceReservoir& reservoir = to[pixel];
+        reservoir = {};
+        if (!here.is_there(pixel)) return;
+        reservoir.count = 1;
+        const FirstBounceView& left = film.frame.first_bounce;
+        const Float4 place = left.place[pixel], sent = left.sent[pixel], way = left.way[pixel];
+        const Rgb found = {sent.x, sent.y, sent.z};
+        if (bits_of(place.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
+        const Vec3 direction = here.direction(pixel);
+        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        BounceReservoir taken = {bits_of(place.x), bits_of(place.y), place.z, place.w};
+        const SeenPlace seen = see_place(place_of(scene, taken), surface.position);
+        if (!seen.is_there) return; // stays in the sample
+        const Surface there = make_surface(scene, taken.hit(), seen.wi);
+        const float passage = diffuse_passage(there, -seen.wi);
+        if (!(passage > 0)) return;
+        const Rgb share = surface.diffuse_share(-direction, seen.wi);
+        if (is_black(share)) return;
+        take_out(pixel, share * found);
+        taken.count = 1;
+        taken.side = seen.side;
+        taken.sent =
+            (1.0f / passage) * Rgb{quotient(found.r, way.x), quotient(found.g, way.y), quotient(found.b, way.z)};
+        taken.weight = 1.0f / (way.w * seen.measure);
+        if (is_finite(taken.sent) && is_finite(taken.weight)) reservoir = taken;
+    }
+
+private:
+    /// A path that left the first surface by another lobe has all of its light outside the diffuse part.
+    HD void take_out(uint32_t pixel, Rgb light) const {
+        Rgb diffuse = light;
+        if (film.frame.splits_light()) {
+            const Float4 there = film.frame.diffuse[pixel];
+            diffuse = {min(light.r, there.x), min(light.g, there.y), min(light.b, there.z)};
+        }
+        add_to_sample(film, pixel, -1.0f * light, -1.0f * diffuse);
+    }
+    HD static float quotient(float light, float throughput) { return throughput > 0 ? light / throughput : 0.0f; }
+};
+
+} // namespace pertev

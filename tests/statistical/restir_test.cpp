@@ -1,0 +1,195 @@
+// ReSTIR is without bias: the mean over many frames that know nothing of each other is the path tracer's. With history
+// each frame leans on those before, and its mean stays near.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "formats/read_scene.h"
+#include "render/update_scene.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr uint32_t kRestirWidth = 40, kRestirHeight = 28, kRestirBlocks = 4; // along each side
+constexpr ReconstructionSettings kAsTheyAre = {
+    .history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false};
+
+struct RestirCase {
+    std::string name;
+    Scene scene;
+    Camera camera;
+};
+
+RestirCase builtin_case(const std::string& name) {
+    Messages messages;
+    Scene scene = read_scene(name, {}, messages);
+    const Camera camera = scene.cameras.at(0);
+    return {name, std::move(scene), camera};
+}
+
+/// The mixed scene by its panorama alone.
+RestirCase sky_case() {
+    Scene scene = make_mixed_scene();
+    scene.lights.clear();
+    for (Material& material : scene.materials) material.emission = {0, 0, 0};
+    return {"sky", std::move(scene), mixed_scene_camera()};
+}
+
+/// The Cornell box with walls of rough plastic and blocks of metal.
+RestirCase glossy_case() {
+    RestirCase box = builtin_case("cornell-box");
+    box.name = "glossy";
+    for (std::size_t i = 0; i < box.scene.materials.size(); ++i) {
+        Material& material = box.scene.materials[i];
+        material.kind = MaterialKind::MetallicRoughness;
+        material.metallic = i == 0 ? 0.8f : 0.0f;
+        material.roughness = 0.3f;
+    }
+    return box;
+}
+
+std::vector<RestirCase> restir_cases() {
+    std::vector<RestirCase> all;
+    all.push_back(builtin_case("cornell-box"));
+    all.push_back(glossy_case());
+    all.push_back(sky_case());
+    all.push_back(builtin_case("many-lights"));
+    return all;
+}
+
+RenderSettings restir_settings() {
+    RenderSettings settings;
+    settings.width = kRestirWidth, settings.height = kRestirHeight;
+    settings.path.max_depth = 3;
+    return settings;
+}
+
+/// Sums over pixels and channels, of the picture and of its blocks.
+struct BlockMeans {
+    double whole = 0;
+    std::vector<double> blocks = std::vector<double>(kRestirBlocks * kRestirBlocks);
+
+    void add(const Image& image, double scale) {
+        for (uint32_t y = 0; y < kRestirHeight; ++y) {
+            for (uint32_t x = 0; x < kRestirWidth; ++x) {
+                double sum = 0;
+                for (int c = 0; c < 3; ++c) sum += static_cast<double>(image.at(x, y)[c]);
+                whole += scale * sum;
+                blocks[y * kRestirBlocks / kRestirHeight * kRestirBlocks + x * kRestirBlocks / kRestirWidth] +=
+                    scale * sum;
+            }
+        }
+    }
+    /// What the camera's first `samples` rays meet themselves, which is noisy where lamps are small.
+    void take_out_lamps(Session& session, uint32_t samples) {
+        RenderSettings settings = session.settings();
+        settings.path.max_depth = 0;
+        settings.samples = samples;
+        add(session.look_aside(session.camera(), settings).picture, -1);
+    }
+};
+
+/// Of light that surfaces scatter, as the path tracer finds it by `samples`.
+BlockMeans scattered_light(Session& session, uint32_t samples) {
+    BlockMeans means;
+    session.cut();
+    session.render(samples);
+    means.add(session.picture(), 1);
+    means.take_out_lamps(session, samples);
+    return means;
+}
+
+/// The same of `frames` frames, of which those before `settled` do not count.
+BlockMeans scattered_light_in_frames(Session& session, const RestirSettings& restir, uint32_t frames,
+                                     uint32_t settled) {
+    BlockMeans means;
+    session.cut();
+    for (uint32_t k = 0; k < settled + frames; ++k) {
+        session.render_frame(k < settled ? frames + k : k - settled, kAsTheyAre, restir);
+        if (k >= settled) means.add(session.frame().picture(), 1.0 / frames);
+    }
+    means.take_out_lamps(session, frames);
+    return means;
+}
+
+void check_equal_light(const BlockMeans& means, const BlockMeans& expected, double whole, double block) {
+    CHECK(expected.whole > 0);
+    CHECK(means.whole == doctest::Approx(expected.whole).epsilon(whole));
+    for (std::size_t i = 0; i < means.blocks.size(); ++i) {
+        CAPTURE(i);
+        // Dark blocks hold a few pixels of something bright: also of the blocks' mean.
+        const double least = 0.01 * expected.whole / (kRestirBlocks * kRestirBlocks);
+        CHECK(std::fabs(means.blocks[i] - expected.blocks[i]) <= block * expected.blocks[i] + least);
+    }
+}
+
+} // namespace
+
+TEST_CASE("without history the mean over frames with ReSTIR is the path tracer's") {
+    for (const RestirCase& c : restir_cases()) {
+        CAPTURE(c.name);
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, c.camera, restir_settings());
+        // By the same samples: the noise of what ReSTIR leaves to the paths is then the same.
+        const auto frames = static_cast<uint32_t>(effort(384, 8192));
+        const BlockMeans expected = scattered_light(session, frames);
+        for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
+            CAPTURE(static_cast<int>(light));
+            const RestirSettings restir = {.light = light, .radius = 6, .history = 0};
+            check_equal_light(scattered_light_in_frames(session, restir, frames, 0), expected, 0.005, 0.03);
+        }
+    }
+}
+
+TEST_CASE("with history the mean over frames with ReSTIR stays near the path tracer's") {
+    for (const RestirCase& c : {builtin_case("cornell-box"), builtin_case("many-lights")}) {
+        CAPTURE(c.name);
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, c.camera, restir_settings());
+        const auto frames = static_cast<uint32_t>(effort(192, 8192));
+        const BlockMeans expected = scattered_light(session, frames);
+        const RestirSettings restir = {.light = RestirLight::Indirect, .radius = 6};
+        // Frames lean on twenty before, so that their mean is known less well.
+        check_equal_light(scattered_light_in_frames(session, restir, frames, 20), expected, 0.015, 0.06);
+    }
+}
+
+TEST_CASE("while a lamp moves the mean over frames with ReSTIR stays near the path tracer's") {
+    constexpr uint32_t kMoving = 48;
+    const auto mean_of_motion = [&](const RestirSettings& restir) {
+        Messages messages;
+        RestirCase box = builtin_case("cornell-box");
+        const uint32_t lamp = static_cast<uint32_t>(box.scene.instances.size() - 1);
+        PreparedScene prepared = prepare_scene(box.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, box.camera, restir_settings());
+        BlockMeans means;
+        for (uint32_t k = 0; k < kMoving; ++k) {
+            if (k > 0) {
+                box.scene.instances[lamp].world_from_local.translation += Vec3{0.002f, -0.003f, -0.002f};
+                SceneUpdate update;
+                update.moved_instances = {lamp};
+                prepared = update_scene(prepared, box.scene, update, messages);
+                session.update_scene(prepared, parts_of(update));
+            }
+            session.render_frame(k, kAsTheyAre, restir);
+            means.add(session.frame().picture(), 1.0 / kMoving);
+        }
+        return means;
+    };
+    const BlockMeans expected = mean_of_motion({});
+    check_equal_light(mean_of_motion({.light = RestirLight::Indirect, .radius = 6}), expected, 0.03, 0.25);
+    check_equal_light(mean_of_motion({.light = RestirLight::Indirect, .radius = 6, .history = 0}), expected, 0.03,
+                      0.25);
+}
