@@ -60,7 +60,7 @@ ExrMetadata camera_metadata(const CameraSource& source);
 /// the camera, the settings, how it is shown.
 ExrMetadata settings_metadata(const PictureRecord& record);
 
-/// settings_metadata and what came of it. `hash`: of the picture.
+/// settings_metadata and what came of it. `hash`: of the film's picture, denoised or not.
 ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash);
 
 } // namespace pertev

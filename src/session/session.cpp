@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
+#include "device/launch.h"
+#include "render/add_frame_to_film.h"
 #include "render/camera_work.h"
 #include "render/hidden_back_share.h"
 #include "session/meter_exposure.h"
@@ -165,14 +167,20 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     if (count == 0) return 0;
     const Stopwatch since_call;
     Film& film = current_film();
-    begin(camera_, settings_, count);
+    const bool denoises = settings_.denoise != Denoise::None;
+    if (denoises && first == 0) begin_signals();
+    begin(camera_, settings_, denoises ? 1 : count);
     integrator_->abandon_when(abandon_);
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
     for (uint32_t done = 0; done < count;) {
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
-        integrator_->render(first + done, pass, film.view());
+        if (denoises) {
+            render_signals(first + done, pass);
+        } else {
+            integrator_->render(first + done, pass, film.view());
+        }
         if (abandon_ != nullptr && *abandon_ && !queue_.is_cuda()) { // parts of a sample may be missing
             begin_film();
             return 0;
@@ -190,14 +198,76 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     return history_.samples - first;
 }
 
-void Session::render_frame(uint32_t number, const ReconstructionSettings& settings) {
+/// The frame that takes samples: the one there is, or another one where it is not of this size or kind. What was
+/// reconstructed of the one before then says nothing more.
+NoisyFrame& Session::fit_noisy_frame() {
     const bool splits_light = scene_.value().view().known == MaterialsKnown::Nothing;
     const uint32_t width = settings_.width, height = settings_.height;
-    if (!noisy_frame_ || noisy_frame_->width() != width || noisy_frame_->height() != height ||
-        noisy_frame_->splits_light() != splits_light) {
-        noisy_frame_.reset(); // before the new ones, so that both need not fit
-        reconstruction_.reset();
-        noisy_frame_.emplace(queue_, width, height, splits_light);
+    if (noisy_frame_ && noisy_frame_->width() == width && noisy_frame_->height() == height &&
+        noisy_frame_->splits_light() == splits_light) {
+        return *noisy_frame_;
+    }
+    noisy_frame_.reset(); // before the new one, so that both need not fit
+    reconstruction_.reset();
+    return noisy_frame_.emplace(queue_, width, height, splits_light);
+}
+
+/// Finds what camera rays meet: those through the pixels' centres, and those of the first samples.
+void Session::begin_signals() {
+    NoisyFrame& frame = fit_noisy_frame();
+    if (!denoiser_ || denoiser_->width() != settings_.width || denoiser_->height() != settings_.height) {
+        denoiser_.reset();
+        denoiser_.emplace(queue_, settings_.width, settings_.height);
+    }
+    RenderSettings of_features = settings_;
+    of_features.path.max_depth = 0;
+    RenderSettings of_centres = of_features;
+    of_centres.filter = PixelFilter::Box;
+    of_centres.filter_radius = 0x1p-20f; // pixels
+    Camera pinhole = camera_;
+    pinhole.aperture_radius = 0;
+    begin(pinhole, of_centres, 1);
+    frame.begin();
+    integrator_->render(0, 1, frame.film_view());
+    denoiser_->begin(frame, view_of(pinhole, of_centres).camera.view);
+    begin(camera_, of_features, 1);
+    for (uint32_t sample = 0; sample < PictureDenoiser::kFeatures; ++sample) {
+        integrator_->render(sample, 1, frame.film_view());
+        denoiser_->add_features(frame, scene_->view());
+    }
+}
+
+/// Adds samples to the film and to the signals that are denoised.
+void Session::render_signals(uint32_t first, uint32_t count) {
+    const SceneView& scene = scene_.value().view();
+    FilmView into = noisy_frame_->film_view();
+    into.invalid = film_->view().invalid;
+    for (uint32_t sample = first; sample < first + count; ++sample) {
+        integrator_->render(sample, 1, into);
+        if (abandon_ != nullptr && *abandon_) return;
+        launch(queue_, "add_frame_to_film", settings_.width * settings_.height,
+               AddFrameToFilm{noisy_frame_->view(), film_->view(), scene, sample == 0});
+        denoiser_->add(*noisy_frame_, scene);
+    }
+    queue_.wait();
+}
+
+std::optional<Image> Session::denoised() {
+    if (settings_.denoise == Denoise::None || history_.samples == 0) return std::nullopt;
+    Image picture = denoiser_.value().picture();
+    if (!settings_.transparent) return picture;
+    Image with_alpha = this->picture();
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        with_alpha.pixels[i / 3 * 4 + i % 3] = picture.pixels[i];
+    }
+    return with_alpha;
+}
+
+void Session::render_frame(uint32_t number, const ReconstructionSettings& settings) {
+    const uint32_t width = settings_.width, height = settings_.height;
+    fit_noisy_frame();
+    if (!reconstruction_ || reconstruction_->width() != width || reconstruction_->height() != height) {
+        reconstruction_.reset(); // before the new one, so that both need not fit
         reconstruction_.emplace(queue_, width, height);
     }
     begin(camera_, settings_, 1);
@@ -233,7 +303,7 @@ RenderStats Session::stats() {
     return stats;
 }
 
-RenderResult Session::result() { return {stats(), picture(), layers(), current_film().ids()}; }
+RenderResult Session::result() { return {stats(), picture(), denoised(), layers(), current_film().ids()}; }
 
 float Session::meter(ToneMap tone_map) {
     return meter_exposure(settings_, tone_map, [this](const RenderSettings& settings) {
@@ -263,12 +333,21 @@ std::vector<RayWork> Session::count_camera_work() {
 }
 
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
-    const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
     const TracerChoice tracers = tracers_of(settings, on_cuda);
+    std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
+    const bool denoises = settings.denoise != Denoise::None;
+    const bool has_loop = can_walk_on_host(tracers, on_cuda);
+    if (denoises) {
+        const bool splits_light = materials_known(*scene.scene) == MaterialsKnown::Nothing;
+        film += NoisyFrame::predicted_bytes(settings.width, settings.height, splits_light) +
+                PictureDenoiser::predicted_bytes(settings.width, settings.height);
+        const uint64_t paths = std::min(uint64_t(settings.width) * settings.height, uint64_t(settings.batch));
+        if (splits_light && !(has_loop && settings.body == PathBody::Loop)) film += 3 * sizeof(Float4) * paths;
+    }
     const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
     return predicted_bytes(scene) + structures + film +
-           predicted_bytes(settings, uint64_t(settings.width) * settings.height, settings.samples, on_cuda,
-                           can_walk_on_host(tracers, on_cuda));
+           predicted_bytes(settings, uint64_t(settings.width) * settings.height, denoises ? 1 : settings.samples,
+                           on_cuda, has_loop);
 }
 
 } // namespace pertev

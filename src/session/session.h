@@ -22,6 +22,7 @@
 #include <memory>
 #include <optional>
 
+#include "denoise/picture_denoiser.h"
 #include "denoise/reconstruction.h"
 #include "image/tone_map_image.h"
 #include "render/filter_table.h"
@@ -72,13 +73,16 @@ public:
     /// Of the present picture; without samples, all zero.
     const Film& film() { return current_film(); }
     Image picture() { return current_film().picture(history_.samples, settings_.transparent); }
+    /// Reconstructed of the samples in the film; none where the settings do not ask for it, or there are no samples.
+    /// Throws Error(DeviceFault).
+    std::optional<Image> denoised();
     std::vector<FilmLayer> layers() { return current_film().layers(history_.samples); }
     /// The picture as a display shows it, times 2^exposure_stops: tone_map_image of picture().
     Rgba8Image display(float exposure_stops, ToneMap tone_map);
     /// Reads two numbers back. The share of hidden backs is counted once for each scene, camera and size that is asked
     /// about.
     RenderStats stats();
-    /// Picture, layers, ids and stats together.
+    /// Picture, denoised picture, layers, ids and stats together.
     RenderResult result();
 
     /// Stops for the present picture (session/meter_exposure.h), found over the scene as it lies on the device: nothing
@@ -115,6 +119,9 @@ private:
     void keep_places();
     void take_tracer();
     void upload(const PreparedScene& scene, uint32_t parts);
+    NoisyFrame& fit_noisy_frame();
+    void begin_signals();
+    void render_signals(uint32_t first, uint32_t count);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
     void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
 
@@ -132,7 +139,8 @@ private:
     std::optional<Film> film_, meter_film_;
     std::optional<NoisyFrame> noisy_frame_;
     std::optional<Reconstruction> reconstruction_;
-    Buffer<InstanceView> places_before_; // of instances, in the frame before
+    std::optional<PictureDenoiser> denoiser_; // of the film's samples
+    Buffer<InstanceView> places_before_;      // of instances, in the frame before
     uint32_t instance_count_ = 0;
     bool has_moved_ = false; // since the last frame: places_before_ counts
     RayCounts frame_rays_;

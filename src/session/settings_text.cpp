@@ -10,6 +10,7 @@ constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
                                     PixelFilter::BlackmanHarris};
+constexpr Denoise kDenoisers[] = {Denoise::None, Denoise::Svgf};
 constexpr ToneMap kToneMaps[] = {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral};
 
 std::string_view name_of(PathLight light) {
@@ -88,6 +89,19 @@ std::string_view name_of(PixelFilter filter) {
 
 std::optional<PixelFilter> filter_named(std::string_view name) { return value_named(kFilters, name); }
 std::vector<std::string> filter_names() { return names_of(kFilters); }
+
+std::string_view name_of(Denoise denoise) {
+    switch (denoise) {
+    case Denoise::None:
+        return "none";
+    case Denoise::Svgf:
+        return "svgf";
+    }
+    return "";
+}
+
+std::optional<Denoise> denoise_named(std::string_view name) { return value_named(kDenoisers, name); }
+std::vector<std::string> denoise_names() { return names_of(kDenoisers); }
 
 std::vector<std::string> tone_map_names() { return names_of(kToneMaps); }
 
