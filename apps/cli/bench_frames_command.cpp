@@ -28,6 +28,7 @@ struct FramesFlags {
     bool still = false, no_reconstruction = false;
     bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false;
     std::string write;
+    float resolution_scale = 1;
     uint32_t reference = 0, passes = 5, history = 32;
 };
 
@@ -63,7 +64,8 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
     settings.limit_fireflies = !flags.no_firefly_limit;
     settings.limit_history = !flags.no_history_limit;
     settings.anti_alias = !flags.no_anti_alias;
-    if (flags.no_reconstruction) settings = {1, 0, false, false, false};
+    if (flags.no_reconstruction) settings = {1, 0, false, false, false, 1};
+    settings.resolution_scale = flags.resolution_scale;
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction;
     FrameFigures figures;
@@ -179,6 +181,11 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
     verb.add_option("--passes", flags->passes, "of the wavelet filter")
         ->type_name("N")
         ->check(whole_between(0, 8))
+        ->capture_default_str();
+    verb.add_option("--resolution-scale", flags->resolution_scale,
+                    "find light at a lower resolution, by this factor of each side;\nedges and textures stay")
+        ->type_name("X")
+        ->check(number_between(0.1f, 1.0f))
         ->capture_default_str();
     verb.add_option("--reference", flags->reference,
                     "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")

@@ -39,8 +39,10 @@ HistoryView Reconstruction::history(uint32_t frame) const {
             wide + 4 * pixels};
 }
 
-void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                         const PreviousScene& scene_before, const ReconstructionSettings& settings) {
+/// Light of the frame, filtered; `room`: a picture's array that is free.
+SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
+                                   const PreviousScene& scene_before, const ReconstructionSettings& settings,
+                                   Float4*& room) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const uint32_t pixels = width_ * height_;
     const HistoryView now = history(frames_ + 1), before = history(frames_);
@@ -51,7 +53,6 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     SignalsView a = {signals, signals + pixels},
                 b = {signals + 2 * std::size_t(pixels), signals + 3 * std::size_t(pixels)};
 
-    timer_.start();
     launch(*queue_, "split_signals", pixels, SplitSignals{noisy, a, now});
     launch(*queue_, "accumulate_signals", pixels,
            AccumulateSignals{noisy, a, scene, scene_before, cameras, now, before, settings.history,
@@ -62,36 +63,78 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
                WaveletPass{now.normal, now.object, noisy.albedo, b, a, camera, width_, height_, 1 << pass, has_gloss});
         std::swap(a, b);
     }
-    Float4* const picture = settings.anti_alias ? a.diffuse : now.shown;
-    launch(*queue_, "compose_picture", pixels, ComposePicture{noisy, b, picture});
+    room = a.diffuse;
+    return b;
+}
+
+void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
+                         const PreviousScene& scene_before, const ReconstructionSettings& settings) {
+    if (enlarged_) cut();
+    enlarged_.reset();
+    const uint32_t pixels = width_ * height_;
+    const HistoryView now = history(frames_ + 1);
+    timer_.start();
+    Float4* room = nullptr;
+    const SignalsView light = filter(frame, camera, scene, scene_before, settings, room);
+    Float4* const picture = settings.anti_alias ? room : now.shown;
+    launch(*queue_, "compose_picture", pixels, ComposePicture{frame.view(), light, picture});
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", pixels,
-               AntiAlias{noisy, picture, scene, scene_before, cameras, now, before, has_history});
+               AntiAlias{frame.view(),
+                         picture,
+                         scene,
+                         scene_before,
+                         {camera, last_camera_, width_, height_},
+                         now,
+                         history(frames_),
+                         frames_ > 0});
     }
     timer_.stop();
     last_camera_ = camera;
     ++frames_;
 }
 
-Image Reconstruction::picture() const {
+void Reconstruction::add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
+                                  const CameraView& camera, const SceneView& scene, const PreviousScene& scene_before,
+                                  const ReconstructionSettings& settings) {
+    if (!enlarged_ || enlarged_->width() != features.width() || enlarged_->height() != features.height()) {
+        cut();
+        enlarged_.reset(); // before the new one, so that both need not fit
+        enlarged_.emplace(*queue_, features.width(), features.height());
+    }
+    const HistoryView now = history(frames_ + 1);
+    timer_.start();
+    Float4* room = nullptr;
+    const SignalsView light = filter(frame, light_camera, scene, scene_before, settings, room);
+    enlarged_->add(features, camera,
+                   {light, now.normal, now.object, light_camera, width_, height_, frame.splits_light()}, scene,
+                   scene_before, settings, frames_ > 0);
+    timer_.stop();
+    last_camera_ = light_camera;
+    ++frames_;
+}
+
+const Float4* Reconstruction::shown() const {
     PERTEV_CHECK(frames_ > 0);
-    const std::size_t pixels = std::size_t(width_) * height_;
-    std::vector<Float4> shown(pixels);
-    queue_->copy_to_host(shown.data(), history(frames_).shown, pixels * sizeof(Float4));
-    Image image{width_, height_, 3, {}};
+    return enlarged_ ? enlarged_->shown() : history(frames_).shown;
+}
+
+Image Reconstruction::picture() const {
+    const std::size_t pixels = std::size_t(shown_width()) * shown_height();
+    std::vector<Float4> colors(pixels);
+    queue_->copy_to_host(colors.data(), shown(), pixels * sizeof(Float4));
+    Image image{shown_width(), shown_height(), 3, {}};
     image.pixels.reserve(3 * pixels);
-    for (const Float4& p : shown) image.pixels.insert(image.pixels.end(), {p.x, p.y, p.z});
+    for (const Float4& p : colors) image.pixels.insert(image.pixels.end(), {p.x, p.y, p.z});
     return image;
 }
 
 Rgba8Image Reconstruction::display(ToneMap tone_map, float exposure_stops) const {
-    PERTEV_CHECK(frames_ > 0);
-    const uint32_t pixels = width_ * height_;
-    auto* const bytes =
-        reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(pixels)); // signals' room
-    launch(*queue_, "show_picture", pixels,
-           ShowPicture{history(frames_).shown, tone_map, exposure_scale(exposure_stops), bytes});
-    Rgba8Image image{width_, height_, {}};
+    const uint32_t pixels = shown_width() * shown_height();
+    auto* const signals = reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_);
+    uint8_t* const bytes = enlarged_ ? enlarged_->room_for_bytes() : signals;
+    launch(*queue_, "show_picture", pixels, ShowPicture{shown(), tone_map, exposure_scale(exposure_stops), bytes});
+    Rgba8Image image{shown_width(), shown_height(), {}};
     image.pixels.resize(std::size_t(pixels) * 4);
     queue_->copy_to_host(image.pixels.data(), bytes, image.pixels.size());
     return image;

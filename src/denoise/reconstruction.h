@@ -8,6 +8,9 @@
 // Source: Schied et al., "Spatiotemporal Variance-Guided Filtering: Real-Time Reconstruction for Path-Traced Global
 // Illumination", HPG 2017.
 
+#include <optional>
+
+#include "denoise/enlarged_frame.h"
 #include "denoise/reconstruction_settings.h"
 #include "denoise/reconstruction_view.h"
 #include "device/device_timer.h"
@@ -30,8 +33,15 @@ public:
     void add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene, const PreviousScene& before,
              const ReconstructionSettings& settings);
 
+    /// The same of a picture of another size, that of `features`: a frame whose paths end at the first surface, seen by
+    /// `camera`. `frame`, the light, is seen by `light_camera`. A picture of another size than the one before is a cut.
+    void add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
+                      const CameraView& camera, const SceneView& scene, const PreviousScene& before,
+                      const ReconstructionSettings& settings);
+
     /// Frames since the last cut.
     uint32_t frames() const { return frames_; }
+    /// Of the light; the picture's where it is not enlarged.
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     /// On the device, of the last add(). Waits for it.
@@ -43,6 +53,11 @@ public:
 
 private:
     HistoryView history(uint32_t frame) const;
+    SignalsView filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
+                       const PreviousScene& before, const ReconstructionSettings& settings, Float4*& room);
+    const Float4* shown() const;
+    uint32_t shown_width() const { return enlarged_ ? enlarged_->width() : width_; }
+    uint32_t shown_height() const { return enlarged_ ? enlarged_->height() : height_; }
 
     Queue* queue_;
     uint32_t width_, height_, frames_ = 0;
@@ -51,6 +66,7 @@ private:
     Buffer<Float4> wide_;  // arrays of Float4, of both histories and of signals
     Buffer<Vec2> squares_; // of both histories
     Buffer<uint32_t> objects_;
+    std::optional<EnlargedFrame> enlarged_; // where the picture has another size than its light
 };
 
 } // namespace pertev

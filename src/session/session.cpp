@@ -198,23 +198,20 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     return history_.samples - first;
 }
 
-/// The frame that takes samples: the one there is, or another one where it is not of this size or kind. What was
-/// reconstructed of the one before then says nothing more.
-NoisyFrame& Session::fit_noisy_frame() {
+/// A frame that takes samples: the one there is, or another one where it is not of this size or kind.
+NoisyFrame& Session::fit(std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height) {
     const bool splits_light = scene_.value().view().known == MaterialsKnown::Nothing;
-    const uint32_t width = settings_.width, height = settings_.height;
-    if (noisy_frame_ && noisy_frame_->width() == width && noisy_frame_->height() == height &&
-        noisy_frame_->splits_light() == splits_light) {
-        return *noisy_frame_;
+    if (frame && frame->width() == width && frame->height() == height && frame->splits_light() == splits_light) {
+        return *frame;
     }
-    noisy_frame_.reset(); // before the new one, so that both need not fit
-    reconstruction_.reset();
-    return noisy_frame_.emplace(queue_, width, height, splits_light);
+    if (frame && frame->splits_light() != splits_light) reconstruction_.reset(); // what it knows is of other signals
+    frame.reset(); // before the new one, so that both need not fit
+    return frame.emplace(queue_, width, height, splits_light);
 }
 
 /// Finds what camera rays meet: those through the pixels' centres, and those of the first samples.
 void Session::begin_signals() {
-    NoisyFrame& frame = fit_noisy_frame();
+    NoisyFrame& frame = fit(noisy_frame_, settings_.width, settings_.height);
     if (!denoiser_ || denoiser_->width() != settings_.width || denoiser_->height() != settings_.height) {
         denoiser_.reset();
         denoiser_.emplace(queue_, settings_.width, settings_.height);
@@ -264,20 +261,34 @@ std::optional<Image> Session::denoised() {
 }
 
 void Session::render_frame(uint32_t number, const ReconstructionSettings& settings) {
-    const uint32_t width = settings_.width, height = settings_.height;
-    fit_noisy_frame();
-    if (!reconstruction_ || reconstruction_->width() != width || reconstruction_->height() != height) {
+    RenderSettings of_light = settings_;
+    of_light.width = scaled_side(settings_.width, settings);
+    of_light.height = scaled_side(settings_.height, settings);
+    NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
+    if (!reconstruction_ || reconstruction_->width() != of_light.width ||
+        reconstruction_->height() != of_light.height) {
         reconstruction_.reset(); // before the new one, so that both need not fit
-        reconstruction_.emplace(queue_, width, height);
+        reconstruction_.emplace(queue_, of_light.width, of_light.height);
     }
-    begin(camera_, settings_, 1);
-    noisy_frame_->begin();
-    integrator_->render(number, 1, noisy_frame_->film_view());
+    begin(camera_, of_light, 1);
+    frame.begin();
+    integrator_->render(number, 1, frame.film_view());
     frame_rays_ = integrator_->rays();
-    const PictureView picture = view_of(camera_, settings_);
-    const SceneView& scene = picture.scene;
-    reconstruction_->add(*noisy_frame_, picture.camera.view, scene,
-                         {has_moved_ ? places_before_.data() : scene.instances, scene.meshes}, settings);
+    const PictureView light = view_of(camera_, of_light);
+    const PreviousScene before = {has_moved_ ? places_before_.data() : light.scene.instances, light.scene.meshes};
+    if (settings.resolution_scale < 1) {
+        RenderSettings of_features = settings_;
+        of_features.path.max_depth = 0;
+        NoisyFrame& features = fit(features_, settings_.width, settings_.height);
+        begin(camera_, of_features, 1);
+        integrator_->render(number, 1, features.film_view());
+        frame_rays_ = frame_rays_ + integrator_->rays();
+        const CameraView camera = view_of(camera_, of_features).camera.view;
+        reconstruction_->add_enlarged(frame, light.camera.view, features, camera, light.scene, before, settings);
+    } else {
+        features_.reset();
+        reconstruction_->add(frame, light.camera.view, light.scene, before, settings);
+    }
     has_moved_ = false;
 }
 

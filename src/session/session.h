@@ -94,7 +94,7 @@ public:
     /// a function of scene, camera, settings and number of each of these frames, on every device alike. Throws
     /// Error(OutOfMemory, DeviceFault).
     void render_frame(uint32_t number, const ReconstructionSettings& settings);
-    /// Of the last render_frame.
+    /// Of the last render_frame. Another resolution_scale is a cut.
     const Reconstruction& frame() const;
     /// Rays of the last render_frame.
     RayCounts frame_rays() const { return frame_rays_; }
@@ -119,7 +119,7 @@ private:
     void keep_places();
     void take_tracer();
     void upload(const PreparedScene& scene, uint32_t parts);
-    NoisyFrame& fit_noisy_frame();
+    NoisyFrame& fit(std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
     void begin_signals();
     void render_signals(uint32_t first, uint32_t count);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
@@ -138,6 +138,7 @@ private:
     FilterTable filter_;
     std::optional<Film> film_, meter_film_;
     std::optional<NoisyFrame> noisy_frame_;
+    std::optional<NoisyFrame> features_; // of frames whose light is found at a lower resolution
     std::optional<Reconstruction> reconstruction_;
     std::optional<PictureDenoiser> denoiser_; // of the film's samples
     Buffer<InstanceView> places_before_;      // of instances, in the frame before
