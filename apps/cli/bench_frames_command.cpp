@@ -29,6 +29,7 @@ struct FramesFlags {
     bool still = false;
     ReconstructionFlags reconstruction;
     std::string write;
+    float resolution_scale = 1;
     uint32_t reference = 0, restir_history = RestirSettings{}.history;
     std::string restir{name_of(RestirLight::Off)};
 };
@@ -59,7 +60,8 @@ struct FrameFigures {
 
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
-    const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
+    ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
+    settings.resolution_scale = flags.resolution_scale;
     RestirSettings restir;
     restir.light = restir_named(flags.restir).value();
     restir.history = flags.restir_history;
@@ -190,6 +192,11 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
     verb.add_option("--restir-history", flags->restir_history, "frames that it takes from the ones before for at most")
         ->type_name("N")
         ->check(whole_between(0, 1024))
+        ->capture_default_str();
+    verb.add_option("--resolution-scale", flags->resolution_scale,
+                    "find light at a lower resolution, by this factor of each side;\nedges and textures stay")
+        ->type_name("X")
+        ->check(number_between(0.1f, 1.0f))
         ->capture_default_str();
     verb.add_option("--reference", flags->reference,
                     "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")

@@ -227,6 +227,14 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("SECONDS")
         ->check(number_above_zero())
         ->group("Quality");
+    verb.add_option(
+            "--denoise", flags.denoise,
+            "svgf reconstructs the picture of its samples: for few of them;\nbiased. Files show that; EXR has the "
+            "undenoised picture\nbeside it, as the layer noisy. none: their mean")
+        ->type_name("NAME")
+        ->check(one_of(denoise_names()))
+        ->capture_default_str()
+        ->group("Quality");
     add_time_flags(verb, flags, false);
     add_motion_flags(verb, flags);
     verb.add_flag("--strict", flags.strict,
@@ -252,6 +260,8 @@ void check_shown_picture_flags(const RenderFlags& flags) {
 void check_render_flags(const RenderFlags& flags, Messages& messages) {
     check_shown_picture_flags(flags);
     check_motion_flags(flags);
+    refuse(flags.denoise != name_of(Denoise::None) && flags.max_depth == 0,
+           "--denoise: with --max-depth 0 no light is scattered, so that there is nothing to denoise");
     const std::optional<FrameSequence> frames = frame_sequence(flags);
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
@@ -288,6 +298,7 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
     settings.filter = *filter_named(flags.filter);
     settings.filter_radius = flags.filter_radius;
     settings.transparent = flags.transparent;
+    settings.denoise = *denoise_named(flags.denoise);
     settings.time_limit_s = flags.time_limit_s;
     for (const std::string& name : flags.aovs) settings.aovs |= *aov_named(name);
     settings.path = {.max_depth = flags.max_depth,

@@ -30,7 +30,7 @@ struct RenderFlags {
     uint32_t turntable = 0;
     bool goes_on = false; // --continue
     std::string integrator{integrator_name({})}, sampler{name_of(PathSettings{}.sampler)},
-        filter{name_of(RenderSettings{}.filter)};
+        filter{name_of(RenderSettings{}.filter)}, denoise{name_of(RenderSettings{}.denoise)};
     float filter_radius = 0, clamp = 0;
     uint32_t max_depth = PathSettings{}.max_depth, seed = PathSettings{}.seed;
     MachineFlags machine;

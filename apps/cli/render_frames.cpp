@@ -27,6 +27,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      const PictureRecord& record) {
     SequenceRecord::Settings settings;
     for (const auto& [name, value] : settings_metadata(record)) {
+        if (name == "pertev.denoise") continue; // it stands there only where one is
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
     std::string layers;
@@ -41,6 +42,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
+                                     {"--denoise", picture.denoise == Denoise::None ? "" : flags.denoise},
                                      {"--transparent", picture.transparent ? "yes" : "no"}});
     return settings;
 }
@@ -75,8 +77,7 @@ void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& m
                        Messages& messages) {
     const std::optional<double> time_s = camera.sequence.time_before(frame);
     go_to(time_s, moving, session, messages);
-    session.set_camera(
-        camera_at(camera.camera, moving.scene(), time_s, camera.sequence.turn_before(frame)).camera);
+    session.set_camera(camera_at(camera.camera, moving.scene(), time_s, camera.sequence.turn_before(frame)).camera);
     session.keep_as_before();
 }
 

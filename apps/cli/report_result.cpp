@@ -65,11 +65,12 @@ void report_result(const RenderResult& result, const std::string& hash, const Qu
     const uint64_t host_bytes = peak_memory_bytes();
     reporter.say(fmt::format(
         "{} spp in {:.2f} s ({:.2f} s in all), {:.4g} s a frame of 1 spp ({:.4g} frames/s), {:.2f} Msamples/s, {:.1f} "
-        "Mrays/s, peak {:.0f} MiB{}, {}, picture {}",
+        "Mrays/s, peak {:.0f} MiB{}, {}, picture {}{}",
         result.samples, result.render_seconds, total_seconds, frame_seconds, 1 / frame_seconds,
         samples_per_second * 1e-6, rays_per_second * 1e-6, mebibytes(host_bytes),
         queue.is_cuda() ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
-        counted(result.invalid_samples, "invalid sample"), hash));
+        counted(result.invalid_samples, "invalid sample"), hash,
+        result.denoised ? " (of its samples; the files show it denoised)" : ""));
     reporter.event(fmt::format(
         R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, result.samples, json_number(frame_seconds),

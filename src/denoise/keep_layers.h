@@ -8,12 +8,12 @@
 namespace pertev {
 
 struct KeepLayers {
-    const Vec2* was_at;   // AccumulateSignals'
-    SignalsView signals;  // with the variances that lead the filter
-    uint32_t width;       // pixels
-    bool has_history;     // false at a cut: nothing has moved
-    bool has_gloss;       // AccumulateSignals'
-    Float4* layers;       // x, y: pixels to the right and down; z, w: variance of diffuse and of gloss
+    const Vec2* was_at;  // AccumulateSignals'
+    SignalsView signals; // with the variances that lead the filter
+    uint32_t width;      // pixels
+    bool has_history;    // false at a cut: nothing has moved
+    bool has_gloss;      // AccumulateSignals'
+    Float4* layers;      // x, y: pixels to the right and down; z, w: variance of diffuse and of gloss
 
     HD void operator()(uint32_t i) const {
         const Vec2 centre = {static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f};

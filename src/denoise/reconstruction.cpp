@@ -36,8 +36,10 @@ HistoryView Reconstruction::history(uint32_t frame) const {
         wide, wide + pixels, wide + 2 * pixels, narrow_.data() + which * pixels, wide + 3 * pixels, wide + 4 * pixels};
 }
 
-void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                         const PreviousScene& scene_before, const ReconstructionSettings& settings) {
+/// Light of the frame, filtered; `room`: a picture's array that is free.
+SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
+                                   const PreviousScene& scene_before, const ReconstructionSettings& settings,
+                                   Float4*& room) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const uint32_t pixels = width_ * height_;
     const HistoryView now = history(frames_ + 1), before = history(frames_);
@@ -48,43 +50,76 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     SignalsView a = {signals, signals + pixels},
                 b = {signals + 2 * std::size_t(pixels), signals + 3 * std::size_t(pixels)};
 
-    Vec2* const was_at = narrow_.data() + 2 * std::size_t(pixels);
-
-    timer_.start();
     launch(*queue_, "split_signals", pixels, SplitSignals{noisy, a, now});
     launch(*queue_, "accumulate_signals", pixels,
-           AccumulateSignals{noisy, a, scene, scene_before, cameras, now, before, was_at, settings.history,
+           AccumulateSignals{noisy, a, scene, scene_before, cameras, now, before, places_before(), settings.history,
                              settings.limit_fireflies, has_gloss, has_history});
     launch(*queue_, "limit_history", pixels, LimitHistory{now, b, width_, height_, settings.limit_history, has_gloss});
     if (settings.keep_layers) {
         if (layers_.size() != pixels) layers_ = {*queue_, pixels, "layers of the reconstruction"};
         launch(*queue_, "keep_layers", pixels,
-               KeepLayers{was_at, b, width_, has_history, has_gloss, layers_.data()});
+               KeepLayers{places_before(), b, width_, has_history, has_gloss, layers_.data()});
     }
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
                WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, has_gloss});
         std::swap(a, b);
     }
-    Float4* const picture = settings.anti_alias ? a.diffuse : now.shown;
-    launch(*queue_, "compose_picture", pixels, ComposePicture{noisy, b, picture});
+    room = a.diffuse;
+    return b;
+}
+
+void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
+                         const PreviousScene& scene_before, const ReconstructionSettings& settings) {
+    if (enlarged_) cut();
+    enlarged_.reset();
+    const uint32_t pixels = width_ * height_;
+    const HistoryView now = history(frames_ + 1);
+    timer_.start();
+    Float4* room = nullptr;
+    const SignalsView light = filter(frame, camera, scene, scene_before, settings, room);
+    Float4* const picture = settings.anti_alias ? room : now.shown;
+    launch(*queue_, "compose_picture", pixels, ComposePicture{frame.view(), light, picture});
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", pixels,
-               AntiAlias{picture, was_at, before.shown, now.shown, width_, height_, has_history});
+               AntiAlias{picture, places_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0});
     }
     timer_.stop();
     last_camera_ = camera;
     ++frames_;
 }
 
-Image Reconstruction::picture() const {
+void Reconstruction::add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
+                                  const CameraView& camera, const SceneView& scene, const PreviousScene& scene_before,
+                                  const ReconstructionSettings& settings) {
+    if (!enlarged_ || enlarged_->width() != features.width() || enlarged_->height() != features.height()) {
+        cut();
+        enlarged_.reset(); // before the new one, so that both need not fit
+        enlarged_.emplace(*queue_, features.width(), features.height());
+    }
+    const HistoryView now = history(frames_ + 1);
+    timer_.start();
+    Float4* room = nullptr;
+    const SignalsView light = filter(frame, light_camera, scene, scene_before, settings, room);
+    enlarged_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()}, scene,
+                   scene_before, settings, frames_ > 0);
+    timer_.stop();
+    last_camera_ = light_camera;
+    ++frames_;
+}
+
+const Float4* Reconstruction::shown() const {
     PERTEV_CHECK(frames_ > 0);
-    const std::size_t pixels = std::size_t(width_) * height_;
-    std::vector<Float4> shown(pixels);
-    queue_->copy_to_host(shown.data(), history(frames_).shown, pixels * sizeof(Float4));
-    Image image{width_, height_, 3, {}};
+    return enlarged_ ? enlarged_->shown() : history(frames_).shown;
+}
+
+Image Reconstruction::picture() const {
+    const std::size_t pixels = std::size_t(shown_width()) * shown_height();
+    std::vector<Float4> colors(pixels);
+    queue_->copy_to_host(colors.data(), shown(), pixels * sizeof(Float4));
+    Image image{shown_width(), shown_height(), 3, {}};
     image.pixels.reserve(3 * pixels);
-    for (const Float4& p : shown) {
+    for (const Float4& p : colors) {
         const Rgb light = light_of_shown(rgb_of(p));
         image.pixels.insert(image.pixels.end(), {light.r, light.g, light.b});
     }
@@ -92,7 +127,7 @@ Image Reconstruction::picture() const {
 }
 
 FrameTones Reconstruction::tones(const NoisyFrame& frame) const {
-    PERTEV_CHECK(frames_ > 0 && frame.width() == width_ && frame.height() == height_);
+    PERTEV_CHECK(frames_ > 0 && !enlarged_ && frame.width() == width_ && frame.height() == height_);
     const uint32_t side = block_side(width_, height_);
     const uint32_t columns = (width_ + side - 1) / side, rows = (height_ + side - 1) / side;
     const std::size_t row_sums = std::size_t(columns) * height_, blocks = std::size_t(columns) * rows;
@@ -134,13 +169,13 @@ Image Reconstruction::deviation() const {
 }
 
 const uint8_t* Reconstruction::display(ToneMap tone_map, float exposure_stops) {
-    PERTEV_CHECK(frames_ > 0);
-    const uint32_t pixels = width_ * height_;
-    if (display_ == nullptr) display_ = queue_->make_host_copy(std::size_t(4) * pixels);
-    auto* const bytes =
-        reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(pixels)); // signals' room
-    launch(*queue_, "show_picture", pixels,
-           ShowPicture{history(frames_).shown, tone_map, exposure_scale(exposure_stops), bytes});
+    const uint32_t pixels = shown_width() * shown_height();
+    const std::size_t size = std::size_t(4) * pixels;
+    if (display_ == nullptr || display_bytes_ != size) display_ = queue_->make_host_copy(size);
+    display_bytes_ = size;
+    auto* const signals = reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_);
+    uint8_t* const bytes = enlarged_ ? enlarged_->room_for_bytes() : signals;
+    launch(*queue_, "show_picture", pixels, ShowPicture{shown(), tone_map, exposure_scale(exposure_stops), bytes});
     display_->take(bytes);
     return static_cast<const uint8_t*>(queue_->wait(*display_));
 }

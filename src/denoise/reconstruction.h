@@ -9,7 +9,9 @@
 // Illumination", HPG 2017.
 
 #include <memory>
+#include <optional>
 
+#include "denoise/enlarged_frame.h"
 #include "denoise/reconstruction_settings.h"
 #include "denoise/reconstruction_view.h"
 #include "device/device_timer.h"
@@ -39,8 +41,15 @@ public:
     void add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene, const PreviousScene& before,
              const ReconstructionSettings& settings);
 
+    /// The same of a picture of another size, that of `features`: a frame whose paths end at the first surface, seen by
+    /// `camera`. `frame`, the light, is seen by `light_camera`. A picture of another size than the one before is a cut.
+    void add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
+                      const CameraView& camera, const SceneView& scene, const PreviousScene& before,
+                      const ReconstructionSettings& settings);
+
     /// Frames since the last cut.
     uint32_t frames() const { return frames_; }
+    /// Of the light; the picture's where it is not enlarged.
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     /// On the device, of the last add(). Waits for it.
@@ -49,7 +58,7 @@ public:
     Image picture() const;
     /// The same as a display shows it, times 2^exposure_stops: RGBA, [height * width * 4], until the next call.
     const uint8_t* display(ToneMap tone_map, float exposure_stops);
-    /// Of the last frame, which was made of `frame`.
+    /// Of the last frame, which was made of `frame`, at its resolution.
     FrameTones tones(const NoisyFrame& frame) const;
 
     // Of the last frame, where ReconstructionSettings::keep_layers was set.
@@ -63,6 +72,12 @@ public:
 private:
     HistoryView history(uint32_t frame) const;
     std::vector<Float4> kept_layers() const;
+    SignalsView filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
+                       const PreviousScene& before, const ReconstructionSettings& settings, Float4*& room);
+    Vec2* places_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
+    const Float4* shown() const;
+    uint32_t shown_width() const { return enlarged_ ? enlarged_->width() : width_; }
+    uint32_t shown_height() const { return enlarged_ ? enlarged_->height() : height_; }
 
     Queue* queue_;
     uint32_t width_, height_, frames_ = 0;
@@ -71,7 +86,9 @@ private:
     Buffer<Float4> wide_; // arrays of Float4, of both histories and of signals
     Buffer<Vec2> narrow_;
     std::unique_ptr<HostCopy> display_; // none before it is asked for
-    Buffer<Float4> layers_; // empty until somebody asks for them
+    std::size_t display_bytes_ = 0;
+    Buffer<Float4> layers_;                 // empty until somebody asks for them
+    std::optional<EnlargedFrame> enlarged_; // where the picture has another size than its light
 };
 
 } // namespace pertev

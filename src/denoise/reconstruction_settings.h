@@ -3,6 +3,7 @@
 // What a reconstructed frame is a function of, beside the samples. Each part that bends the mean (is *biased*) has a
 // switch.
 
+#include <algorithm>
 #include <cstdint>
 
 namespace pertev {
@@ -15,7 +16,16 @@ struct ReconstructionSettings {
     bool anti_alias = true;      // biased: the mean of shown frames is held within colours around it
     bool keep_layers = false;    // for Reconstruction::motion() and deviation(); the frame stays the same
 
+    /// Sides of the frame that light is found at, over those of the picture, (0, 1]. Under 1 camera rays are traced at
+    /// the picture's resolution, and light is enlarged by what they meet. Biased: light between edges is coarse.
+    float resolution_scale = 1;
+
     bool operator==(const ReconstructionSettings&) const = default;
 };
+
+/// Pixels of a side of the frame that light is found at, of a picture's side.
+inline uint32_t scaled_side(uint32_t side, const ReconstructionSettings& settings) {
+    return std::max(static_cast<uint32_t>(static_cast<float>(side) * settings.resolution_scale + 0.5f), 1u);
+}
 
 } // namespace pertev

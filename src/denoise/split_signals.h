@@ -1,8 +1,8 @@
 #pragma once
 
-// First stage: from a frame's light to its two signals, with fireflies held back.
+// First stage: from a frame's light to its two signals, and what of the frame the next one asks for.
 
-#include "denoise/reconstruction_view.h"
+#include "denoise/split_light.h"
 
 namespace pertev {
 
@@ -12,21 +12,12 @@ struct SplitSignals {
     HistoryView now;
 
     HD void operator()(uint32_t i) const {
-        const Float4 light = frame.light[i], normal = frame.normal[i], albedo = frame.albedo[i];
-        now.guide[i] = pack({vec3_of(normal), albedo.w, normal.w, bits_of(frame.place[i].x)});
-        const bool is_valid = light.w != 0;
-        const Rgb scattered = is_valid ? rgb_of(light) - rgb_of(frame.emission[i]) : Rgb{0, 0, 0};
-        Rgb diffuse = scattered;
-        if (frame.splits_light()) {
-            diffuse = is_valid ? rgb_of(frame.diffuse[i]) : Rgb{0, 0, 0};
-            const Rgb gloss = not_negative(scattered - diffuse);
-            signals.gloss[i] = with_w(gloss / divisor_of(rgb_of(frame.gloss[i])), 0);
-        }
-        signals.diffuse[i] = with_w(not_negative(diffuse) / divisor_of(rgb_of(albedo)), 0);
+        const Float4 normal = frame.normal[i];
+        now.guide[i] = pack({vec3_of(normal), frame.albedo[i].w, normal.w, bits_of(frame.place[i].x)});
+        const SplitLight light = split_light(frame, i);
+        signals.diffuse[i] = with_w(light.diffuse / light.diffuse_divisor, 0);
+        if (frame.splits_light()) signals.gloss[i] = with_w(light.gloss / light.gloss_divisor, 0);
     }
-
-private:
-    HD static Rgb not_negative(Rgb c) { return {max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)}; }
 };
 
 } // namespace pertev

@@ -113,6 +113,13 @@ PartArrays list_environment(const EnvironmentData* environment, EnvironmentView&
 
 } // namespace
 
+MaterialsKnown materials_known(const Scene& scene) {
+    std::vector<MaterialView> materials;
+    SceneView view = {};
+    list_materials(scene, materials, view);
+    return view.known;
+}
+
 SceneOnDevice::SceneOnDevice(Queue& queue, const PreparedScene& prepared) { update(queue, prepared, kAllParts); }
 
 void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t parts) {

@@ -63,6 +63,9 @@ private:
     Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
 };
 
+/// What SceneView::known will be.
+MaterialsKnown materials_known(const Scene& scene);
+
 /// Bytes that SceneOnDevice asks for.
 std::size_t predicted_bytes(const PreparedScene& prepared);
 

@@ -111,6 +111,9 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                             {"pertev.clamp", settings.path.clamp},
                             {"pertev.two_sided_lights", static_cast<int32_t>(scene.two_sided_lights)},
                             {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)}};
+    if (settings.denoise != Denoise::None) {
+        metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
+    }
     if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
     append(metadata, camera_metadata(record.camera));
     append(metadata, environment_metadata(scene));

@@ -68,7 +68,7 @@ void name_ids(const Scene& scene, SceneSource& source);
 /// Of the instances and materials in the picture: a JSON object each, from id to name. Nothing without ids or names.
 ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids);
 
-/// settings_metadata and what came of it. `hash`: of the picture.
+/// settings_metadata and what came of it. `hash`: of the film's picture, denoised or not.
 ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash);
 
 } // namespace pertev

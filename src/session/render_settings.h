@@ -3,6 +3,7 @@
 // What a render is asked for beside scene and camera, how far it is, and what came of it.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "integrators/make_integrator.h"
@@ -13,14 +14,21 @@
 
 namespace pertev {
 
+/// Whether a picture is reconstructed of its samples, beside being their mean.
+enum class Denoise : uint8_t {
+    None,
+    Svgf, // denoise/picture_denoiser.h
+};
+
 /// Which integrator, its settings (IntegratorSettings), and what a picture is asked for beside them.
 struct RenderSettings : IntegratorSettings {
     // What the picture is a function of, beside scene, camera, light and number of samples.
     uint32_t width = 1280, height = 720;
     PixelFilter filter = PixelFilter::BlackmanHarris;
-    float filter_radius = 0;  // pixels; 0 = the filter's default
-    uint32_t aovs = 0;        // AovBits
-    bool transparent = false; // RGBA: the background is left out, alpha says how much of the pixel is covered
+    float filter_radius = 0;         // pixels; 0 = the filter's default
+    uint32_t aovs = 0;               // AovBits
+    bool transparent = false;        // RGBA: the background is left out, alpha says how much of the pixel is covered
+    Denoise denoise = Denoise::None; // the film stays as it is
 
     // How many, and until when.
     uint32_t samples = 64;     // a pixel, of render_picture
@@ -75,7 +83,8 @@ struct RenderStats {
 };
 
 struct RenderResult : RenderStats {
-    Image picture; // RGB or RGBA, linear
+    Image picture;                 // RGB or RGBA, linear: the film's
+    std::optional<Image> denoised; // of the same channels, where the settings ask for it
     std::vector<FilmLayer> layers;
     std::vector<PixelIds> ids; // empty unless asked for
 };

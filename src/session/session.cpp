@@ -7,6 +7,8 @@
 #include "base/limits.h"
 #include "base/stopwatch.h"
 #include "denoise/motion_vectors.h"
+#include "device/launch.h"
+#include "render/add_frame_to_film.h"
 #include "render/camera_work.h"
 #include "render/hidden_back_share.h"
 #include "render/place_meshes.h"
@@ -233,14 +235,20 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     if (count == 0) return 0;
     const Stopwatch since_call;
     Film& film = current_film();
-    begin(camera_, settings_, count);
+    const bool denoises = settings_.denoise != Denoise::None;
+    if (denoises && first == 0) begin_signals();
+    begin(camera_, settings_, denoises ? 1 : count);
     integrator_->abandon_when(abandon_);
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
     for (uint32_t done = 0; done < count;) {
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
-        integrator_->render(first + done, pass, film.view());
+        if (denoises) {
+            render_signals(first + done, pass);
+        } else {
+            integrator_->render(first + done, pass, film.view());
+        }
         if (abandon_ != nullptr && *abandon_ && !queue_.is_cuda()) { // parts of a sample may be missing
             begin_film();
             return 0;
@@ -259,53 +267,126 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
 }
 
 /// The reservoirs of frames with these settings; none: samples keep all light. Others than the last frame's begin anew.
-Restir* Session::restir_for(const RestirSettings& settings) {
+Restir* Session::restir_for(const RestirSettings& settings, uint32_t width, uint32_t height) {
     const PathSettings& path = settings_.path;
     const bool has_light = path.light != PathLight::Indirect && path.strategy == LightStrategy::Mis;
     if (settings.light == RestirLight::Off || !has_light || path.max_depth == 0) {
         restir_.reset();
         return nullptr;
     }
-    const bool fits = restir_ && restir_->light() == settings.light && restir_->width() == settings_.width &&
-                      restir_->height() == settings_.height;
+    const bool fits =
+        restir_ && restir_->light() == settings.light && restir_->width() == width && restir_->height() == height;
     if (!fits) {
         restir_.reset(); // before the new one, so that both need not fit
-        restir_.emplace(queue_, settings_.width, settings_.height, settings.light);
+        restir_.emplace(queue_, width, height, settings.light);
     }
     if (settings != restir_settings_) restir_->cut();
     restir_settings_ = settings;
     return &*restir_;
 }
 
-void Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
+/// A frame that takes samples: the one there is, or another one where it is not of this size or kind.
+NoisyFrame& Session::fit(std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height) {
     const bool splits_light = scene_.value().view().known == MaterialsKnown::Nothing;
-    const uint32_t width = settings_.width, height = settings_.height;
-    if (!noisy_frame_ || noisy_frame_->width() != width || noisy_frame_->height() != height ||
-        noisy_frame_->splits_light() != splits_light) {
-        noisy_frame_.reset(); // before the new ones, so that both need not fit
-        reconstruction_.reset();
-        noisy_frame_.emplace(queue_, width, height, splits_light);
-        reconstruction_.emplace(queue_, width, height);
+    if (frame && frame->width() == width && frame->height() == height && frame->splits_light() == splits_light) {
+        return *frame;
+    }
+    if (frame && frame->splits_light() != splits_light) reconstruction_.reset(); // what it knows is of other signals
+    frame.reset(); // before the new one, so that both need not fit
+    return frame.emplace(queue_, width, height, splits_light);
+}
+
+/// Finds what camera rays meet: those through the pixels' centres, and those of the first samples.
+void Session::begin_signals() {
+    NoisyFrame& frame = fit(noisy_frame_, settings_.width, settings_.height);
+    if (!denoiser_ || denoiser_->width() != settings_.width || denoiser_->height() != settings_.height) {
+        denoiser_.reset();
+        denoiser_.emplace(queue_, settings_.width, settings_.height);
+    }
+    RenderSettings of_features = settings_;
+    of_features.path.max_depth = 0;
+    RenderSettings of_centres = of_features;
+    of_centres.filter = PixelFilter::Box;
+    of_centres.filter_radius = 0x1p-20f; // pixels
+    Camera pinhole = camera_;
+    pinhole.aperture_radius = 0;
+    begin(pinhole, of_centres, 1);
+    frame.begin();
+    integrator_->render(0, 1, frame.film_view());
+    denoiser_->begin(frame, view_of(pinhole, of_centres).camera.view);
+    begin(camera_, of_features, 1);
+    for (uint32_t sample = 0; sample < PictureDenoiser::kFeatures; ++sample) {
+        integrator_->render(sample, 1, frame.film_view());
+        denoiser_->add_features(frame, scene_->view());
+    }
+}
+
+/// Adds samples to the film and to the signals that are denoised.
+void Session::render_signals(uint32_t first, uint32_t count) {
+    const SceneView& scene = scene_.value().view();
+    FilmView into = noisy_frame_->film_view();
+    into.invalid = film_->view().invalid;
+    for (uint32_t sample = first; sample < first + count; ++sample) {
+        integrator_->render(sample, 1, into);
+        if (abandon_ != nullptr && *abandon_) return;
+        launch(queue_, "add_frame_to_film", settings_.width * settings_.height,
+               AddFrameToFilm{noisy_frame_->view(), film_->view(), scene, sample == 0});
+        denoiser_->add(*noisy_frame_, scene);
+    }
+    queue_.wait();
+}
+
+std::optional<Image> Session::denoised() {
+    if (settings_.denoise == Denoise::None || history_.samples == 0) return std::nullopt;
+    Image picture = denoiser_.value().picture();
+    if (!settings_.transparent) return picture;
+    Image with_alpha = this->picture();
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        with_alpha.pixels[i / 3 * 4 + i % 3] = picture.pixels[i];
+    }
+    return with_alpha;
+}
+
+void Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
+    RenderSettings of_light = settings_of_frames(settings_);
+    of_light.width = scaled_side(settings_.width, settings);
+    of_light.height = scaled_side(settings_.height, settings);
+    NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
+    if (!reconstruction_ || reconstruction_->width() != of_light.width ||
+        reconstruction_->height() != of_light.height) {
+        reconstruction_.reset(); // before the new one, so that both need not fit
+        reconstruction_.emplace(queue_, of_light.width, of_light.height);
     }
     if (camera_before_) { // of another sequence
         camera_before_.reset();
         has_moved_ = false;
     }
-    Restir* const shared = restir_for(restir);
-    begin(camera_, settings_of_frames(settings_), 1);
-    noisy_frame_->begin();
-    noisy_frame_->leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
-    integrator_->render(number, 1, noisy_frame_->film_view());
+    Restir* const shared = restir_for(restir, of_light.width, of_light.height);
+    begin(camera_, of_light, 1);
+    frame.begin();
+    frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
+    integrator_->render(number, 1, frame.film_view());
     frame_rays_ = integrator_->rays();
-    const PictureView picture = view_of(camera_, settings_);
-    const SceneView& scene = picture.scene;
+    const PictureView light = view_of(camera_, of_light);
     const PreviousScene before = has_moved_ ? PreviousScene{places_before_.data(), scene_->meshes_before()}
-                                            : PreviousScene{scene.instances, scene.meshes};
+                                            : PreviousScene{light.scene.instances, light.scene.meshes};
     if (shared != nullptr) {
         const PathSettings& path = settings_.path;
-        shared->add(*noisy_frame_, picture, {path.sampler, number, path.seed}, *tracer_, before, restir);
+        shared->add(frame, light, {path.sampler, number, path.seed}, *tracer_, before, restir);
     }
-    reconstruction_->add(*noisy_frame_, picture.camera.view, scene, before, settings);
+    if (settings.resolution_scale < 1) {
+        RenderSettings of_features = settings_;
+        of_features.path.max_depth = 0;
+        NoisyFrame& features = fit(features_, settings_.width, settings_.height);
+        begin(camera_, of_features, 1);
+        integrator_->render(number, 1, features.film_view());
+        frame_rays_ = frame_rays_ + integrator_->rays();
+        const CameraView camera = view_of(camera_, of_features).camera.view;
+        reconstruction_->add_enlarged(frame, light.camera.view, features, camera, light.scene, before, settings);
+    } else {
+        features_.reset();
+        reconstruction_->add(frame, light.camera.view, light.scene, before, settings);
+    }
     has_moved_ = false;
 }
 
@@ -316,7 +397,7 @@ Reconstruction& Session::frame() {
     return *reconstruction_;
 }
 
-FrameTones Session::frame_tones() const { return frame().tones(*noisy_frame_); }
+FrameTones Session::frame_tones() const { return reconstruction_.value().tones(noisy_frame_.value()); }
 
 Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
     return current_film().display(history_.samples, tone_map, exposure_stops, settings_.transparent);
@@ -336,7 +417,7 @@ RenderStats Session::stats() {
 }
 
 RenderResult Session::result() {
-    RenderResult result = {stats(), picture(), layers(), current_film().ids()};
+    RenderResult result = {stats(), picture(), denoised(), layers(), current_film().ids()};
     if ((settings_.aovs & kAovMotion) != 0) {
         const AovGroup& group = aov_group(kAovMotion);
         result.layers.push_back({group.layer, channel_names(group), motion()});
@@ -372,16 +453,25 @@ std::vector<RayWork> Session::count_camera_work() {
 }
 
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
-    const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
     const TracerChoice tracers = tracers_of(settings, on_cuda, !scene.poses.empty());
+    std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
+    const bool denoises = settings.denoise != Denoise::None;
+    const bool has_loop = can_walk_on_host(tracers, on_cuda);
+    if (denoises) {
+        const bool splits_light = materials_known(*scene.scene) == MaterialsKnown::Nothing;
+        film += NoisyFrame::predicted_bytes(settings.width, settings.height, splits_light) +
+                PictureDenoiser::predicted_bytes(settings.width, settings.height);
+        const uint64_t paths = std::min(uint64_t(settings.width) * settings.height, uint64_t(settings.batch));
+        if (splits_light && !(has_loop && settings.body == PathBody::Loop)) film += 3 * sizeof(Float4) * paths;
+    }
     const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
     const std::size_t motion = (settings.aovs & kAovMotion) != 0
                                    ? motion_vector_bytes(settings.width, settings.height) +
                                          scene.scene->instances.size() * sizeof(InstanceView)
                                    : 0;
     return predicted_bytes(scene) + structures + motion + deforming_tree_bytes(scene, tracers, on_cuda) + film +
-           predicted_bytes(settings, uint64_t(settings.width) * settings.height, settings.samples, on_cuda,
-                           can_walk_on_host(tracers, on_cuda));
+           predicted_bytes(settings, uint64_t(settings.width) * settings.height, denoises ? 1 : settings.samples,
+                           on_cuda, has_loop);
 }
 
 } // namespace pertev

@@ -22,6 +22,7 @@
 #include <memory>
 #include <optional>
 
+#include "denoise/picture_denoiser.h"
 #include "denoise/reconstruction.h"
 #include "image/tone_map_image.h"
 #include "render/filter_table.h"
@@ -73,13 +74,16 @@ public:
     /// Of the present picture; without samples, all zero.
     const Film& film() { return current_film(); }
     Image picture() { return current_film().picture(history_.samples, settings_.transparent); }
+    /// Reconstructed of the samples in the film; none where the settings do not ask for it, or there are no samples.
+    /// Throws Error(DeviceFault).
+    std::optional<Image> denoised();
     std::vector<FilmLayer> layers() { return current_film().layers(history_.samples); }
     /// The picture as a display shows it, times 2^exposure_stops: tone_map_image of picture().
     Rgba8Image display(float exposure_stops, ToneMap tone_map);
     /// Reads two numbers back. The share of hidden backs is counted once for each scene, camera and size that is asked
     /// about.
     RenderStats stats();
-    /// Picture, layers, ids, motion vectors and stats together.
+    /// Picture, denoised picture, layers, ids, motion vectors and stats together.
     RenderResult result();
 
     /// From now on the frame before is the scene and camera as they are: what motion vectors (kAovMotion) are from.
@@ -101,7 +105,7 @@ public:
     void render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir = {});
     /// Of the last render_frame, for its exposure (session/adaptive_exposure.h). Throws as render_frame.
     FrameTones frame_tones() const;
-    /// Of the last render_frame.
+    /// Of the last render_frame. Another resolution_scale is a cut.
     Reconstruction& frame();
     /// Rays of the last render_frame.
     RayCounts frame_rays() const;
@@ -127,8 +131,11 @@ private:
     void copy_places();
     bool take_tracer();
     void fit_trees();
-    Restir* restir_for(const RestirSettings& settings);
+    Restir* restir_for(const RestirSettings& settings, uint32_t width, uint32_t height);
     void upload(const PreparedScene& scene, uint32_t parts);
+    NoisyFrame& fit(std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
+    void begin_signals();
+    void render_signals(uint32_t first, uint32_t count);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
     void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
 
@@ -147,10 +154,12 @@ private:
     FilterTable filter_;
     std::optional<Film> film_, meter_film_;
     std::optional<NoisyFrame> noisy_frame_;
+    std::optional<NoisyFrame> features_; // of frames whose light is found at a lower resolution
     std::optional<Reconstruction> reconstruction_;
-    std::optional<Restir> restir_;       // of frames that ask for it
-    RestirSettings restir_settings_;     // of the last frame
-    Buffer<InstanceView> places_before_; // of instances, in the frame before
+    std::optional<PictureDenoiser> denoiser_; // of the film's samples
+    std::optional<Restir> restir_;            // of frames that ask for it
+    RestirSettings restir_settings_;          // of the last frame
+    Buffer<InstanceView> places_before_;      // of instances, in the frame before
     uint32_t instance_count_ = 0;
     bool has_poses_ = false;              // PreparedScene's
     bool has_moved_ = false;              // since the last frame: places_before_ counts

@@ -11,6 +11,7 @@ constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independen
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
                                     PixelFilter::BlackmanHarris};
 constexpr RestirLight kRestirLights[] = {RestirLight::Off, RestirLight::Direct, RestirLight::Indirect};
+constexpr Denoise kDenoisers[] = {Denoise::None, Denoise::Svgf};
 constexpr ToneMap kToneMaps[] = {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral};
 
 std::string_view name_of(PathLight light) {
@@ -101,9 +102,21 @@ std::string_view name_of(RestirLight light) {
     }
     return "";
 }
-
 std::optional<RestirLight> restir_named(std::string_view name) { return value_named(kRestirLights, name); }
 std::vector<std::string> restir_names() { return names_of(kRestirLights); }
+
+std::string_view name_of(Denoise denoise) {
+    switch (denoise) {
+    case Denoise::None:
+        return "none";
+    case Denoise::Svgf:
+        return "svgf";
+    }
+    return "";
+}
+
+std::optional<Denoise> denoise_named(std::string_view name) { return value_named(kDenoisers, name); }
+std::vector<std::string> denoise_names() { return names_of(kDenoisers); }
 
 std::vector<std::string> tone_map_names() { return names_of(kToneMaps); }
 

@@ -31,6 +31,9 @@ std::vector<std::string> filter_names();
 std::string_view name_of(RestirLight light);
 std::optional<RestirLight> restir_named(std::string_view name);
 std::vector<std::string> restir_names();
+std::string_view name_of(Denoise denoise);
+std::optional<Denoise> denoise_named(std::string_view name);
+std::vector<std::string> denoise_names();
 
 /// Of image/tone_map_image.h, which has name_of and tone_map_named.
 std::vector<std::string> tone_map_names();

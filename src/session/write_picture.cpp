@@ -9,8 +9,18 @@
 namespace pertev {
 namespace {
 
+/// What is shown of a result: reconstructed where that was asked for.
+const Image& beauty_of(const RenderResult& result) { return result.denoised ? *result.denoised : result.picture; }
+
 std::vector<ExrLayer> take_layers(RenderResult& result) {
     std::vector<ExrLayer> layers;
+    if (result.denoised) {
+        const bool has_alpha = result.picture.channels == 4;
+        layers.push_back(
+            {"noisy",
+             has_alpha ? std::vector<std::string>{"R", "G", "B", "A"} : std::vector<std::string>{"R", "G", "B"},
+             result.picture.pixels});
+    }
     for (FilmLayer& layer : result.layers) {
         layers.push_back({layer.name, layer.channels, std::move(layer.image.pixels)});
     }
@@ -36,11 +46,11 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
     const Display display = record.display.value_or(Display{});
     if (format == ImageFormat::Png) {
         const bool with_alpha = record.settings.transparent;
-        return encode_png(tone_map_image(result.picture, display.tone_map, display.exposure_stops, with_alpha),
+        return encode_png(tone_map_image(beauty_of(result), display.tone_map, display.exposure_stops, with_alpha),
                           with_alpha);
     }
     PERTEV_CHECK(format == ImageFormat::Exr);
-    return encode_exr(result.picture, take_layers(result),
+    return encode_exr(beauty_of(result), take_layers(result),
                       metadata_of(record, result, picture_hash(result.picture).hex()));
 }
 
@@ -56,7 +66,7 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureRe
     for (const std::string& path : paths) {
         WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
         try {
-            write_image(path, result.picture, options);
+            write_image(path, beauty_of(result), options);
         } catch (const Error& error) {
             file.failure = error.what();
         }

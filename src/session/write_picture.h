@@ -17,9 +17,11 @@ struct WrittenFile {
 };
 
 struct WrittenPicture {
-    std::string hash; // of the picture (image/picture_hash.h)
+    std::string hash; // of the film's picture (image/picture_hash.h)
     std::vector<WrittenFile> files;
 };
+
+/// Where a result has been denoised, files show that; EXR keeps the film's picture beside it, as the layer `noisy`.
 
 /// The bytes of such a file, PNG or EXR. Takes the layers out of `result`.
 std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result);

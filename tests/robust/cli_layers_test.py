@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What an EXR says beside its colours, as docs/formats.md has it: layers at edges and on the background, metadata."""
 
+import os
 import re
 
 from cli_run import FLOOR, CliTest, main, read_exr, write
@@ -52,6 +53,35 @@ class Layers(CliTest):
             self.assertAlmostEqual(pixel["position.Y"], 3 - pixel["depth.Z"], places=4)
             self.assertTrue(3 - 1e-5 <= pixel["depth.Z"] <= 4 + 1e-5)
         self.assertGreater(len([depth for depth in depths if 3.1 < depth < 3.9]), 8)
+
+
+class Denoised(CliTest):
+    def test_a_denoised_exr_keeps_the_undenoised_picture_beside_it_and_names_that_by_its_hash(self):
+        flags = ["--spp", "2", "--size", "40x30", "--aov", "depth"]
+        plain = self.succeed("render", "cornell-box", "-o", "plain.exr", "--json", *flags).events("done")[0]
+        done = self.succeed("render", "cornell-box", "-o", "x.exr", "--json", "--denoise", "svgf", *flags).events("done")[0]
+        self.assertEqual(done["hash"], plain["hash"])
+        facts = self.info("x.exr")
+        self.assertEqual((facts["pertev.denoise"], facts["pertev.hash"]), ("svgf", plain["hash"]))
+        self.assertNotEqual(facts["hash"], plain["hash"])
+        self.assertNotIn("pertev.denoise", self.info("plain.exr"))
+        _, _, before = read_exr(self.path("plain.exr"))
+        _, _, layers = read_exr(self.path("x.exr"))
+        for name in "RGB":
+            self.assertEqual(layers["noisy." + name], before[name])
+            self.assertNotEqual(layers[name], before[name])
+        self.assertEqual(layers["depth.Z"], before["depth.Z"])
+
+    def test_each_frame_of_a_sequence_is_denoised_by_itself(self):
+        flags = ["--spp", "2", "--size", "40x30", "--denoise", "svgf", "--turntable", "3"]
+        self.succeed("render", "cornell-box", "-o", "a-#.exr", *flags)
+        self.succeed("render", "cornell-box", "-o", "b-#.exr", *flags)
+        os.remove(self.path("b-1.exr"))
+        self.succeed("render", "cornell-box", "-o", "b-#.exr", "--continue", *flags)
+        for frame in range(3):
+            self.assertEqual(self.info(f"a-{frame}.exr")["hash"], self.info(f"b-{frame}.exr")["hash"])
+        flags[flags.index("--denoise") + 1] = "none"
+        self.refuse(2, "render", "cornell-box", "-o", "b-#.exr", "--continue", *flags, says=["--continue"])
 
 
 class Metadata(CliTest):

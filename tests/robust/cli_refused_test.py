@@ -50,7 +50,7 @@ class WhatIsRefused(CliTest):
         for flag, output in [("--transparent", "x.jpg"), ("--transparent", "x.hdr"), ("--aov albedo", "x.png"),
                              ("--exposure 1", "x.exr"), ("--exposure auto", "x.hdr"), ("--tone-map agx", "x.exr"),
                              ("--view-height 2 --projection perspective", "x.png"),
-                             ("--focus 2 --aperture 0", "x.png")]:
+                             ("--focus 2 --aperture 0", "x.png"), ("--denoise svgf --max-depth 0", "x.png")]:
             with self.subTest(flag=flag, output=output):
                 self.refuse(2, "render", "nowhere.obj", "-o", output, *flag.split(), says=[flag.split()[0] + ": "])
 

@@ -1,0 +1,51 @@
+#pragma once
+
+// Last stage of a single picture: the colours that samples met, times the light on them: that of the pixel's own guide,
+// or of a pixel beside it.
+
+#include "denoise/picture_sums.h"
+
+namespace pertev {
+
+struct ComposeSamples {
+    PictureSums sums;
+    SignalsView signals; // filtered
+    float features;      // camera rays of each pixel
+    bool has_gloss;      // false: that signal is black everywhere
+    Float4* picture;     // rgb, W/(sr m2); unused
+
+    HD void operator()(uint32_t pixel) const {
+        const Float4 met = sums.met[pixel], loose = sums.loose[pixel];
+        Rgb light = rgb_of(met) + rgb_of(sums.diffuse_color[pixel]) * rgb_of(signals.diffuse[pixel]);
+        if (has_gloss) light += rgb_of(sums.gloss_color[pixel]) * rgb_of(signals.gloss[pixel]);
+        Rgb of_beside = {0, 0, 0};
+        float beside_features = 0;
+        for (int slot = 0; slot < kSurfacesBeside; ++slot) {
+            const Float4 diffuse = sums.beside_diffuse[slot][pixel];
+            const uint32_t beside = bits_of(diffuse.w);
+            if (beside == kNoHit) break;
+            const Float4 gloss = sums.beside_gloss[slot][pixel];
+            of_beside += rgb_of(diffuse) * rgb_of(signals.diffuse[beside]);
+            if (has_gloss) of_beside += rgb_of(gloss) * rgb_of(signals.gloss[beside]);
+            beside_features += gloss.w;
+        }
+        // The more samples the pixel itself has of such surfaces, the more it goes by them.
+        if (const Float4 own = sums.beside[pixel]; own.w > 0) {
+            of_beside = lerp(of_beside, (beside_features / own.w) * rgb_of(own), own.w / (own.w + kTrusted));
+        }
+        light += of_beside;
+        // What fits no guide is taken as it is. Where only rays without light have met such, the rest stands for it.
+        const float loose_features = met.w;
+        if (loose.w > 0) {
+            light += (loose_features / loose.w) * rgb_of(loose);
+        } else if (loose_features < features) {
+            light = (features / (features - loose_features)) * light;
+        }
+        picture[pixel] = with_w((1.0f / features) * light, 0);
+    }
+
+private:
+    static constexpr float kTrusted = 8; // samples that tell as much as the pixel beside
+};
+
+} // namespace pertev

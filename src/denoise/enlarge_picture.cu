@@ -1,0 +1,7 @@
+#include "denoise/enlarge_picture.h"
+
+#include "device/launch_body.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const EnlargePicture&);
+} // namespace pertev

@@ -1,0 +1,42 @@
+#pragma once
+
+// A frame whose light was reconstructed at a lower resolution than its surfaces: makes the picture (enlarge_picture.h),
+// and its mean over time (anti_alias.h).
+
+#include "denoise/enlarge_picture.h"
+#include "denoise/reconstruction_settings.h"
+#include "device/buffer.h"
+#include "render/noisy_frame.h"
+
+namespace pertev {
+
+class EnlargedFrame {
+public:
+    /// Size of the picture.
+    EnlargedFrame(Queue& queue, uint32_t width, uint32_t height);
+
+    static std::size_t predicted_bytes(uint32_t width, uint32_t height);
+
+    /// `features`: a frame of this size, seen by `camera`, whose paths end at the first surface.
+    void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SceneView& scene,
+             const PreviousScene& before, const ReconstructionSettings& settings, bool has_history);
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    /// ShownColor of the last picture; unused.
+    const Float4* shown() const { return shown(frames_); }
+    /// [pixels * 4]: room for what a display shows.
+    uint8_t* room_for_bytes() const { return reinterpret_cast<uint8_t*>(picture_); }
+
+private:
+    Float4* shown(uint32_t frame) const;
+
+    Queue* queue_;
+    uint32_t width_, height_, frames_ = 0;
+    CameraView last_camera_ = {};
+    Buffer<Float4> wide_;
+    Buffer<Vec2> was_at_;
+    Float4* picture_;
+};
+
+} // namespace pertev

@@ -1,0 +1,113 @@
+#pragma once
+
+// Second stage of a single picture: each signal's mean, and the variance of that mean. A pixel's few samples say little
+// of how much they stray, so that variance is pooled over the pixels about it that show the same surface: about each
+// pixel's own mean, where there are samples enough, so that shadows' edges count for nothing; else about that of all.
+//
+// Source: Rousselle, Manzi, Zwicker, "Robust Denoising using Feature and Color Information", CGF 32(7), 2013, section 3
+// (variance of samples, smoothed over pixels).
+
+#include "denoise/picture_sums.h"
+
+namespace pertev {
+
+struct EstimateVariance {
+    PictureGuide guide; // smooth
+    PictureSums sums;
+    SignalsView out;
+    uint32_t width, height;
+    bool has_gloss;
+
+    HD void operator()(uint32_t pixel) const {
+        const uint32_t object = guide.object[pixel];
+        out.diffuse[pixel] = out.gloss[pixel] = {0, 0, 0, 0};
+        if (object == kNoHit) return;
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+        const Float4 here = guide.normal[pixel];
+        Pool of_diffuse, of_gloss;
+        for (int dy = -kReach; dy <= kReach; ++dy) {
+            for (int dx = -kReach; dx <= kReach; ++dx) {
+                if (x + dx < 0 || y + dy < 0 || x + dx >= w || y + dy >= h) continue;
+                const uint32_t at = static_cast<uint32_t>((y + dy) * w + x + dx);
+                const Float4 there = guide.normal[at];
+                if (guide.object[at] != object || !(dot(vec3_of(there), vec3_of(here)) > 0.9f) ||
+                    !(abs(there.w - here.w) <= 0.1f * here.w)) {
+                    continue;
+                }
+                if (!(sums.diffuse[at].w > 0)) continue;
+                of_diffuse.add(diffuse_of(at));
+                if (has_gloss) of_gloss.add(gloss_of(at));
+            }
+        }
+        const float share = noise_share(sums.normal[pixel]);
+        out.diffuse[pixel] = of_diffuse.mean(diffuse_of(pixel), kOfDiffuse * share);
+        if (has_gloss) out.gloss[pixel] = of_gloss.mean(gloss_of(pixel), kOfGloss * share);
+    }
+
+private:
+    static constexpr int kReach = 2;       // pixels
+    static constexpr float kFreedoms = 12; // that a variance of samples within pixels is known by
+    // Factors of the variance: few bright samples bring much of the light, and many pixels have not met them.
+    // Highlights are narrower than a filter.
+    static constexpr float kOfDiffuse = 1.5f, kOfGloss = 0.4f;
+    static constexpr float kUnknown = 1e6f; // a variance that lets the filter take all that guides allow
+
+    /// Of the spread of a pixel's samples, about what is noise: where its normals spread, its light does so as well.
+    HD static float noise_share(Float4 normals) {
+        if (!(normals.w > 0)) return 1;
+        const float spread = 1.0f - length(vec3_of(normals)) / normals.w; // 0.02: about ten degrees
+        return square(max(1.0f - 10.0f * spread, 0.0f));
+    }
+
+    /// Sums of one pixel and one signal.
+    struct Sums {
+        Rgb light, divisors;
+        float signal, squares, samples; // luminances, their squares
+
+        /// About their own mean.
+        HD float spread() const { return max(squares - square(signal) / samples, 0.0f); }
+    };
+    HD Sums diffuse_of(uint32_t at) const {
+        const Float4 share = sums.diffuse_share[at];
+        return {rgb_of(sums.diffuse[at]), rgb_of(share), share.w, sums.squares[at].x, sums.diffuse[at].w};
+    }
+    HD Sums gloss_of(uint32_t at) const {
+        const Float4 share = sums.gloss_share[at];
+        return {rgb_of(sums.gloss[at]), rgb_of(share), share.w, sums.squares[at].y, sums.diffuse[at].w};
+    }
+
+    /// Of one signal, over pixels.
+    struct Pool {
+        Sums all = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
+        float within = 0, freedoms = 0; // spread within pixels
+        float pixels = 0;
+
+        HD void add(const Sums& one) {
+            all.light += one.light;
+            all.divisors += one.divisors;
+            all.signal += one.signal;
+            all.squares += one.squares;
+            all.samples += one.samples;
+            pixels += 1;
+            if (!(one.samples > 1)) return;
+            within += one.spread();
+            freedoms += one.samples - 1;
+        }
+        HD float variance_of_sample() const {
+            if (freedoms >= kFreedoms) return within / freedoms;
+            return pixels >= 6 && all.samples > 1 ? all.spread() / (all.samples - 1) : kUnknown;
+        }
+        /// A pixel none of whose samples met its guide takes the mean of those about it. Where its own samples stray
+        /// more than those about it, it goes by them: else a lone bright one would stay.
+        HD Float4 mean(const Sums& own, float scale) const {
+            const Sums& known = own.samples > 0 ? own : all;
+            const Rgb light = known.samples > 0 ? known.light / known.divisors : Rgb{0, 0, 0};
+            const float variance =
+                own.samples > 1 ? max(variance_of_sample(), own.spread() / (own.samples - 1)) : variance_of_sample();
+            return with_w(light, (scale * variance) / max(own.samples, 1.0f));
+        }
+    };
+};
+
+} // namespace pertev

@@ -1,0 +1,177 @@
+#pragma once
+
+// First stages of a single picture: guides, and sums over samples.
+
+#include "denoise/picture_sums.h"
+#include "denoise/reproject.h"
+#include "denoise/split_light.h"
+#include "shading/shading_frame.h"
+
+namespace pertev {
+
+/// Takes the guides from a frame of rays through pixels' centres, and begins the sums.
+struct BeginSums {
+    NoisyFrameView centres;
+    PictureGuide guide;
+    PictureSums sums;
+
+    HD void operator()(uint32_t pixel) const {
+        guide.normal[pixel] = centres.normal[pixel];
+        guide.albedo[pixel] = centres.albedo[pixel];
+        guide.object[pixel] = bits_of(centres.place[pixel].x);
+        constexpr Float4 kZero = {0, 0, 0, 0};
+        sums.diffuse[pixel] = sums.gloss[pixel] = sums.beside[pixel] = sums.loose[pixel] = kZero;
+        sums.diffuse_share[pixel] = sums.gloss_share[pixel] = sums.normal[pixel] = kZero;
+        sums.squares[pixel] = {0, 0};
+        sums.met[pixel] = sums.diffuse_color[pixel] = sums.gloss_color[pixel] = kZero;
+        for (int slot = 0; slot < kSurfacesBeside; ++slot) {
+            sums.beside_diffuse[slot][pixel] = {0, 0, 0, float_of(kNoHit)};
+            sums.beside_gloss[slot][pixel] = kZero;
+        }
+    }
+};
+
+/// The guides' normals as the filter sees them: means over the pixel, as its light is. The guides stay, for
+/// more samples.
+struct SmoothGuide {
+    PictureGuide guide;
+    PictureSums sums;
+    Float4* smooth; // PictureGuide's normal
+    Float4* packed; // Guide, for the filter
+
+    HD void operator()(uint32_t pixel) const {
+        const Float4 own = guide.normal[pixel];
+        const Vec3 mean = normalize_or(vec3_of(sums.normal[pixel]), vec3_of(own));
+        smooth[pixel] = {mean.x, mean.y, mean.z, own.w};
+        packed[pixel] = pack({mean, guide.albedo[pixel].w, own.w, guide.object[pixel]});
+    }
+};
+
+/// A frame's samples, and where the surfaces that they met are looked for.
+struct SampledSurfaces {
+    NoisyFrameView frame;
+    PictureGuide guide;
+    PictureSums sums;
+    const InstanceView* instances;
+    const MeshView* meshes;
+    CameraView camera;
+    uint32_t width, height;
+
+    struct Found {
+        uint32_t object; // kNoHit: nothing
+        Vec3 point;      // camera space
+        Vec3 normal;
+    };
+    HD Found found(uint32_t pixel) const {
+        const Float4 place = frame.place[pixel];
+        Found f = {bits_of(place.x), {}, vec3_of(frame.normal[pixel])};
+        if (f.object == kNoHit) return f;
+        const Vec3 point = point_at(instances, meshes, place);
+        f.point = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
+        return f;
+    }
+    /// Of the sample's own pixel: bumps belong to it.
+    HD bool shows_own(uint32_t pixel, const Found& f) const {
+        return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.5f);
+    }
+    HD bool shows(uint32_t pixel, const Found& f) const {
+        return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.8f);
+    }
+    /// Slot of that surface beside the pixel's own. When there is none and all are taken: kSurfacesBeside. `is_free`:
+    /// the slot is one that no surface has.
+    HD int slot_of(uint32_t pixel, const Found& f, bool& is_free) const {
+        is_free = false;
+        for (int slot = 0; slot < kSurfacesBeside; ++slot) {
+            const uint32_t there = bits_of(sums.beside_diffuse[slot][pixel].w);
+            is_free = there == kNoHit;
+            if (is_free || shows(there, f)) return slot;
+        }
+        return kSurfacesBeside;
+    }
+    HD static void add(Float4& sum, Rgb value, float w = 0) {
+        const bool keeps = w == 0; // bits of a pixel are no number
+        sum = {sum.x + value.r, sum.y + value.g, sum.z + value.b, keeps ? sum.w : sum.w + w};
+    }
+};
+
+/// What the pixel's camera rays meet.
+struct GatherFeatures {
+    SampledSurfaces samples;
+
+    HD void operator()(uint32_t pixel) const {
+        const NoisyFrameView& frame = samples.frame;
+        const PictureSums& sums = samples.sums;
+        const Rgb met = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
+        const SampledSurfaces::Found found = samples.found(pixel);
+        if (found.object == kNoHit) return SampledSurfaces::add(sums.met[pixel], met);
+        const Rgb diffuse = divisor_of(rgb_of(frame.albedo[pixel])), gloss = divisor_of(rgb_of(frame.gloss[pixel]));
+        if (samples.shows_own(pixel, found)) {
+            SampledSurfaces::add(sums.diffuse_color[pixel], diffuse);
+            SampledSurfaces::add(sums.gloss_color[pixel], gloss);
+            SampledSurfaces::add(sums.normal[pixel], {found.normal.x, found.normal.y, found.normal.z}, 1);
+            return SampledSurfaces::add(sums.met[pixel], met);
+        }
+        bool is_free = false;
+        const int slot = samples.slot_of(pixel, found, is_free);
+        if (is_free) {
+            const uint32_t beside = pixel_beside(pixel, found);
+            if (beside != kNoHit) {
+                is_free = false;
+                sums.beside_diffuse[slot][pixel].w = float_of(beside);
+            }
+        }
+        if (is_free || slot == kSurfacesBeside) return SampledSurfaces::add(sums.met[pixel], {0, 0, 0}, 1);
+        SampledSurfaces::add(sums.beside_diffuse[slot][pixel], diffuse);
+        SampledSurfaces::add(sums.beside_gloss[slot][pixel], gloss, 1);
+        SampledSurfaces::add(sums.met[pixel], met);
+    }
+
+private:
+    /// The pixel about this one, the nearest first, whose guide shows the surface.
+    HD uint32_t pixel_beside(uint32_t pixel, const SampledSurfaces::Found& found) const {
+        const int w = static_cast<int>(samples.width), h = static_cast<int>(samples.height);
+        const int x = static_cast<int>(pixel % samples.width), y = static_cast<int>(pixel / samples.width);
+        for (int k = 0; k < 24; ++k) { // rings of a square: 8 pixels, then 16
+            const int ring = k < 8 ? 1 : 2, at = k < 8 ? k : k - 8;
+            const int side = at / (2 * ring), along = at % (2 * ring) - ring;
+            const int dx = side == 0 ? along : side == 1 ? ring : side == 2 ? -along : -ring;
+            const int dy = side == 0 ? -ring : side == 1 ? along : side == 2 ? ring : -along;
+            if (x + dx < 0 || y + dy < 0 || x + dx >= w || y + dy >= h) continue;
+            const uint32_t there = static_cast<uint32_t>((y + dy) * w + x + dx);
+            if (samples.shows(there, found)) return there;
+        }
+        return kNoHit;
+    }
+};
+
+/// The light of the pixel's samples, whose features have been gathered.
+struct GatherLight {
+    SampledSurfaces samples;
+
+    HD void operator()(uint32_t pixel) const {
+        const NoisyFrameView& frame = samples.frame;
+        const PictureSums& sums = samples.sums;
+        const SampledSurfaces::Found found = samples.found(pixel);
+        if (found.object == kNoHit) return;
+        if (samples.shows_own(pixel, found)) {
+            const SplitLight light = split_light(frame, pixel);
+            const float diffuse = luminance(light.diffuse / light.diffuse_divisor),
+                        gloss = luminance(light.gloss / light.gloss_divisor);
+            SampledSurfaces::add(sums.diffuse[pixel], light.diffuse, 1);
+            SampledSurfaces::add(sums.gloss[pixel], light.gloss);
+            SampledSurfaces::add(sums.diffuse_share[pixel], light.diffuse_divisor, diffuse);
+            SampledSurfaces::add(sums.gloss_share[pixel], light.gloss_divisor, gloss);
+            sums.squares[pixel] = sums.squares[pixel] + Vec2{square(diffuse), square(gloss)};
+            return;
+        }
+        bool is_free = false;
+        const int slot = samples.slot_of(pixel, found, is_free);
+        const bool is_beside = !is_free && slot < kSurfacesBeside;
+        const Float4 light = frame.light[pixel], emission = frame.emission[pixel];
+        const Rgb all = light.w != 0 ? rgb_of(light) : Rgb{0, 0, 0};
+        const Rgb scattered = light.w != 0 ? all - rgb_of(emission) : Rgb{0, 0, 0};
+        SampledSurfaces::add(is_beside ? sums.beside[pixel] : sums.loose[pixel], is_beside ? scattered : all, 1);
+    }
+};
+
+} // namespace pertev

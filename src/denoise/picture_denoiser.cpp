@@ -1,0 +1,92 @@
+#include "denoise/picture_denoiser.h"
+
+#include "base/error.h"
+#include "denoise/compose_samples.h"
+#include "denoise/estimate_variance.h"
+#include "denoise/wavelet_pass.h"
+#include "device/launch.h"
+
+namespace pertev {
+namespace {
+
+constexpr int kPasses = 5;
+constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kSurfacesBeside, kOfSignals = 4; // arrays of Float4
+constexpr std::size_t kWideArrays = kOfGuide + kOfSums + kOfSignals;
+
+} // namespace
+
+PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
+    : queue_(&queue), width_(width), height_(height), wide_(queue, kWideArrays * width * height, "denoised picture"),
+      squares_(queue, std::size_t(width) * height, "denoised picture"),
+      objects_(queue, std::size_t(width) * height, "denoised picture") {
+    Float4* next = wide_.data();
+    const auto take = [&](Float4*& array) {
+        array = next;
+        next += std::size_t(width) * height;
+    };
+    for (Float4** array :
+         {&guide_.normal, &guide_.albedo, &smooth_, &packed_, &sums_.diffuse, &sums_.gloss, &sums_.diffuse_share,
+          &sums_.gloss_share, &sums_.normal, &sums_.diffuse_color, &sums_.gloss_color, &sums_.beside, &sums_.loose,
+          &sums_.met, &from_.diffuse, &from_.gloss, &to_.diffuse, &to_.gloss}) {
+        take(*array);
+    }
+    for (int slot = 0; slot < kSurfacesBeside; ++slot) {
+        take(sums_.beside_diffuse[slot]);
+        take(sums_.beside_gloss[slot]);
+    }
+    sums_.squares = squares_.data();
+    guide_.object = objects_.data();
+}
+
+std::size_t PictureDenoiser::predicted_bytes(uint32_t width, uint32_t height) {
+    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + sizeof(Vec2) + sizeof(uint32_t));
+}
+
+void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera) {
+    PERTEV_CHECK(centres.width() == width_ && centres.height() == height_);
+    launch(*queue_, "begin_sums", width_ * height_, BeginSums{centres.view(), guide_, sums_});
+    camera_ = camera;
+    has_gloss_ = centres.splits_light();
+    samples_ = features_ = 0;
+}
+
+SampledSurfaces PictureDenoiser::surfaces_of(const NoisyFrame& frame, const SceneView& scene) const {
+    PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
+    return {frame.view(), guide_, sums_, scene.instances, scene.meshes, camera_, width_, height_};
+}
+
+void PictureDenoiser::add_features(const NoisyFrame& frame, const SceneView& scene) {
+    launch(*queue_, "gather_features", width_ * height_, GatherFeatures{surfaces_of(frame, scene)});
+    ++features_;
+}
+
+void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene) {
+    PERTEV_CHECK(features_ >= kFeatures);
+    if (samples_ >= features_) add_features(frame, scene);
+    launch(*queue_, "gather_light", width_ * height_, GatherLight{surfaces_of(frame, scene)});
+    ++samples_;
+}
+
+Image PictureDenoiser::picture() {
+    PERTEV_CHECK(samples_ > 0);
+    const uint32_t pixels = width_ * height_;
+    SignalsView from = from_, to = to_;
+    const PictureGuide smooth = {smooth_, guide_.albedo, guide_.object};
+    launch(*queue_, "smooth_guide", pixels, SmoothGuide{guide_, sums_, smooth_, packed_});
+    launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
+    for (int pass = 0; pass < kPasses; ++pass) {
+        launch(*queue_, "wavelet_pass", pixels,
+               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, has_gloss_});
+        std::swap(from, to);
+    }
+    launch(*queue_, "compose_samples", pixels,
+           ComposeSamples{sums_, from, static_cast<float>(features_), has_gloss_, to.diffuse});
+    std::vector<Float4> shown(pixels);
+    queue_->copy_to_host(shown.data(), to.diffuse, pixels * sizeof(Float4));
+    Image image{width_, height_, 3, {}};
+    image.pixels.reserve(std::size_t(3) * pixels);
+    for (const Float4& p : shown) image.pixels.insert(image.pixels.end(), {p.x, p.y, p.z});
+    return image;
+}
+
+} // namespace pertev

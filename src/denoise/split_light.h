@@ -1,0 +1,30 @@
+#pragma once
+
+// Light of one sample, told apart and divided by the colours of the surface that scattered it (demodulation).
+//
+// Source: Schied et al. 2017 (denoise/reconstruction.h), section 3.
+
+#include "denoise/reconstruction_view.h"
+
+namespace pertev {
+
+/// What the first surface scattered, and divisor_of of its colours. The signals are light over divisor.
+struct SplitLight {
+    Rgb diffuse, gloss;
+    Rgb diffuse_divisor, gloss_divisor;
+};
+
+HD inline SplitLight split_light(const NoisyFrameView& frame, uint32_t pixel) {
+    const auto not_negative = [](Rgb c) { return Rgb{max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)}; };
+    const Float4 light = frame.light[pixel];
+    Rgb diffuse = {0, 0, 0}, gloss = {0, 0, 0};
+    if (light.w != 0) {
+        const Rgb scattered = rgb_of(light) - rgb_of(frame.emission[pixel]);
+        diffuse = frame.splits_light() ? rgb_of(frame.diffuse[pixel]) : scattered;
+        gloss = frame.splits_light() ? not_negative(scattered - diffuse) : Rgb{0, 0, 0};
+    }
+    return {not_negative(diffuse), gloss, divisor_of(rgb_of(frame.albedo[pixel])),
+            divisor_of(rgb_of(frame.gloss[pixel]))};
+}
+
+} // namespace pertev

@@ -1,0 +1,52 @@
+#pragma once
+
+// Adds the samples of a noisy frame to a film: all that the path tracer would have added itself had it been given the
+// film, to the bit.
+
+#include "render/film_view.h"
+#include "render/surface.h"
+
+namespace pertev {
+
+struct AddFrameToFilm {
+    NoisyFrameView frame;
+    FilmView film;
+    SceneView scene;
+    bool is_first; // sample 0, which has the ids
+
+    HD void operator()(uint32_t pixel) const {
+        const Float4 light = frame.light[pixel], place = frame.place[pixel];
+        if (light.w != 0) add_radiance(film, pixel, {light.x, light.y, light.z});
+        const Hit hit = {
+            .t = 0, .u = place.z, .v = place.w, .instance = bits_of(place.x), .primitive = bits_of(place.y)};
+        if (hit.instance != kNoHit) add_hit(pixel, hit);
+        if ((film.aovs & kAovIds) != 0 && is_first) {
+            const uint32_t material = hit.instance == kNoHit ? kNoHit : scene.instances[hit.instance].material;
+            film.ids[pixel] = {hit.instance, hit.primitive, material};
+        }
+    }
+
+private:
+    /// Auxiliary channels, in the words of add_first_hit (integrators/path/shade_hit.h).
+    HD void add_hit(uint32_t pixel, const Hit& hit) const {
+        const Float4 normal = frame.normal[pixel], albedo = frame.albedo[pixel];
+        add_channel(film, pixel, kFilmHits, 1.0f);
+        if ((film.aovs & kAovAlbedo) != 0) {
+            add_channels(film, pixel, channel_offset(film.aovs, kAovAlbedo), {albedo.x, albedo.y, albedo.z});
+        }
+        if ((film.aovs & kAovNormal) != 0) {
+            add_channels(film, pixel, channel_offset(film.aovs, kAovNormal), {normal.x, normal.y, normal.z});
+        }
+        if ((film.aovs & kAovDepth) != 0) {
+            add_channel(film, pixel, channel_offset(film.aovs, kAovDepth), normal.w);
+        }
+        if ((film.aovs & kAovPosition) != 0) { // a frame keeps the hit, not the place
+            const InstanceView& instance = scene.instances[hit.instance];
+            const uint32_t channel = channel_offset(film.aovs, kAovPosition);
+            add_channels(film, pixel, channel, place_triangle(instance, scene.meshes[instance.mesh], hit).position);
+            add_channels(film, pixel, channel, scene.centre);
+        }
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,124 @@
+// Frames whose light is found at a lower resolution: the same bytes on both devices and by both bodies of the path
+// tracer; edges and textures stay those of the picture's own resolution.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/picture_hash.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+RenderSettings settings_of(uint32_t width, uint32_t height) {
+    RenderSettings settings;
+    settings.width = width, settings.height = height;
+    settings.path.max_depth = 4;
+    return settings;
+}
+
+ReconstructionSettings scaled(float scale) {
+    ReconstructionSettings settings;
+    settings.resolution_scale = scale;
+    return settings;
+}
+
+Hash128 hash_of_walk(Session& session, uint32_t frames, const ReconstructionSettings& settings) {
+    Camera camera = mixed_scene_camera();
+    for (uint32_t k = 0; k < frames; ++k) {
+        session.set_camera(camera);
+        session.render_frame(k, settings);
+        camera.world_from_camera.translation += 0.01f * column(camera.world_from_camera, 0);
+    }
+    return picture_hash(session.frame().picture());
+}
+
+Image still_frame(Session& session, uint32_t frames, const ReconstructionSettings& settings) {
+    session.cut();
+    for (uint32_t k = 0; k < frames; ++k) session.render_frame(k, settings);
+    return session.frame().picture();
+}
+
+/// To twice the size, by straight lines.
+Image doubled(const Image& small) {
+    Image large{2 * small.width, 2 * small.height, 3, {}};
+    const auto at = [&](int x, int y, uint32_t c) {
+        const int px = std::clamp(x, 0, static_cast<int>(small.width) - 1),
+                  py = std::clamp(y, 0, static_cast<int>(small.height) - 1);
+        return small.pixels[3 * static_cast<std::size_t>(py * static_cast<int>(small.width) + px) + c];
+    };
+    for (uint32_t y = 0; y < large.height; ++y) {
+        for (uint32_t x = 0; x < large.width; ++x) {
+            const int left = static_cast<int>(x + 1) / 2 - 1, top = static_cast<int>(y + 1) / 2 - 1;
+            const float u = x % 2 == 0 ? 0.75f : 0.25f, v = y % 2 == 0 ? 0.75f : 0.25f;
+            for (uint32_t c = 0; c < 3; ++c) {
+                const float above = at(left, top, c) + u * (at(left + 1, top, c) - at(left, top, c)),
+                            below = at(left, top + 1, c) + u * (at(left + 1, top + 1, c) - at(left, top + 1, c));
+                large.pixels.push_back(above + v * (below - above));
+            }
+        }
+    }
+    return large;
+}
+
+double error_of(const Image& a, const Image& b) {
+    REQUIRE(a.pixels.size() == b.pixels.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += static_cast<double>(std::abs(a.pixels[i] - b.pixels[i]));
+    return sum / static_cast<double>(a.pixels.size());
+}
+
+} // namespace
+
+TEST_CASE("frames at half the resolution have the same bytes on every device, by every body, and after a cut") {
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue cpu = Queue::make_cpu();
+    const RenderSettings settings = settings_of(95, 63);
+    Session session(cpu, prepared, mixed_scene_camera(), settings);
+    const Hash128 expected = hash_of_walk(session, 12, scaled(0.5f));
+    const Hash128 whole = hash_of_walk(session, 12, {}); // another scale is a cut
+    CHECK(whole != expected);
+    CHECK(hash_of_walk(session, 12, scaled(0.5f)) == expected);
+    CHECK(session.frame().picture().width == 95);
+    CHECK(session.frame().display(ToneMap::Agx, 0).pixels.size() == std::size_t(4) * 95 * 63);
+    Session fresh(cpu, prepared, mixed_scene_camera(), settings);
+    CHECK(hash_of_walk(fresh, 12, {}) == whole);
+
+    RenderSettings wavefront = settings;
+    wavefront.body = PathBody::Wavefront;
+    wavefront.batch = 1000; // several rounds begin paths
+    Session other(cpu, prepared, mixed_scene_camera(), wavefront);
+    CHECK(hash_of_walk(other, 12, scaled(0.5f)) == expected);
+    if (cuda_requested()) {
+        Queue cuda = make_cuda_queue();
+        Session there(cuda, prepared, mixed_scene_camera(), settings);
+        CHECK(hash_of_walk(there, 12, scaled(0.5f)) == expected);
+    }
+}
+
+TEST_CASE("a frame at half the resolution is much nearer to the picture than one that is enlarged") {
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = queue_asked_for();
+    constexpr uint32_t kFrames = 24;
+    Session session(queue, prepared, mixed_scene_camera(), settings_of(192, 128));
+    session.render(256);
+    const Image reference = session.picture();
+    const double led = error_of(still_frame(session, kFrames, scaled(0.5f)), reference);
+    const double whole = error_of(still_frame(session, kFrames, {}), reference);
+    Session small(queue, prepared, mixed_scene_camera(), settings_of(96, 64));
+    const double plain = error_of(doubled(still_frame(small, kFrames, {})), reference);
+    MESSAGE("mean error at half the resolution ", led, ", enlarged by straight lines ", plain, ", at the whole ",
+            whole);
+    CHECK(led < 0.7 * plain);
+    CHECK(led < 1.6 * whole);
+}
