@@ -149,13 +149,18 @@ class Times(CliTest):
             self.assertEqual([key["time"] for key in keys], [0.5, 3])
             self.assertAlmostEqual(keys[0]["fov"], 50, 3)
             write(self.path("path.json"), json.dumps({"keys": keys}))
+            client.set("aperture", 0.02)  # keys do not say it: it stays
             client.steer(type="follow")
             self.play(client, False)
             for at in ["0.5", "1.75", "3"]:
                 shown = self.still(client, client.steer(type="time", at=float(at)))
-                self.assertEqual(shown["hash"], self.rendered("--camera-path", "path.json", "--time", at, scene="cornell-box"))
+                self.assertEqual(shown["hash"], self.rendered("--camera-path", "path.json", "--time", at, "--aperture",
+                                                              "0.02", scene="cornell-box"))
                 words = words_of(shown)
                 self.assertEqual(shown["hash"], self.rendered(*words, scene="cornell-box"))
+            # Without its last key the path ends elsewhere, and so does the camera.
+            gone = self.still(client, client.steer(type="unkey", index=1))
+            self.assertNotEqual(gone["hash"], shown["hash"])
         with self.view("--camera-path", self.path("path.json"), "--time", "1.75", scene="cornell-box") as viewer, \
                 Client(viewer) as client:
             state = client.done()
