@@ -26,7 +26,7 @@ struct FramesFlags {
     RenderFlags render;
     uint32_t frames = 60;
     bool still = false, no_reconstruction = false;
-    bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false;
+    bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false, sample_order = false;
     std::string write;
     float resolution_scale = 1;
     uint32_t reference = 0, passes = 5, history = 32;
@@ -64,8 +64,10 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
     settings.limit_fireflies = !flags.no_firefly_limit;
     settings.limit_history = !flags.no_history_limit;
     settings.anti_alias = !flags.no_anti_alias;
-    if (flags.no_reconstruction) settings = {1, 0, false, false, false, 1};
+    if (flags.no_reconstruction)
+        settings = {.history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false};
     settings.resolution_scale = flags.resolution_scale;
+    settings.orders_samples = flags.sample_order;
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction;
     FrameFigures figures;
@@ -174,6 +176,8 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
     verb.add_flag("--no-firefly-limit", flags->no_firefly_limit, "samples stay as bright as they are");
     verb.add_flag("--no-history-limit", flags->no_history_limit, "means are not held within what recent frames say");
     verb.add_flag("--no-anti-alias", flags->no_anti_alias, "no mean of shown pictures over time");
+    verb.add_flag("--sample-order", flags->sample_order,
+                  "draw samples so that errors are blue noise over the picture and\nover time");
     verb.add_option("--history", flags->history, "frames of a mean at most")
         ->type_name("N")
         ->check(whole_between(1, 1024))

@@ -264,6 +264,10 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     RenderSettings of_light = settings_;
     of_light.width = scaled_side(settings_.width, settings);
     of_light.height = scaled_side(settings_.height, settings);
+    if (settings.orders_samples && of_light.path.sampler == SamplerKind::Sobol) {
+        of_light.path.sampler = SamplerKind::SpaceTime;
+        of_light.path.frame_width = of_light.width;
+    }
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
     if (!reconstruction_ || reconstruction_->width() != of_light.width ||
         reconstruction_->height() != of_light.height) {
@@ -277,7 +281,9 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     const PictureView light = view_of(camera_, of_light);
     const PreviousScene before = {has_moved_ ? places_before_.data() : light.scene.instances, light.scene.meshes};
     if (settings.resolution_scale < 1) {
-        RenderSettings of_features = settings_;
+        RenderSettings of_features = of_light;
+        of_features.width = of_features.path.frame_width = settings_.width;
+        of_features.height = settings_.height;
         of_features.path.max_depth = 0;
         NoisyFrame& features = fit(features_, settings_.width, settings_.height);
         begin(camera_, of_features, 1);

@@ -10,7 +10,7 @@ namespace pertev {
 
 HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, uint32_t pixel,
                                   uint32_t sample) {
-    const SampleKey key = {pixel, sample, settings.seed};
+    const SampleKey key = sample_key(settings, pixel, sample);
     const Vec2 in_filter = sample_2d(settings.sampler, key, kGroupCamera);
     const Vec2 on_lens = camera.has_lens() ? sample_2d(settings.sampler, key, kGroupLens) : Vec2{};
     const Ray ray = camera.ray(pixel, in_filter, on_lens);
