@@ -26,7 +26,7 @@ namespace {
 struct FramesFlags {
     RenderFlags render;
     uint32_t frames = 60;
-    bool still = false;
+    bool still = false, sample_order = false;
     ReconstructionFlags reconstruction;
     std::string write;
     float resolution_scale = 1;
@@ -62,6 +62,7 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
                      ToneMap tone_map, Reporter& reporter) {
     ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
     settings.resolution_scale = flags.resolution_scale;
+    settings.orders_samples = flags.sample_order;
     RestirSettings restir;
     restir.light = restir_named(flags.restir).value();
     restir.history = flags.restir_history;
@@ -182,6 +183,8 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->check(whole_between(1, 100000))
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
+    verb.add_flag("--sample-order", flags->sample_order,
+                  "draw samples so that errors are blue noise over the picture and\nover time");
     add_reconstruction_flags(verb, flags->reconstruction);
     verb.add_option("--restir", flags->restir,
                     "light that pixels share: off, di (what lights send to the\nfirst surface), gi (what its "

@@ -18,6 +18,7 @@
 #include <cstdint>
 
 #include "base/host_device.h"
+#include "math/frame_order.h"
 #include "math/random.h"
 #include "math/scalar.h"
 #include "math/vec2.h"
@@ -26,6 +27,7 @@ namespace pertev {
 
 enum class SamplerKind : uint8_t {
     Sobol,       // low discrepancy over the samples of a pixel
+    SpaceTime,   // one sequence over all pixels and frames (math/frame_order.h): `pixel` is a morton_code
     Independent, // white noise: for tests and comparisons
 };
 
@@ -122,7 +124,16 @@ struct GroupKeys {
     Hash3 keys;
 };
 
-HD inline GroupKeys group_keys(SampleKey key, uint32_t group) {
+HD inline GroupKeys group_keys(SamplerKind kind, SampleKey key, uint32_t group) {
+    if (kind == SamplerKind::SpaceTime) {
+        constexpr uint32_t kTimes = (1u << kFrameBits) - 1;
+        const Hash3 keys = hash_words(key.sample >> kFrameBits, group, ~key.seed);
+        // Shuffled as below, each by itself: blocks of pixels and of frames stay blocks.
+        const uint32_t place = reverse_bits(owen_scramble_reversed(reverse_bits(key.pixel), keys.x));
+        const uint32_t first_bits = reverse_bits(key.sample & kTimes) >> (32 - kFrameBits);
+        const uint32_t time = reverse_bits(owen_scramble_reversed(first_bits, hash_word(keys.x)) & kTimes);
+        return {place ^ frame_word(time >> (32 - kFrameBits)), keys};
+    }
     const Hash3 keys = hash_words(key.pixel, group, key.seed);
     // The order of the points is shuffled by scrambling the index.
     return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
@@ -139,8 +150,9 @@ HD inline GroupKeys group_keys(SampleKey key, uint32_t group) {
 [[gnu::always_inline]] HD inline SampleBits sample_bits(SamplerKind kind, SampleKey key, uint32_t group,
                                                         Pair pair = Pair::First) {
     switch (kind) {
-    case SamplerKind::Sobol: {
-        const GroupKeys keys = group_keys(key, group);
+    case SamplerKind::Sobol:
+    case SamplerKind::SpaceTime: {
+        const GroupKeys keys = group_keys(kind, key, group);
         const uint32_t first = pair == Pair::First ? 0 : 2;
         return {scrambled_component(keys, first), scrambled_component(keys, first + 1)};
     }
@@ -161,7 +173,8 @@ HD inline Vec2 sample_2d(SamplerKind kind, SampleKey key, uint32_t group, Pair p
 HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t group, uint32_t number = 0) {
     switch (kind) {
     case SamplerKind::Sobol:
-        return unit_interval(scrambled_component(group_keys(key, group), number));
+    case SamplerKind::SpaceTime:
+        return unit_interval(scrambled_component(group_keys(kind, key, group), number));
     case SamplerKind::Independent:
         break;
     }

@@ -351,6 +351,10 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     RenderSettings of_light = settings_of_frames(settings_);
     of_light.width = scaled_side(settings_.width, settings);
     of_light.height = scaled_side(settings_.height, settings);
+    if (settings.orders_samples && restir.light == RestirLight::Off && of_light.path.sampler == SamplerKind::Sobol) {
+        of_light.path.sampler = SamplerKind::SpaceTime;
+        of_light.path.frame_width = of_light.width;
+    }
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
     if (!reconstruction_ || reconstruction_->width() != of_light.width ||
         reconstruction_->height() != of_light.height) {
@@ -375,7 +379,9 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         shared->add(frame, light, {path.sampler, number, path.seed}, *tracer_, before, restir);
     }
     if (settings.resolution_scale < 1) {
-        RenderSettings of_features = settings_;
+        RenderSettings of_features = of_light;
+        of_features.width = of_features.path.frame_width = settings_.width;
+        of_features.height = settings_.height;
         of_features.path.max_depth = 0;
         NoisyFrame& features = fit(features_, settings_.width, settings_.height);
         begin(camera_, of_features, 1);

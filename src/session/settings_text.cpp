@@ -65,6 +65,8 @@ std::string_view name_of(SamplerKind sampler) {
     switch (sampler) {
     case SamplerKind::Sobol:
         return "sobol";
+    case SamplerKind::SpaceTime: // of frames alone
+        return "space-time";
     case SamplerKind::Independent:
         return "independent";
     }

@@ -60,7 +60,7 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
                              const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
-    const SampleKey key = {path.pixel, path.sample, settings.seed};
+    const SampleKey key = sample_key(settings, path.pixel, path.sample);
     LightSample light;
     if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position,
                                             sample_bits(settings.sampler, key, light_group(path), Pair::Last), light)) {
@@ -105,7 +105,7 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
 
 /// Draws where the path goes on. False when it ends here.
 HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo) {
-    const SampleKey key = {path.pixel, path.sample, settings.seed};
+    const SampleKey key = sample_key(settings, path.pixel, path.sample);
     const float lobe = surface.bsdf.draws_lobe()
                            ? sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe)
                            : 0.5f;
