@@ -6,8 +6,9 @@
 // Samples gather in the film until something changes the picture: then the film begins anew. These calls do that:
 //   set_scene     always. Uploads the scene; takes memory for its trees and for parts that are larger than before, none
 //                 for film and queues.
-//   update_scene  always. Uploads those parts alone, of trees only what has become another; takes memory for parts that
-//                 are larger than before.
+//   update_scene  always. Uploads those parts alone, of trees only what has become another, and of meshes that deform
+//                 joints and weights: their vertices and trees are made on the device. Takes memory for parts that are
+//                 larger than before.
 //   set_camera    where the camera is another. Uploads and takes nothing.
 //   set_settings  where the picture is another (same_picture). Another size or other layers take a new film at the next
 //                 render, and larger queues where they must be larger; another tracer takes its structure. All else
