@@ -191,7 +191,7 @@ int bench_sequence(const SequenceFlags& flags) {
     reporter.end_progress();
     if (reporter.json()) {
         reporter.event(fmt::format(
-            R"({{"event":"sequence","scene":{},"device":{},"width":{},"height":{},"frames":{},"reference_spp":{},"reference_noise":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
+            R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"reference_spp":{},"reference_noise":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
             json_string(flags.render.scene.scene), json_string(ready->queue->device_name()), ready->settings.width,
             ready->settings.height, ready->sequence.count(), flags.reference, json_number(scores.noise),
             json_of(scores.ours), json_of(scores.sample), scores.peer ? json_of(*scores.peer) : "null",

@@ -262,7 +262,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (competes && reconstruction_.pixels.empty()) { // before another size forgets it
         ShownFrame frame;
         expose(request, frame);
-        reconstruction_ = session_.frame().display(request.view.display.tone_map, frame.exposure_stops);
+        reconstruction_ = shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
     }
     use(settings_for(request, scale));
     session_.set_camera(request.camera);

@@ -27,7 +27,11 @@ struct TakeBounces {
         if (bits_of(place.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
         const Vec3 direction = here.direction(pixel);
         const Surface surface = make_surface(scene, here.hit(pixel), direction);
-        BounceReservoir taken = {bits_of(place.x), bits_of(place.y), place.z, place.w};
+        BounceReservoir taken = {};
+        taken.instance = bits_of(place.x);
+        taken.primitive = bits_of(place.y);
+        taken.u = place.z;
+        taken.v = place.w;
         const SeenPlace seen = see_place(place_of(scene, taken), surface.position);
         if (!seen.is_there) return; // stays in the sample
         const Surface there = make_surface(scene, taken.hit(), seen.wi);

@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -136,6 +137,27 @@ class Bench(CliTest):
         self.refuse(2, *line, "--restir", "all", says=["--restir", "off", "di", "gi"])
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
         self.refuse(6, *line, "--write", "/nowhere/at/all", says=["/nowhere/at/all"])
+
+    def test_a_sequence_is_measured_beside_what_another_program_made_of_its_samples(self):
+        line = ["bench", "sequence", "cornell-box", "--device", "cpu", "--size", "32x24", "--turntable", "90", "--frames", "0-2"]
+        with tempfile.TemporaryDirectory() as folder:
+            self.succeed(*line, "--write-samples", folder)
+            kinds = ["", "-albedo", "-normal"]
+            self.assertEqual(sorted(os.listdir(folder)),
+                             sorted(f"frame-{k:04}{kind}.pfm" for k in range(3) for kind in kinds))
+            for k in range(3):  # a program that does nothing
+                shutil.copy(f"{folder}/frame-{k:04}.pfm", f"{folder}/frame-{k:04}-denoised.pfm")
+            done = self.succeed(*line, "--reference", "32", "--peer", folder, "--strips", folder, "--json")
+            made = done.events("sequence_errors")[0]
+            self.assertEqual(made["peer"], made["sample"])
+            self.assertLess(made["ours"]["hdr_flip"], made["sample"]["hdr_flip"])
+            self.assertLess(made["ours"]["flicker"], made["sample"]["flicker"])
+            self.assertGreater(made["reference_noise"], 0)
+            with open(f"{folder}/frame-0001-denoised.pfm", "wb") as file:
+                file.write(b"PF\n32 24\n-1.0\n1234")
+            self.refuse(2, *line, "--reference", "2", "--peer", folder, says=["frame-0001-denoised.pfm", "32x24"])
+        self.refuse(2, *line, "--peer", "x", says=["--reference"])
+        self.refuse(2, "bench", "sequence", "cornell-box", says=["--frames"])
 
     def test_noise_refuses_what_it_cannot_measure_before_it_reads(self):
         for flags, says in [("--seeds 1", "--seeds"), ("--seeds 1025", "--seeds"), ("--keep 0", "--keep"),
