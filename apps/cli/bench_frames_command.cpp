@@ -80,9 +80,9 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         reporter.progress((frame + 1.0) / flags.frames, fmt::format("frame {} of {}", frame + 1, flags.frames));
         if (!flags.write.empty()) {
             const Reconstruction& of = session.frame();
-            const std::size_t bytes = std::size_t(4) * of.width() * of.height();
+            const std::size_t bytes = std::size_t(4) * of.shown_width() * of.shown_height();
             write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", frame),
-                      {of.width(), of.height(), {shown, shown + bytes}});
+                      {of.shown_width(), of.shown_height(), {shown, shown + bytes}});
         }
         if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
         whole.push_back(timer.seconds());

@@ -219,6 +219,7 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
     flags->render.size = "1280x720";
     flags->render.max_depth = 4;
     add_scene_options(verb, flags->render.scene);
+    add_time_flags(verb, flags->render, false);
     add_motion_flags(verb, flags->render);
     verb.remove_option(verb.get_option("--continue"));
     add_light_path_flags(verb, flags->render, "Picture");

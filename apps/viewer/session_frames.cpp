@@ -55,7 +55,9 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
 
 Rgba8Image shown_picture(Reconstruction& frame, ToneMap tone_map, float exposure_stops) {
     const uint8_t* const shown = frame.display(tone_map, exposure_stops);
-    return {frame.width(), frame.height(), {shown, shown + std::size_t(4) * frame.width() * frame.height()}};
+    return {frame.shown_width(),
+            frame.shown_height(),
+            {shown, shown + std::size_t(4) * frame.shown_width() * frame.shown_height()}};
 }
 
 } // namespace

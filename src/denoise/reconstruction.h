@@ -52,6 +52,9 @@ public:
     /// Of the light; the picture's where it is not enlarged.
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
+    /// Of the picture: more than those of the light where it was enlarged.
+    uint32_t shown_width() const { return enlarged_ ? enlarged_->width() : width_; }
+    uint32_t shown_height() const { return enlarged_ ? enlarged_->height() : height_; }
     /// On the device, of the last add(). Waits for it.
     double seconds() const { return timer_.seconds(); }
     /// RGB, linear, of the last frame.
@@ -76,8 +79,6 @@ private:
                        const PreviousScene& before, const ReconstructionSettings& settings, Float4*& room);
     Vec2* places_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
     const Float4* shown() const;
-    uint32_t shown_width() const { return enlarged_ ? enlarged_->width() : width_; }
-    uint32_t shown_height() const { return enlarged_ ? enlarged_->height() : height_; }
 
     Queue* queue_;
     uint32_t width_, height_, frames_ = 0;

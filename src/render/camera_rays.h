@@ -28,10 +28,10 @@ struct CameraRays {
                             static_cast<float>(row) + 0.5f + offset.y};
         return make_camera_ray(view, place, on_lens);
     }
-    /// The ray of a sample: of `key.pixel`, by its own numbers.
-    HD Ray ray(SamplerKind sampler, SampleKey key) const {
+    /// The ray of a sample of `pixel`, by the numbers that `key` draws.
+    HD Ray ray(uint32_t pixel, SamplerKind sampler, SampleKey key) const {
         const Vec2 in_filter = sample_2d(sampler, key, kGroupCamera);
-        return ray(key.pixel, in_filter, has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{});
+        return ray(pixel, in_filter, has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{});
     }
     HD bool has_lens() const { return view.aperture_radius > 0; }
 };

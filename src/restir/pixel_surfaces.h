@@ -25,7 +25,7 @@ struct PixelSurfaces {
         return {0, p.z, p.w, bits_of(p.x), bits_of(p.y)};
     }
     /// Of the camera's ray, unit.
-    HD Vec3 direction(uint32_t pixel) const { return camera.ray(sampler, key(pixel)).direction; }
+    HD Vec3 direction(uint32_t pixel) const { return camera.ray(pixel, sampler, key(pixel)).direction; }
     HD PlacedTriangle triangle(const SceneView& scene, uint32_t pixel) const {
         const Hit at = hit(pixel);
         const InstanceView& instance = scene.instances[at.instance];

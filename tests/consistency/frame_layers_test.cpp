@@ -99,8 +99,9 @@ TEST_CASE("tones are the means of the shown picture; lamps that are seen do not 
         return settings;
     }());
     dark.render_frame(0, {});
-    for (std::size_t i = 3; i < tones.scattered.pixels.size(); i += 4) {
-        const float* block = &dark.frame_tones().scattered.pixels[i - 3];
+    const FrameTones of_dark = dark.frame_tones();
+    for (std::size_t i = 3; i < of_dark.scattered.pixels.size(); i += 4) {
+        const float* block = &of_dark.scattered.pixels[i - 3];
         CHECK(block[0] + block[1] + block[2] == 0);
         if (i > 400) break;
     }

@@ -17,7 +17,7 @@ from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, liste
 FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
-              "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit "
+              "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --seed --sampler --filter --filter-radius --clamp --device --threads "
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue",

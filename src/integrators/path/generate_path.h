@@ -10,7 +10,7 @@ namespace pertev {
 
 HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, uint32_t pixel,
                                   uint32_t sample) {
-    const Ray ray = camera.ray(settings.sampler, sample_key(settings, pixel, sample));
+    const Ray ray = camera.ray(pixel, settings.sampler, sample_key(settings, pixel, sample));
     PathState path;
     path.origin = ray.origin;
     path.direction = ray.direction;
