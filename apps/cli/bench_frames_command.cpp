@@ -75,14 +75,12 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         timer.start();
         if (!flags.still) session.set_camera(camera_of(first, frame, scene_size));
         session.render_frame(frame, settings, restir);
-        const uint8_t* const shown = session.frame().display(tone_map, exposure);
+        session.frame().display(tone_map, exposure);
         timer.stop();
         reporter.progress((frame + 1.0) / flags.frames, fmt::format("frame {} of {}", frame + 1, flags.frames));
         if (!flags.write.empty()) {
-            const Reconstruction& of = session.frame();
-            const std::size_t bytes = std::size_t(4) * of.shown_width() * of.shown_height();
             write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", frame),
-                      {of.shown_width(), of.shown_height(), {shown, shown + bytes}});
+                      session.frame().displayed());
         }
         if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
         whole.push_back(timer.seconds());

@@ -36,16 +36,15 @@ struct Score {
     uint32_t frames = 0;
     std::vector<float> error; // of the frame before, as a display shows it
 
-    void add(const Image& picture, const Image& reference, ToneMap tone_map, float exposure) {
+    /// `shown` and `shown_reference`: both as a display shows them.
+    void add(const Image& picture, const Image& reference, const Rgba8Image& shown, const Rgba8Image& shown_reference) {
         flip_of_last = hdr_flip(picture, reference).mean;
         if (frames == 0) flip_of_first = flip_of_last;
         flip += flip_of_last;
-        const Rgba8Image a = tone_map_image(picture, tone_map, exposure),
-                         b = tone_map_image(reference, tone_map, exposure);
-        std::vector<float> now(a.pixels.size());
+        std::vector<float> now(shown.pixels.size());
         double change = 0;
         for (std::size_t i = 0; i < now.size(); ++i) {
-            now[i] = (static_cast<float>(a.pixels[i]) - static_cast<float>(b.pixels[i])) / 255.0f;
+            now[i] = (static_cast<float>(shown.pixels[i]) - static_cast<float>(shown_reference.pixels[i])) / 255.0f;
             if (frames > 0) change += static_cast<double>(std::abs(now[i] - error[i]));
         }
         // Three of four numbers are colours; alpha has no error.
@@ -77,12 +76,6 @@ RenderResult sample_of(Session& session, const RenderSettings& settings, uint32_
     return session.look_aside(session.camera(), one);
 }
 
-const Image& layer_named(const RenderResult& result, const char* name) {
-    const auto layer = std::ranges::find(result.layers, name, &FilmLayer::name);
-    PERTEV_CHECK(layer != result.layers.end()); // it was asked for
-    return layer->image;
-}
-
 Image mean_of_both(const Image& a, const Image& b) {
     Image mean = a;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
@@ -90,12 +83,12 @@ Image mean_of_both(const Image& a, const Image& b) {
 }
 
 /// The middle quarter by half of each picture, side by side.
-Rgba8Image strip_of(const std::vector<const Image*>& pictures, ToneMap tone_map, float exposure) {
-    const uint32_t width = pictures[0]->width / 4, height = pictures[0]->height / 2;
+Rgba8Image strip_of(const std::vector<Rgba8Image>& pictures) {
+    const uint32_t width = pictures[0].width / 4, height = pictures[0].height / 2;
     const auto count = static_cast<uint32_t>(pictures.size());
     Rgba8Image strip{width * count, height, std::vector<uint8_t>(std::size_t(width) * count * height * 4)};
     for (uint32_t k = 0; k < count; ++k) {
-        const Rgba8Image shown = tone_map_image(*pictures[k], tone_map, exposure);
+        const Rgba8Image& shown = pictures[k];
         for (uint32_t y = 0; y < height; ++y) {
             const auto from =
                 shown.pixels.begin() +
@@ -119,11 +112,7 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         const uint32_t frame = ready.sequence.first + number;
         reporter.progress((number + 1.0) / ready.sequence.count(),
                           fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
-        if (const std::optional<double> time_s = ready.sequence.time_of(frame)) {
-            if (const uint32_t parts = ready.moving->set_time(*time_s, reporter.messages())) {
-                session.update_scene(ready.prepared(), parts);
-            }
-        }
+        go_to(ready.sequence.time_of(frame), *ready.moving, session, reporter.messages());
         place_frame(frame, ready.scene(), camera, record);
         session.set_camera(record.camera.camera);
         session.render_frame(number, settings);
@@ -139,20 +128,19 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         const Image first = sample_of(session, ready.settings, 0x40000000u + number, half, 0).picture,
                     second = sample_of(session, ready.settings, 0x80000000u + number, half, 0).picture,
                     reference = mean_of_both(first, second);
-        scores.ours.add(ours, reference, tone_map, exposure);
-        scores.sample.add(sample.picture, reference, tone_map, exposure);
-        if (number == 0) scores.noise = hdr_flip(first, second).mean;
         std::optional<Image> peer;
-        if (scores.peer) {
-            peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
-            scores.peer->add(*peer, reference, tone_map, exposure);
-        }
+        if (scores.peer) peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
+        const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
+        // Side by side in the strip: samples, frame, peer, reference.
+        std::vector<Rgba8Image> strip = {shown(sample.picture), shown(ours)};
+        if (peer) strip.push_back(shown(*peer));
+        strip.push_back(shown(reference));
+        scores.sample.add(sample.picture, reference, strip[0], strip.back());
+        scores.ours.add(ours, reference, strip[1], strip.back());
+        if (peer) scores.peer->add(*peer, reference, strip[2], strip.back());
+        if (number == 0) scores.noise = hdr_flip(first, second).mean;
         if (!flags.strips.empty() && number % 15 == 14) {
-            std::vector<const Image*> pictures = {&sample.picture, &ours};
-            if (peer) pictures.push_back(&*peer);
-            pictures.push_back(&reference);
-            write_png(std::filesystem::path(flags.strips) / fmt::format("strip-{:04}.png", number),
-                      strip_of(pictures, tone_map, exposure));
+            write_png(std::filesystem::path(flags.strips) / fmt::format("strip-{:04}.png", number), strip_of(strip));
         }
     }
     return scores;

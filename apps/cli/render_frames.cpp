@@ -67,11 +67,6 @@ std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
     return files;
 }
 
-void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
-    if (!time_s) return;
-    if (const uint32_t parts = moving.set_time(*time_s, messages)) session.update_scene(moving.prepared(), parts);
-}
-
 /// What motion vectors of a frame are from.
 void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
                        Messages& messages) {
@@ -82,6 +77,11 @@ void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& m
 }
 
 } // namespace
+
+void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
+    if (!time_s) return;
+    if (const uint32_t parts = moving.set_time(*time_s, messages)) session.update_scene(moving.prepared(), parts);
+}
 
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
     const CameraChoice choice = camera.choice_at(time_s);

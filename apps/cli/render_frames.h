@@ -17,6 +17,8 @@ struct FrameCamera {
     FrameSequence sequence;
 };
 
+/// Takes the session's scene to a time; none: it stays. Throws as MovingScene::set_time and Session::update_scene.
+void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages);
 /// The camera at a time, and after a share of a turn.
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn);
 /// Gives `record` the camera and the time of `frame`; `scene` is at that time.

@@ -54,10 +54,8 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
 }
 
 Rgba8Image shown_picture(Reconstruction& frame, ToneMap tone_map, float exposure_stops) {
-    const uint8_t* const shown = frame.display(tone_map, exposure_stops);
-    return {frame.shown_width(),
-            frame.shown_height(),
-            {shown, shown + std::size_t(4) * frame.shown_width() * frame.shown_height()}};
+    frame.display(tone_map, exposure_stops);
+    return frame.displayed();
 }
 
 } // namespace
@@ -326,10 +324,7 @@ std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, fl
     PickedPoint picked = {.instance = seen.ids.front().instance,
                           .primitive = seen.ids.front().primitive,
                           .material = seen.ids.front().material};
-    const auto values = [&](const char* name) -> const float* {
-        const auto layer = std::ranges::find(seen.layers, name, &FilmLayer::name);
-        return layer->image.pixels.data();
-    };
+    const auto values = [&](const char* name) { return layer_named(seen, name).pixels.data(); };
     const float *albedo = values("albedo"), *normal = values("normal"), *position = values("position");
     picked.albedo = {albedo[0], albedo[1], albedo[2]};
     picked.normal = {normal[0], normal[1], normal[2]};

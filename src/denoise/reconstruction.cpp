@@ -168,7 +168,7 @@ Image Reconstruction::deviation() const {
     return image;
 }
 
-const uint8_t* Reconstruction::display(ToneMap tone_map, float exposure_stops) {
+void Reconstruction::display(ToneMap tone_map, float exposure_stops) {
     const uint32_t pixels = shown_width() * shown_height();
     const std::size_t size = std::size_t(4) * pixels;
     if (display_ == nullptr || display_bytes_ != size) display_ = queue_->make_host_copy(size);
@@ -177,7 +177,13 @@ const uint8_t* Reconstruction::display(ToneMap tone_map, float exposure_stops) {
     uint8_t* const bytes = enlarged_ ? enlarged_->room_for_bytes() : signals;
     launch(*queue_, "show_picture", pixels, ShowPicture{shown(), tone_map, exposure_scale(exposure_stops), bytes});
     display_->take(bytes);
-    return static_cast<const uint8_t*>(queue_->wait(*display_));
+    queue_->wait(*display_);
+}
+
+Rgba8Image Reconstruction::displayed() const {
+    PERTEV_CHECK(display_ != nullptr);
+    const auto* const bytes = static_cast<const uint8_t*>(queue_->wait(*display_));
+    return {shown_width(), shown_height(), {bytes, bytes + display_bytes_}};
 }
 
 } // namespace pertev

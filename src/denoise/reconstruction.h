@@ -59,8 +59,10 @@ public:
     double seconds() const { return timer_.seconds(); }
     /// RGB, linear, of the last frame.
     Image picture() const;
-    /// The same as a display shows it, times 2^exposure_stops: RGBA, [height * width * 4], until the next call.
-    const uint8_t* display(ToneMap tone_map, float exposure_stops);
+    /// Brings the same to the host as a display shows it, times 2^exposure_stops.
+    void display(ToneMap tone_map, float exposure_stops);
+    /// What the last display() brought.
+    Rgba8Image displayed() const;
     /// Of the last frame, which was made of `frame`, at its resolution.
     FrameTones tones(const NoisyFrame& frame) const;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+
 namespace pertev {
 
 TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda, bool deforms) {
@@ -25,6 +27,12 @@ void set_default_size(RenderSettings& settings, const Camera* own) {
 RenderSettings settings_of_frames(RenderSettings settings) {
     settings.path.roulette_depth = std::min(settings.path.roulette_depth, 2u);
     return settings;
+}
+
+const Image& layer_named(const RenderResult& result, std::string_view name) {
+    const auto layer = std::ranges::find(result.layers, name, &FilmLayer::name);
+    PERTEV_CHECK(layer != result.layers.end());
+    return layer->image;
 }
 
 bool same_picture(const RenderSettings& a, const RenderSettings& b) {

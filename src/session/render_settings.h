@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "integrators/make_integrator.h"
@@ -88,5 +89,8 @@ struct RenderResult : RenderStats {
     std::vector<FilmLayer> layers;
     std::vector<PixelIds> ids; // empty unless asked for
 };
+
+/// That layer of `result`, which was asked for.
+const Image& layer_named(const RenderResult& result, std::string_view name);
 
 } // namespace pertev

@@ -225,17 +225,9 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     Scene scene = make_scene();
     Mesh& mesh = scene.meshes[0];
     mesh.tangents = {{1, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 0, -1}};
-    scene.skins.push_back({.joints = {0}, .joint_from_mesh = {make_translation({-1, 0, 0})}});
-    scene.nodes[1].skin = 0;
-    scene.shapes.push_back({.mesh = 0,
-                            .node = 1,
-                            .skin = 0,
-                            .positions = mesh.positions,
-                            .normals = mesh.normals,
-                            .tangents = mesh.tangents});
+    hang_on_first_node(scene);
+    scene.skins[0].joint_from_mesh = {make_translation({-1, 0, 0})};
     MeshShape& shape = scene.shapes[0];
-    shape.joints_per_vertex = 1;
-    shape.joints = {0, 0, 0};
     shape.weights = {1, 0.5f, 0}; // of any sum; the third vertex stays
     const float root = 0.70710678f;
     scene.animations[0].channels = {channel(0, AnimatedPart::Rotation, {0, 1}, {0, 0, 0, 1, 0, root, 0, root})};
