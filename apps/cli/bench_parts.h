@@ -57,7 +57,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
 struct ReconstructionFlags {
     ReconstructionSettings settings;
     bool none = false;
-    bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false;
+    bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false, no_follow_light = false;
 };
 void add_reconstruction_flags(CLI::App& verb, ReconstructionFlags& flags);
 ReconstructionSettings reconstruction_settings(const ReconstructionFlags& flags);

@@ -5,11 +5,14 @@
 // Sources: Schied et al. 2017 (above), section 4.1; NVIDIA, "Fast Denoising with Self-Stabilizing Recurrent Blurs",
 // GDC 2020 (a second mean over few frames, against which the long one is held).
 
+#include "denoise/light_change_view.h"
 #include "denoise/reproject.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {
 
+/// `kFollows`: light may have changed by itself since the frame before. Code for that would cost others time.
+template <bool kFollows>
 struct AccumulateSignals {
     NoisyFrameView frame;
     SignalsView signals; // of this frame's samples
@@ -17,8 +20,9 @@ struct AccumulateSignals {
     PreviousScene scene_before;
     FrameCameras cameras;
     HistoryView now, before;
-    Vec2* was_at;     // pixel of the frame before that showed the same; not written at a cut
-    uint32_t longest; // frames of a mean
+    LightChangeView change; // since the frame before
+    Vec2* was_at;           // pixel of the frame before that showed the same; not written at a cut
+    uint32_t longest;       // frames of a mean
     bool limit_fireflies;
     bool has_gloss;                     // false: that signal is black everywhere and neither read nor written
     bool has_history;                   // false at a cut
@@ -35,17 +39,26 @@ struct AccumulateSignals {
             return forget(pixel);
         }
         Taps taps = {}, mirrored = {};
-        float longest_gloss = static_cast<float>(longest);
+        LightStep step;
+        float longest_diffuse = static_cast<float>(longest), longest_gloss = longest_diffuse;
         if (has_history) {
             const Vec3 normal = normal_of(guide);
             const Reprojection then = reproject_surface(cameras, scene, scene_before, centre, frame.place[pixel]);
             was_at[pixel] = then.pixel;
-            taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, object);
-            if (has_gloss) longest_gloss = min(longest_gloss, frames_of_lobe(alpha_of(guide), frame.place[pixel]));
+            taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, kSeenAlike, object);
+            if constexpr (kFollows) {
+                step = light_step(change, then.pixel, normal, object);
+                longest_diffuse =
+                    frames_in_change(longest_diffuse, fused_luminance(step.was), fused_luminance(step.is));
+                longest_gloss = frames_in_change(longest_gloss, step.gloss_was, step.gloss_is);
+            }
             if (has_gloss && alpha_of(guide) < kMirrors) {
                 const float distance = min(frame.gloss[pixel].w, 1e6f);
                 const Reprojection behind = reproject_virtual(cameras, centre, depth_of(guide), distance);
-                mirrored = find_taps(before, cameras, behind.pixel, 0, normal, object);
+                mirrored = find_taps(before, cameras, behind.pixel, 0, normal, kFlat, object);
+            }
+            if (has_gloss && !(mirrored.sum > kEnoughWeight)) {
+                longest_gloss = min(longest_gloss, frames_of_lobe(alpha_of(guide), frame.place[pixel]));
             }
         }
         const Float4 diffuse = limited(signals.diffuse, at);
@@ -57,16 +70,36 @@ struct AccumulateSignals {
             recent.w = fused_luminance(rgb_of(gloss));
             squares.y = square(recent.w);
             const Taps& of_gloss = mirrored.sum > kEnoughWeight ? mirrored : taps;
-            now.gloss[pixel] = gone_on(of_gloss, before.gloss, gloss, longest_gloss);
-            const float frames = now.gloss[pixel].w;
-            if (frames > 1)
-                squares.y = lerp(mean_of_taps(of_gloss, cameras, before.squares).y, squares.y, 1.0f / frames);
+            Float4 mean = mean_of_taps(of_gloss, cameras, before.gloss);
+            float ratio = 1;
+            if constexpr (kFollows) {
+                const float light = fused_luminance(rgb_of(mean));
+                ratio = ratio_of(light, followed(light, step.gloss_was, step.gloss_is));
+                mean = with_w(ratio * rgb_of(mean), mean.w);
+            }
+            mean = gone_on(of_gloss, mean, gloss, longest_gloss);
+            now.gloss[pixel] = mean;
+            if (mean.w > 1) {
+                squares.y =
+                    lerp(square(ratio) * mean_of_taps(of_gloss, cameras, before.squares).y, squares.y, 1.0f / mean.w);
+            }
         }
-        const Float4 mean = gone_on(taps, before.diffuse, diffuse, static_cast<float>(longest));
+        Float4 mean = mean_of_taps(taps, cameras, before.diffuse);
+        float ratio = 1;
+        if constexpr (kFollows) {
+            const float light = fused_luminance(rgb_of(mean));
+            mean = with_w(followed(rgb_of(mean), step.was, step.is), mean.w);
+            ratio = ratio_of(light, fused_luminance(rgb_of(mean)));
+        }
+        mean = gone_on(taps, mean, diffuse, longest_diffuse);
         now.diffuse[pixel] = mean;
         if (mean.w > 1) {
-            squares.x = lerp(mean_of_taps(taps, cameras, before.squares).x, squares.x, 1.0f / mean.w);
-            const Float4 recently = mean_of_taps(taps, cameras, before.recent);
+            squares.x = lerp(square(ratio) * mean_of_taps(taps, cameras, before.squares).x, squares.x, 1.0f / mean.w);
+            Float4 recently = mean_of_taps(taps, cameras, before.recent);
+            if constexpr (kFollows) {
+                recently = with_w(followed(rgb_of(recently), step.was, step.is),
+                                  followed(recently.w, step.gloss_was, step.gloss_is));
+            }
             const float share = 1.0f / min(mean.w, kRecent);
             recent = {lerp(recently.x, recent.x, share), lerp(recently.y, recent.y, share),
                       lerp(recently.z, recent.z, share), lerp(recently.w, recent.w, share)};
@@ -78,6 +111,8 @@ struct AccumulateSignals {
 private:
     static constexpr float kFirefly = 64;
     static constexpr float kMirrors = 0.09f; // GGX width under which reflections move by themselves
+    /// Least cosine of normals of a flat mirror. Behind others things are not where their distance says.
+    static constexpr float kFlat = 0.9999f;
 
     HD void forget(uint32_t pixel) const {
         now.diffuse[pixel] = now.recent[pixel] = {0, 0, 0, 0};
@@ -86,19 +121,20 @@ private:
     }
 
     /// In how many frames a camera that goes on as it went passes a lobe of this width: what a surface reflects to it
-    /// changes meanwhile. Reflections that are sharp move instead.
+    /// changes meanwhile.
     HD float frames_of_lobe(float alpha, Float4 place) const {
-        if (alpha < kMirrors || cameras.now.projection == Projection::Orthographic) return kInfinity;
+        if (cameras.now.projection == Projection::Orthographic) return kInfinity;
         const Vec3 point = point_at(scene.instances, scene.meshes, place),
                    now_seen = normalize(point - cameras.now.world_from_camera.translation),
                    then_seen = normalize(point - cameras.before.world_from_camera.translation);
         return max(alpha / max(length(now_seen - then_seen), 1e-6f), 1.0f);
     }
 
-    /// The mean of the signal that the taps hold, with this frame's; its w: frames.
-    HD Float4 gone_on(const Taps& taps, const Float4* signal, Float4 sample, float most_frames) const {
+    HD static float ratio_of(float was, float is) { return was > 0 ? is / was : 1.0f; }
+
+    /// `mean`, the one that the taps hold, with this frame's sample; its w: frames.
+    HD Float4 gone_on(const Taps& taps, Float4 mean, Float4 sample, float most_frames) const {
         if (!(taps.sum > kEnoughWeight)) return with_w(rgb_of(sample), 1);
-        const Float4 mean = mean_of_taps(taps, cameras, signal);
         const float frames = min(mean.w + 1.0f, most_frames);
         return with_w(lerp(rgb_of(mean), rgb_of(sample), 1.0f / frames), frames);
     }

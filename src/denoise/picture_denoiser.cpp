@@ -10,6 +10,7 @@ namespace pertev {
 namespace {
 
 constexpr int kPasses = 5;
+constexpr float kTolerance = 4;                                                         // WaveletPass's
 constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kSurfacesBeside, kOfSignals = 4; // arrays of Float4
 constexpr std::size_t kWideArrays = kOfGuide + kOfSums + kOfSignals;
 
@@ -76,7 +77,7 @@ Image PictureDenoiser::picture() {
     launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
     for (int pass = 0; pass < kPasses; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, has_gloss_});
+               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kTolerance, has_gloss_});
         std::swap(from, to);
     }
     launch(*queue_, "compose_samples", pixels,

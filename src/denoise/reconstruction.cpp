@@ -18,6 +18,8 @@ constexpr std::size_t kOfHistory = 5, kOfSignals = 2; // arrays of Float4
 constexpr std::size_t kNarrowArrays = 3;              // of Vec2: squares of both histories, places in the frame before
 constexpr std::size_t kWideArrays = 2 * kOfHistory + 2 * kOfSignals;
 
+constexpr float kTolerance = 8; // WaveletPass's
+
 } // namespace
 
 Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
@@ -38,8 +40,8 @@ HistoryView Reconstruction::history(uint32_t frame) const {
 
 /// Light of the frame, filtered; `room`: a picture's array that is free.
 SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                                   const PreviousScene& scene_before, const ReconstructionSettings& settings,
-                                   Float4*& room) {
+                                   const PreviousScene& scene_before, const LightChangeView& change,
+                                   const ReconstructionSettings& settings, Float4*& room) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const uint32_t pixels = width_ * height_;
     const HistoryView now = history(frames_ + 1), before = history(frames_);
@@ -51,9 +53,16 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
                 b = {signals + 2 * std::size_t(pixels), signals + 3 * std::size_t(pixels)};
 
     launch(*queue_, "split_signals", pixels, SplitSignals{noisy, a, now});
-    launch(*queue_, "accumulate_signals", pixels,
-           AccumulateSignals{noisy, a, scene, scene_before, cameras, now, before, places_before(), settings.history,
-                             settings.limit_fireflies, has_gloss, has_history});
+    const auto accumulate = [&]<bool kFollows>() {
+        launch(*queue_, "accumulate_signals", pixels,
+               AccumulateSignals<kFollows>{noisy, a, scene, scene_before, cameras, now, before, change, places_before(),
+                                           settings.history, settings.limit_fireflies, has_gloss, has_history});
+    };
+    if (change.guide != nullptr) {
+        accumulate.operator()<true>();
+    } else {
+        accumulate.operator()<false>();
+    }
     launch(*queue_, "limit_history", pixels, LimitHistory{now, b, width_, height_, settings.limit_history, has_gloss});
     if (settings.keep_layers) {
         if (layers_.size() != pixels) layers_ = {*queue_, pixels, "layers of the reconstruction"};
@@ -62,7 +71,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     }
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, has_gloss});
+               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, has_gloss});
         std::swap(a, b);
     }
     room = a.diffuse;
@@ -70,14 +79,15 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
 }
 
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                         const PreviousScene& scene_before, const ReconstructionSettings& settings) {
+                         const PreviousScene& scene_before, const LightChangeView& change,
+                         const ReconstructionSettings& settings) {
     if (enlarged_) cut();
     enlarged_.reset();
     const uint32_t pixels = width_ * height_;
     const HistoryView now = history(frames_ + 1);
     timer_.start();
     Float4* room = nullptr;
-    const SignalsView light = filter(frame, camera, scene, scene_before, settings, room);
+    const SignalsView light = filter(frame, camera, scene, scene_before, change, settings, room);
     Float4* const picture = settings.anti_alias ? room : now.shown;
     launch(*queue_, "compose_picture", pixels, ComposePicture{frame.view(), light, picture});
     if (settings.anti_alias) {
@@ -91,7 +101,7 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
 
 void Reconstruction::add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
                                   const CameraView& camera, const SceneView& scene, const PreviousScene& scene_before,
-                                  const ReconstructionSettings& settings) {
+                                  const LightChangeView& change, const ReconstructionSettings& settings) {
     if (!enlarged_ || enlarged_->width() != features.width() || enlarged_->height() != features.height()) {
         cut();
         enlarged_.reset(); // before the new one, so that both need not fit
@@ -100,7 +110,7 @@ void Reconstruction::add_enlarged(const NoisyFrame& frame, const CameraView& lig
     const HistoryView now = history(frames_ + 1);
     timer_.start();
     Float4* room = nullptr;
-    const SignalsView light = filter(frame, light_camera, scene, scene_before, settings, room);
+    const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings, room);
     enlarged_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()}, scene,
                    scene_before, settings, frames_ > 0);
     timer_.stop();

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "denoise/enlarged_frame.h"
+#include "denoise/light_change_view.h"
 #include "denoise/reconstruction_settings.h"
 #include "denoise/reconstruction_view.h"
 #include "device/device_timer.h"
@@ -37,15 +38,15 @@ public:
     /// What follows has nothing to do with what was seen before.
     void cut() { frames_ = 0; }
     /// Makes the picture of `frame`, which has this size, seen by `camera` in `scene`. `before`: where things stood in
-    /// the frame before; looked at only where there is one.
+    /// the frame before; looked at only where there is one. `change`: of light since then.
     void add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene, const PreviousScene& before,
-             const ReconstructionSettings& settings);
+             const LightChangeView& change, const ReconstructionSettings& settings);
 
     /// The same of a picture of another size, that of `features`: a frame whose paths end at the first surface, seen by
     /// `camera`. `frame`, the light, is seen by `light_camera`. A picture of another size than the one before is a cut.
     void add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
                       const CameraView& camera, const SceneView& scene, const PreviousScene& before,
-                      const ReconstructionSettings& settings);
+                      const LightChangeView& change, const ReconstructionSettings& settings);
 
     /// Frames since the last cut.
     uint32_t frames() const { return frames_; }
@@ -78,7 +79,8 @@ private:
     HistoryView history(uint32_t frame) const;
     std::vector<Float4> kept_layers() const;
     SignalsView filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                       const PreviousScene& before, const ReconstructionSettings& settings, Float4*& room);
+                       const PreviousScene& before, const LightChangeView& change,
+                       const ReconstructionSettings& settings, Float4*& room);
     Vec2* places_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
     const Float4* shown() const;
 

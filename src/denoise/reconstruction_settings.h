@@ -13,6 +13,7 @@ struct ReconstructionSettings {
     uint32_t passes = 5;         // of the wavelet filter, [0, 8]; 0: none. Biased: blurs what guides do not show
     bool limit_fireflies = true; // biased: darkens what is far brighter than all around it
     bool limit_history = true;   // biased: pulls long means towards recent frames where they disagree, against ghosts
+    bool follow_light = true;    // where the scene moves: means are changed as light has (light_change_view.h). Biased
     bool anti_alias = true;      // biased: the mean of shown frames is held within colours around it
     bool keep_layers = false;    // for Reconstruction::motion() and deviation(); the frame stays the same
 

@@ -8,7 +8,8 @@
 
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const SplitSignals&);
-template void launch(Queue&, const char*, WorkCount, const AccumulateSignals&);
+template void launch(Queue&, const char*, WorkCount, const AccumulateSignals<false>&);
+template void launch(Queue&, const char*, WorkCount, const AccumulateSignals<true>&);
 template void launch(Queue&, const char*, WorkCount, const LimitHistory&);
 template void launch(Queue&, const char*, WorkCount, const WaveletPass&);
 template void launch(Queue&, const char*, WorkCount, const ComposePicture&);

@@ -39,7 +39,7 @@ struct Taps {
 /// Which of the four have seen `object` at about this depth and with about this normal; where none has, the nearest of
 /// the pixels around, as along an edge a pixel sees now one side and now the other. `depth` <= 0: at any.
 HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras, Vec2 pixel, float depth, Vec3 normal,
-                         uint32_t object) {
+                         float least_cosine, uint32_t object) {
     Taps taps = {0, {0, 0, 0, 0}, 0};
     const int w = static_cast<int>(cameras.width), h = static_cast<int>(cameras.height);
     const float x = pixel.x - 0.5f, y = pixel.y - 0.5f;
@@ -48,9 +48,8 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
         if (px < 0 || py < 0 || px >= w || py >= h) return false;
         const Float4 then = before.guide[py * w + px];
         if (object_of(then) != object) return false;
-        if (!(depth > 0)) return true;
-        const Vec3 n = normal_of(then);
-        return is_seen_alike({n.x, n.y, n.z, depth_of(then)}, depth, normal);
+        if (!(dot(normal_of(then), normal) > least_cosine)) return false;
+        return !(depth > 0) || is_depth_alike(depth_of(then), depth);
     };
     const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;
     const int column = to_int(left, -1, w), row = to_int(top, -1, h);

@@ -16,8 +16,9 @@ struct WaveletPass {
     SignalsView from, to;
     CameraView camera;
     uint32_t width, height;
-    int step;       // pixels between taps
-    bool has_gloss; // AccumulateSignals'
+    int step;        // pixels between taps
+    float tolerance; // deviations of diffuse light; taps that differ by four times as much count for nothing
+    bool has_gloss;  // AccumulateSignals'
 
     HD void operator()(uint32_t i) const {
         const PixelPlace at = tiled_place(i, width, height);
@@ -46,8 +47,8 @@ struct WaveletPass {
         // What bends reflections away, and what tells them from their neighbours by themselves.
         const float bend_of_gloss = 64.0f + 8.0f / max(alpha, 0.002f),
                     narrow = static_cast<float>(step) / (1.0f + square(64.0f * alpha));
-        Sum of_diffuse(diffuse, deviation_of(from.diffuse, diffuse.w, rows, columns));
-        Sum of_gloss(gloss, has_gloss ? deviation_of(from.gloss, gloss.w, rows, columns) : 0.0f);
+        Sum of_diffuse(diffuse, tolerance * deviation_of(from.diffuse, diffuse.w, rows, columns));
+        Sum of_gloss(gloss, has_gloss ? kOfGloss * deviation_of(from.gloss, gloss.w, rows, columns) : 0.0f);
         for (int k = 0; k < 9; ++k) {
             if (k == 4) continue;
             const int row = k / 3, column = k % 3, tap = rows[row] + columns[column];
@@ -66,6 +67,8 @@ struct WaveletPass {
     }
 
 private:
+    static constexpr float kOfGloss = 4; // tolerance
+
     /// exp(-x) for a fifth of its price: (1 - x / 4)^4, and 0 from 4 on.
     HD static float falloff(float x) { return square(square(max(fma(-0.25f, x, 1.0f), 0.0f))); }
 
@@ -102,9 +105,10 @@ private:
         Rgb light;
         float variance, weight = 1, centre, inv_deviation;
 
+        /// `deviation`: that of light by which a tap may differ and still count.
         HD Sum(Float4 own, float deviation)
             : light(rgb_of(own)), variance(own.w), centre(fused_luminance(rgb_of(own))),
-              inv_deviation(1.0f / (4.0f * deviation + 1e-4f)) {}
+              inv_deviation(1.0f / (deviation + 1e-4f)) {}
         HD void add(Float4 tap, float kernel, float difference) {
             const float unlike = abs(fused_luminance(rgb_of(tap)) - centre);
             const float w = kernel * falloff(fma(unlike, inv_deviation, difference));

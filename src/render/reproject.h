@@ -56,10 +56,14 @@ HD inline Reprojection reproject_surface(const FrameCameras& cameras, const Scen
     return {centre + (then.pixel - now.pixel), then.depth};
 }
 
+/// Cosine of two normals over which they may be of one place.
+inline constexpr float kSeenAlike = 0.5f;
+HD inline bool is_depth_alike(float seen, float depth) { return abs(seen - depth) <= 0.05f * depth; }
+
 /// Whether a pixel of which this is the normal and depth (NoisyFrameView::normal) shows about what lies at `depth` with
 /// this normal.
 HD inline bool is_seen_alike(Float4 seen, float depth, Vec3 normal) {
-    return abs(seen.w - depth) <= 0.05f * depth && dot(vec3_of(seen), normal) > 0.5f;
+    return is_depth_alike(seen.w, depth) && dot(vec3_of(seen), normal) > kSeenAlike;
 }
 
 } // namespace pertev

@@ -23,6 +23,7 @@
 #include <memory>
 #include <optional>
 
+#include "denoise/light_change.h"
 #include "denoise/picture_denoiser.h"
 #include "denoise/reconstruction.h"
 #include "image/tone_map_image.h"
@@ -130,6 +131,9 @@ private:
     void begin_film();
     void keep_places();
     void copy_places();
+    void take_small(uint32_t number, const Camera& camera, RenderSettings of_light, NoisyFrame& frame);
+    LightChangeView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
+    void keep_light(uint32_t number, const RenderSettings& of_light, const ReconstructionSettings& settings);
     bool take_tracer();
     void fit_trees();
     Restir* restir_for(const RestirSettings& settings, uint32_t width, uint32_t height);
@@ -165,6 +169,10 @@ private:
     bool has_poses_ = false;              // PreparedScene's
     bool has_moved_ = false;              // since the last frame: places_before_ counts
     std::optional<Camera> camera_before_; // of keep_as_before()
+    bool scene_has_changed_ = false;      // since the last frame
+    std::optional<LightChange> light_change_;
+    std::optional<Camera> camera_of_light_; // of the frame before, where light_change_ holds its scene
+    uint32_t number_of_light_ = 0;          // that frame's
     RayCounts frame_rays_;
     bool film_is_old_ = false; // holds samples of a picture that is no more asked for
     std::unique_ptr<Integrator> integrator_;

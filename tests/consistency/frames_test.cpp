@@ -41,12 +41,6 @@ Hash128 hash_of_frames(Session& session, const Camera& camera, uint32_t frames, 
     return picture_hash(session.frame().picture());
 }
 
-double mean_of(const Image& picture) {
-    double sum = 0;
-    for (const float value : picture.pixels) sum += static_cast<double>(value);
-    return sum / static_cast<double>(picture.pixels.size());
-}
-
 struct Scenes {
     Scene scene;
     Camera camera;

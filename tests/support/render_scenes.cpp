@@ -177,6 +177,12 @@ void add_picture(Hasher& hasher, const RenderResult& result) {
     }
 }
 
+double mean_of(const Image& picture) {
+    double sum = 0;
+    for (const float value : picture.pixels) sum += static_cast<double>(value);
+    return sum / static_cast<double>(picture.pixels.size());
+}
+
 Hash128 render_hash(const RenderResult& result) {
     Hasher hasher;
     add_picture(hasher, result);

@@ -31,6 +31,9 @@ Queue queue_asked_for();
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare = {});
 
+/// Of all its numbers.
+double mean_of(const Image& picture);
+
 /// Of a small picture with layers, by which scenes before and after a change are compared.
 RenderSettings layered_settings();
 

@@ -108,7 +108,7 @@ TEST_CASE("taps take what shows the same object at this depth with this normal, 
     before.guide = guide.data();
     const FrameCameras cameras = {{}, {}, kWidth, kHeight};
     const auto taps_at = [&](Vec2 place, float depth = 2, Vec3 n = {0, 0, 1}, uint32_t id = 7) {
-        return find_taps(before, cameras, place, depth, n, id);
+        return find_taps(before, cameras, place, depth, n, kSeenAlike, id);
     };
 
     const Taps all = taps_at({2, 1.5f}); // between pixels 1 and 2 of row 1
@@ -117,7 +117,10 @@ TEST_CASE("taps take what shows the same object at this depth with this normal, 
     CHECK(taps_at({2, 1.5f}, 2.2f).sum == 0);            // elsewhere
     CHECK(taps_at({2, 1.5f}, 2, {1, 0, 0}).sum == 0);    // turned away
     CHECK(taps_at({2, 1.5f}, 2, {0, 0, 1}, 8).sum == 0); // something else
-    CHECK(taps_at({-3, 1.5f}).sum == 0);                 // out of the picture
+    const Vec3 bent = normalize(Vec3{0.03f, 0, 1});      // of a mirror that is not flat
+    CHECK(taps_at({2, 1.5f}, 0, bent).sum == doctest::Approx(1));
+    CHECK(find_taps(before, cameras, {2, 1.5f}, 0, bent, 0.9999f, 7).sum == 0);
+    CHECK(taps_at({-3, 1.5f}).sum == 0); // out of the picture
     CHECK(taps_at({1e30f, kInfinity}).sum == 0);
     CHECK(taps_at({-0.25f, 1.5f}).sum == doctest::Approx(0.25f)); // partly
     guide[5] = pack({{0, 0, 1}, 1, 2, 9});

@@ -1,0 +1,80 @@
+#pragma once
+
+// Stages that find how light has changed (light_change_view.h): they compare the two small pictures, and then, some
+// times over, take means over neighbours at doubling distances, as a pixel's one sample says little.
+
+#include "denoise/light_change_view.h"
+#include "denoise/split_light.h"
+#include "render/tiled_pixel.h"
+
+namespace pertev {
+
+/// The light of both pictures where they show the same; elsewhere nothing is known.
+struct CompareLight {
+    NoisyFrameView before, after; // of the scene as it was, and as it is
+    Float4 *guide, *was, *is;
+
+    HD void operator()(uint32_t i) const {
+        const Float4 normal = after.normal[i], normal_before = before.normal[i];
+        const uint32_t object = bits_of(after.place[i].x);
+        const bool is_same = object != kNoHit && bits_of(before.place[i].x) == object &&
+                             is_seen_alike(normal_before, normal.w, vec3_of(normal));
+        guide[i] = pack({vec3_of(normal), after.albedo[i].w, normal.w, is_same ? object : kNoHit});
+        was[i] = signals_of(before, i);
+        is[i] = signals_of(after, i);
+    }
+
+private:
+    HD static Float4 signals_of(const NoisyFrameView& frame, uint32_t i) {
+        const SplitLight light = split_light(frame, i);
+        const float gloss = frame.splits_light() ? fused_luminance(light.gloss / light.gloss_divisor) : 0.0f;
+        return with_w(light.diffuse / light.diffuse_divisor, gloss);
+    }
+};
+
+struct SpreadLight {
+    const Float4 *guide, *was, *is;
+    Float4 *was_out, *is_out;
+    uint32_t width, height;
+    int step; // pixels between taps
+
+    HD void operator()(uint32_t i) const {
+        const PixelPlace at = tiled_place(i, width, height);
+        const uint32_t pixel = at.y * width + at.x;
+        const Float4 own = guide[pixel];
+        if (object_of(own) == kNoHit) {
+            was_out[pixel] = is_out[pixel] = {0, 0, 0, 0};
+            return;
+        }
+        const Vec3 normal = normal_of(own);
+        const float depth = depth_of(own);
+        const int w = static_cast<int>(width), h = static_cast<int>(height);
+        Float4 sum_was = {0, 0, 0, 0}, sum_is = {0, 0, 0, 0};
+        float sum = 0;
+        for (int k = 0; k < 9; ++k) {
+            const int dx = k % 3 - 1, dy = k / 3 - 1;
+            const int x = static_cast<int>(at.x) + dx * step, y = static_cast<int>(at.y) + dy * step;
+            if (x < 0 || y < 0 || x >= w || y >= h) continue;
+            const int tap = y * w + x;
+            const Float4 there = guide[tap];
+            if (object_of(there) != object_of(own) || !(fused_dot(normal_of(there), normal) > 0.9f) ||
+                !(abs(depth_of(there) - depth) <= 0.1f * static_cast<float>(step) * depth)) {
+                continue;
+            }
+            const float weight = (dx == 0 ? 1.0f : 0.5f) * (dy == 0 ? 1.0f : 0.5f);
+            sum_was = plus_scaled(sum_was, weight, was[tap]);
+            sum_is = plus_scaled(sum_is, weight, is[tap]);
+            sum += weight;
+        }
+        const float inv = 1.0f / sum;
+        was_out[pixel] = plus_scaled({0, 0, 0, 0}, inv, sum_was);
+        is_out[pixel] = plus_scaled({0, 0, 0, 0}, inv, sum_is);
+    }
+
+private:
+    HD static Float4 plus_scaled(Float4 a, float scale, Float4 b) {
+        return {fma(scale, b.x, a.x), fma(scale, b.y, a.y), fma(scale, b.z, a.z), fma(scale, b.w, a.w)};
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,132 @@
+// The part of a Session that makes frames of a sequence.
+
+#include "base/error.h"
+#include "session/session.h"
+
+namespace pertev {
+
+/// The reservoirs of frames with these settings; none: samples keep all light. Others than the last frame's begin anew.
+Restir* Session::restir_for(const RestirSettings& settings, uint32_t width, uint32_t height) {
+    const PathSettings& path = settings_.path;
+    const bool has_light = path.light != PathLight::Indirect && path.strategy == LightStrategy::Mis;
+    if (settings.light == RestirLight::Off || !has_light || path.max_depth == 0) {
+        restir_.reset();
+        return nullptr;
+    }
+    const bool fits =
+        restir_ && restir_->light() == settings.light && restir_->width() == width && restir_->height() == height;
+    if (!fits) {
+        restir_.reset(); // before the new one, so that both need not fit
+        restir_.emplace(queue_, width, height, settings.light);
+    }
+    if (settings != restir_settings_) restir_->cut();
+    restir_settings_ = settings;
+    return &*restir_;
+}
+
+/// A frame that takes samples: the one there is, or another one where it is not of this size or kind.
+NoisyFrame& Session::fit(std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height) {
+    const bool splits_light = scene_.value().view().known == MaterialsKnown::Nothing;
+    if (frame && frame->width() == width && frame->height() == height && frame->splits_light() == splits_light) {
+        return *frame;
+    }
+    if (frame && frame->splits_light() != splits_light) reconstruction_.reset(); // what it knows is of other signals
+    frame.reset(); // before the new one, so that both need not fit
+    return frame.emplace(queue_, width, height, splits_light);
+}
+
+void Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
+    RenderSettings of_light = settings_of_frames(settings_);
+    of_light.width = scaled_side(settings_.width, settings);
+    of_light.height = scaled_side(settings_.height, settings);
+    if (settings.orders_samples && restir.light == RestirLight::Off && of_light.path.sampler == SamplerKind::Sobol) {
+        of_light.path.sampler = SamplerKind::SpaceTime;
+        of_light.path.frame_width = of_light.width;
+    }
+    NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
+    if (!reconstruction_ || reconstruction_->width() != of_light.width ||
+        reconstruction_->height() != of_light.height) {
+        reconstruction_.reset(); // before the new one, so that both need not fit
+        reconstruction_.emplace(queue_, of_light.width, of_light.height);
+    }
+    if (camera_before_) { // of another sequence
+        camera_before_.reset();
+        has_moved_ = false;
+    }
+    Restir* const shared = restir_for(restir, of_light.width, of_light.height);
+    frame_rays_ = {};
+    const LightChangeView change = look_for_change(of_light, settings);
+    begin(camera_, of_light, 1);
+    frame.begin();
+    frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
+    integrator_->render(number, 1, frame.film_view());
+    frame_rays_ = frame_rays_ + integrator_->rays();
+    const PictureView light = view_of(camera_, of_light);
+    const PreviousScene before = has_moved_ ? PreviousScene{places_before_.data(), scene_->meshes_before()}
+                                            : PreviousScene{light.scene.instances, light.scene.meshes};
+    if (shared != nullptr) {
+        const PathSettings& path = settings_.path;
+        shared->add(frame, light, {path.sampler, number, path.seed}, *tracer_, before, restir);
+    }
+    if (settings.resolution_scale < 1) {
+        RenderSettings of_features = of_light;
+        of_features.width = of_features.path.frame_width = settings_.width;
+        of_features.height = settings_.height;
+        of_features.path.max_depth = 0;
+        NoisyFrame& features = fit(features_, settings_.width, settings_.height);
+        begin(camera_, of_features, 1);
+        integrator_->render(number, 1, features.film_view());
+        frame_rays_ = frame_rays_ + integrator_->rays();
+        const CameraView camera = view_of(camera_, of_features).camera.view;
+        reconstruction_->add_enlarged(frame, light.camera.view, features, camera, light.scene, before, change,
+                                      settings);
+    } else {
+        features_.reset();
+        reconstruction_->add(frame, light.camera.view, light.scene, before, change, settings);
+    }
+    keep_light(number, of_light, settings);
+    has_moved_ = scene_has_changed_ = false;
+}
+
+/// A small picture by sample `number`, as frames take it.
+void Session::take_small(uint32_t number, const Camera& camera, RenderSettings of_light, NoisyFrame& frame) {
+    of_light.width = of_light.path.frame_width = frame.width();
+    of_light.height = frame.height();
+    begin(camera, of_light, 1);
+    frame.begin();
+    integrator_->render(number, 1, frame.film_view());
+    frame_rays_ = frame_rays_ + integrator_->rays();
+}
+
+/// How light has changed since the frame before, where that has left a small picture of the scene as it was.
+LightChangeView Session::look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings) {
+    const bool is_known = settings.follow_light && scene_has_changed_ && camera_of_light_ &&
+                          reconstruction_->frames() > 0 && light_change_ && light_change_->fits(*noisy_frame_);
+    if (!is_known) return {};
+    take_small(number_of_light_, *camera_of_light_, of_light, light_change_->after());
+    return light_change_->compare();
+}
+
+/// For the next frame, as what has moved once mostly goes on.
+void Session::keep_light(uint32_t number, const RenderSettings& of_light, const ReconstructionSettings& settings) {
+    camera_of_light_.reset();
+    if (!settings.follow_light || !scene_has_changed_) return;
+    if (!light_change_ || !light_change_->fits(*noisy_frame_)) {
+        light_change_.reset(); // before the new one, so that both need not fit
+        light_change_.emplace(queue_, noisy_frame_->width(), noisy_frame_->height(), noisy_frame_->splits_light());
+    }
+    take_small(number, camera_, of_light, light_change_->before());
+    camera_of_light_ = camera_;
+    number_of_light_ = number;
+}
+
+RayCounts Session::frame_rays() const { return restir_ ? frame_rays_ + RayCounts{0, 0, restir_->rays()} : frame_rays_; }
+
+Reconstruction& Session::frame() {
+    PERTEV_CHECK(reconstruction_.has_value());
+    return *reconstruction_;
+}
+
+FrameTones Session::frame_tones() const { return reconstruction_.value().tones(noisy_frame_.value()); }
+
+} // namespace pertev

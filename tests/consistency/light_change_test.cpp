@@ -1,0 +1,108 @@
+// Light that changes by itself, and how soon frames show it.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "denoise/light_change_view.h"
+#include "image/picture_hash.h"
+#include "render/update_scene.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+/// A scene that a point light alone shines on.
+Scene lamp_scene() {
+    Scene scene = make_mixed_scene();
+    scene.environment.reset();
+    for (Material& material : scene.materials) material.emission = {0, 0, 0};
+    Light lamp;
+    lamp.position = {0.5f, 3, 1};
+    lamp.intensity = {20, 20, 20};
+    scene.lights = {lamp};
+    return scene;
+}
+
+constexpr uint32_t kStill = 16, kDimming = 6;
+constexpr float kStep = 0.8f; // of the lamp's light, from frame to frame
+
+/// Frames under a lamp that burns, then dims by kStep each frame. The scene is said to change before all of them.
+Image last_frame(Queue& queue, bool follows, bool dims, Hash128* before_dimming = nullptr) {
+    Messages messages;
+    Scene scene = lamp_scene();
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings;
+    settings.width = 64, settings.height = 48;
+    settings.path.max_depth = 3;
+    Session session(queue, prepared, mixed_scene_camera(), settings);
+    SceneUpdate update;
+    update.lights_changed = true;
+    for (uint32_t k = 0; k < kStill + kDimming; ++k) {
+        if (dims && k >= kStill) scene.lights[0].intensity = kStep * scene.lights[0].intensity;
+        prepared = update_scene(prepared, scene, update, messages);
+        session.update_scene(prepared, parts_of(update));
+        session.render_frame(k, {.follow_light = follows});
+        if (before_dimming != nullptr && k + 1 == kStill) *before_dimming = picture_hash(session.frame().picture());
+    }
+    return session.frame().picture();
+}
+
+} // namespace
+
+TEST_CASE("frames follow a lamp that dims, from the frame on in which it does") {
+    Queue queue = queue_asked_for();
+    const double still = mean_of(last_frame(queue, true, false));
+    const double expected = still * std::pow(static_cast<double>(kStep), kDimming);
+    CHECK(mean_of(last_frame(queue, true, true)) == doctest::Approx(expected).epsilon(0.05));
+    CHECK(mean_of(last_frame(queue, false, true)) > 1.2 * expected); // what there is to follow
+}
+
+TEST_CASE("where light does not change, looking for a change leaves the frame as it is") {
+    Queue queue = queue_asked_for();
+    Hash128 with, without;
+    last_frame(queue, true, false, &with);
+    last_frame(queue, false, false, &without);
+    CHECK(with == without);
+}
+
+TEST_CASE("a dimming lamp's frames have the same bytes on every device") {
+    if (!cuda_requested()) return;
+    Queue cpu = Queue::make_cpu(), cuda = make_cuda_queue();
+    CHECK(picture_hash(last_frame(cpu, true, true)) == picture_hash(last_frame(cuda, true, true)));
+}
+
+TEST_CASE("a mean follows light by its ratio, and never up by more than the difference") {
+    CHECK(followed(4, 2, 1) == 2);    // half as bright
+    CHECK(followed(1, 2, 3) == 1.5f); // darker than what is about it
+    CHECK(followed(4, 2, 3) == 5);    // brighter
+    CHECK(followed(0.5f, 0, 2) == 2.5f);
+    CHECK(followed(0.5f, 0, 0) == 0.5f);
+    CHECK(followed(3, 2, 0) == 0);
+    CHECK(frames_in_change(32, 1, 1) == 32);
+    CHECK(frames_in_change(32, 1, 0.9f) < 5);
+    CHECK(frames_in_change(32, 0, 1) == 1);
+    CHECK(frames_in_change(32, 0, 0) == 32);
+}
+
+TEST_CASE("a change of light is that of the same object, near by, that faces alike") {
+    constexpr uint32_t kWidth = 3, kHeight = 2;
+    std::vector<Float4> guide(kWidth * kHeight, pack({{0, 0, 1}, 1, 2, 7})), was(guide.size(), Float4{2, 2, 2, 1}),
+        is(guide.size(), Float4{1, 1, 1, 3});
+    is[1] = {4, 4, 4, 3};
+    guide[1] = pack({{0, 0, 1}, 1, 2, 8});
+    const LightChangeView change = {guide.data(), was.data(), is.data(), kWidth, kHeight, 0.25f, 0.25f};
+    const LightStep step = light_step(change, {4, 4}, {0, 0, 1}, 7); // between all of the left four
+    CHECK(step.was.r == doctest::Approx(2));
+    CHECK(step.is.r == doctest::Approx(1));
+    CHECK(step.gloss_is == doctest::Approx(3));
+    CHECK(light_step(change, {4, 4}, {0, 0, 1}, 8).is.r == doctest::Approx(4));
+    CHECK(light_step(change, {4, 4}, {0, 0, 1}, 9).is.r == 0); // another object
+    CHECK(light_step(change, {4, 4}, {1, 0, 0}, 7).is.r == 0); // turned away
+    CHECK(light_step(change, {-40, 4}, {0, 0, 1}, 7).is.r == 0);
+    CHECK(light_step(change, {kInfinity, 1e30f}, {0, 0, 1}, 7).was.r == 0);
+}
