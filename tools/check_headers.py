@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Compiles headers by themselves, so that each can be included first and, where it has device code, by any compiler.
 
-The first --cxx compiles each header alone, but for those that the build compiles so already: their own .cpp includes them
-first. Host-device headers (those that say HD) are compiled by every other --cxx and by --nvcc too, gathered into one
-generated file a module. `--self-test` feeds the check headers that must fail.
+The first --cxx compiles each header alone, but for those that are compiled so already: in the build their own .cpp
+includes them first, or another header does, which then stands or falls with them. Host-device headers (those that say
+HD) are compiled by every other --cxx and by --nvcc too, gathered into one generated file. `--self-test` feeds the check
+headers that must fail.
 """
 
 import argparse
@@ -22,6 +23,7 @@ HOST_FLAGS = ["-x", "c++", "-std=c++20", "-fsyntax-only", "-ffp-contract=off", "
 NVCC_FLAGS = ["-x", "cu", "-std=c++20", "-ptx", "-arch=compute_90", "--expt-relaxed-constexpr", "-fmad=false",
               "-Werror=all-warnings", "-o", os.devnull]
 FIRST_INCLUDE = re.compile(r'^#include [<"](.*?)[>"]', re.MULTILINE)
+FIRST_LINES = re.compile(r'\A(?:\s*//.*\n|\s*#pragma once\n|\s*\n)*#include "(.*?)"')
 HOST_DEVICE = re.compile(r"^\s*(template\s*<.*>\s*)?(\[\[\w+\]\]\s*)?(constexpr\s+|static\s+)*HD\b", re.MULTILINE)
 
 
@@ -41,16 +43,22 @@ def built_alone(header, source):
     return bool(first) and first.group(1) == header.as_posix()
 
 
+def first_of_others(headers, source):
+    """The headers that come before all else in another one."""
+    firsts = [FIRST_LINES.match((source / h).read_text(encoding="utf-8")) for h in headers]
+    return {pathlib.Path(first.group(1)) for first in firsts if first}
+
+
 def jobs_for(source, compilers, nvcc):
     """(what it is, command, headers) for each compilation."""
     headers = [h.relative_to(source) for h in sorted(source.rglob("*.h")) if "cuda" not in h.parts]
     host_device = [h for h in headers if HOST_DEVICE.search((source / h).read_text(encoding="utf-8"))]
     others = [[c, *HOST_FLAGS] for c in compilers[1:]] + ([[nvcc, *NVCC_FLAGS]] if nvcc else [])
     for command in others:
-        for module in sorted({h.parts[0] for h in host_device}):
-            yield f"{module} by {command[0]}", command, [h for h in host_device if h.parts[0] == module]
+        yield f"host-device headers by {command[0]}", command, host_device
+    covered = first_of_others(headers, source)
     for header in headers:
-        if not built_alone(header, source):
+        if header not in covered and not built_alone(header, source):
             yield f"{header} by {compilers[0]}", [compilers[0], *HOST_FLAGS], [header]
 
 

@@ -11,7 +11,7 @@ import struct
 import unittest
 import zlib
 
-from cli_run import SANITIZED, CliTest, limit_addresses, main
+from cli_run import SANITIZED, UNMETERED, CliTest, limit_addresses, main
 
 MAX_SECONDS = 60 if SANITIZED else 5  # of processor time: the machine may be loaded
 IMAGES = (".png", ".jpg", ".exr", ".hdr")
@@ -50,7 +50,7 @@ class MalformedTest(CliTest):
     def survive_render(self, name, scene, *arguments, warns=False):
         picture = self.path("picture.png")
         status = self.survive(name, "render", scene, "-o", picture, "--size", "32x32", "--spp", "1", "--device", "cpu",
-                              *arguments, warns=warns)
+                              *UNMETERED, *arguments, warns=warns)
         self.assertEqual(os.path.exists(picture), status == 0)
         if status == 0:
             os.remove(picture)

@@ -4,7 +4,9 @@
 import os
 import pty
 import re
+import signal
 import subprocess
+import time
 
 from cli_run import FLOOR, PROGRAM, CliTest, listen_to, main, write
 
@@ -140,10 +142,16 @@ class SignsOfLife(CliTest):
         return program, *listen_to(leader)
 
     def test_a_line_every_10_s_tells_what_is_done_where_no_bar_can_be_drawn(self):
-        enough = ["--time-limit", "10.4"]
+        enough = ["--time-limit", "10.4", "--exposure", "0"]
         to_a_file = self.start(*enough)
         quiet = self.start(*enough, "-q")
         dumb, listener, said = self.on_a_terminal(*enough, TERM="dumb")
+        # They sleep for most of that time, which is told by the clock: others have use for the processor.
+        time.sleep(1)
+        for signalled, seconds in [(signal.SIGSTOP, 8), (signal.SIGCONT, 0)]:
+            for program in [to_a_file, quiet, dumb]:
+                program.send_signal(signalled)
+            time.sleep(seconds)
         for program in [to_a_file, quiet]:
             program.said = program.communicate(timeout=300)[1].decode()
         dumb.communicate(timeout=300)

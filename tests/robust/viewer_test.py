@@ -175,7 +175,8 @@ class Fuzzed(WithViewer):
 
 class Pictures(CliTest):
     def rendered(self, *arguments, spp=4):
-        done = self.render(*arguments, size="64x48", spp=spp, output=self.path("picture.png"))
+        metered = [] if "--exposure" in arguments else ["--exposure", "auto"]
+        done = self.render(*metered, *arguments, size="64x48", spp=spp, output=self.path("picture.png"))
         with open(self.path("picture.png"), "rb") as file:
             return done["hash"], file.read()
 
@@ -313,6 +314,7 @@ class Pictures(CliTest):
 
 
 class Together(WithViewer):
+    arguments = ["--threads", "1"]  # it renders all the while
     options = {"size": "160x120", "spp": 100000}
 
     def test_one_steers_the_others_watch_and_the_wheel_is_handed_over_and_found_again(self):

@@ -50,6 +50,7 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
             sum[c] += weight[c];
             squares[c] += weight[c] * weight[c];
         }
+        if (i % 4 != 0) continue; // what holds for each sample is looked at for some: that takes as long as drawing
         const double pdf = static_cast<double>(bsdf.pdf(wo, s.wi)), drawn = static_cast<double>(s.pdf);
         const Rgb f = bsdf.eval(wo, s.wi);
         report.pdf_error = std::max(report.pdf_error, std::fabs(drawn - pdf) / pdf);
