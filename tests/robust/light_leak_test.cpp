@@ -126,7 +126,7 @@ float narrow(const Place& place) { return min(0.3f, max(2e-4f, 2e-6f * max_compo
 uint64_t lit_pixels_of_box(const Place& place) {
     const Scene scene = scene_of(cube(), place);
     const Vec3 eye = {0.11f, -0.07f, 0.13f};
-    const auto samples = static_cast<uint32_t>(effort(16, 256));
+    const auto samples = static_cast<uint32_t>(effort(32, 256));
     uint64_t lit = lit_pixels(scene, place, {eye, {0.5f, 0.5f, -0.5f}, 1.5f}, 32, samples, 16);
     for (const Vec3 target : {Vec3{0.5f, 0.5f, -0.03f}, {-0.5f, 0.2f, 0.5f}, {0.5f, -0.5f, -0.5f}}) {
         lit += lit_pixels(scene, place, {eye, target, narrow(place)}, 32, samples, 4);

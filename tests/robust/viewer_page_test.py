@@ -17,7 +17,7 @@ from cli_run import PROGRAM, SANITIZED, main, write
 from viewer_client import Client, Tunnel, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
-STEERING_S = 600 if LONG else 8
+STEERING_S = 600 if LONG else 20
 
 if find_chromium() is None:
     print("skipped: no Chromium is here")
@@ -265,7 +265,7 @@ class Page(unittest.TestCase):
                 resident = self.viewer.resident_bytes()
         page.key("KeyA", "a", down=False)
         if not SANITIZED:  # which keeps freed memory
-            self.assertLess(self.viewer.resident_bytes() - resident, (32 if LONG else 12) << 20)
+            self.assertLess(self.viewer.resident_bytes() - resident, 32 << 20)
         print(f"input to picture: median {sorted(waits)[len(waits) // 2]} ms of {len(waits)}", file=sys.stderr)
 
 
