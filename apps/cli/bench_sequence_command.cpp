@@ -26,7 +26,7 @@ struct SequenceFlags {
     RenderFlags render;
     ReconstructionFlags reconstruction;
     uint32_t reference = 0;
-    std::string write_samples, peer, strips;
+    std::string write_frames, write_samples, peer, strips;
 };
 
 /// What one way of making frames is measured by, over a sequence.
@@ -117,6 +117,10 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         session.set_camera(record.camera.camera);
         session.render_frame(number, settings);
         const Image ours = session.frame().picture();
+        const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
+        if (!flags.write_frames.empty()) {
+            write_png(std::filesystem::path(flags.write_frames) / fmt::format("frame-{:04}.png", number), shown(ours));
+        }
         const RenderResult sample = sample_of(session, ready.settings, number, 1, kAovAlbedo | kAovNormal);
         if (!flags.write_samples.empty()) {
             write_pfm(file_of(flags.write_samples, number, ""), sample.picture);
@@ -130,7 +134,6 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
                     reference = mean_of_both(first, second);
         std::optional<Image> peer;
         if (scores.peer) peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
-        const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
         // Side by side in the strip: samples, frame, peer, reference.
         std::vector<Rgba8Image> strip = {shown(sample.picture), shown(ours)};
         if (peer) strip.push_back(shown(*peer));
@@ -219,6 +222,8 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
                     "frame to frame is the flicker")
         ->type_name("SPP")
         ->check(whole_between(2, kMaxSamplesPerPixel));
+    verb.add_option("--write-frames", flags->write_frames, "write each frame as PNG into this folder")
+        ->type_name("FOLDER");
     verb.add_option("--write-samples", flags->write_samples,
                     "write each frame's samples, albedo and normals as PFM into this\nfolder, for another denoiser")
         ->type_name("FOLDER");
