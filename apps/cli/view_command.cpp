@@ -17,6 +17,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
@@ -35,9 +36,11 @@ constexpr auto kLongestEnd = std::chrono::milliseconds(800); // from Ctrl-C to t
 
 struct ViewFlags {
     RenderFlags render;
+    ReconstructionFlags reconstruction;
     std::string host = "127.0.0.1";
     uint32_t port = 8080;
     bool no_browser = false;
+    std::string jpeg = "auto";
 };
 
 bool is_this_machine_alone(const std::string& host) {
@@ -163,6 +166,11 @@ int view(const ViewFlags& flags) {
     start.view.finds_exposure = flags.render.exposure.empty() || flags.render.exposure == "auto";
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
+    start.view.is_reconstructed = !flags.reconstruction.none;
+    ReconstructionFlags asked = flags.reconstruction;
+    asked.none = false; // so that the panel's denoiser brings them back
+    start.view.reconstruction = reconstruction_settings(asked);
+    start.view.restir = restir_settings(asked);
     if (start.view.finds_exposure) {
         source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
         start.view.display.exposure_stops = 0;
@@ -172,10 +180,12 @@ int view(const ViewFlags& flags) {
     start.speed = 0.12f * size;
     start.camera.pose = start_pose(start.record, source, size);
     let_time_move(flags, *ready, start);
+    std::unique_ptr<Queue> jpeg_queue;
+    if (on_cuda && flags.jpeg == "auto") jpeg_queue = choose_device(flags.render.machine.device, reporter.messages());
     reporter.set_work("waiting for somebody to look");
     end_soon();
     run_viewer(
-        {.host = flags.host, .port = static_cast<uint16_t>(flags.port)}, start, source,
+        {.host = flags.host, .port = static_cast<uint16_t>(flags.port), .jpeg_queue = jpeg_queue.get()}, start, source,
         [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
     reporter.event(R"({"event":"done"})");
     return 0;
@@ -198,8 +208,14 @@ void add_view_command(CLI::App& app, int& status) {
         ->check(file_name())
         ->capture_default_str()
         ->group(group);
+    verb.add_option("--jpeg", flags->jpeg, "who packs pictures: auto (a GPU that renders, where nvJPEG is\nfound), cpu")
+        ->type_name("NAME")
+        ->check(one_of({"auto", "cpu"}))
+        ->capture_default_str()
+        ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
     add_shown_picture_flags(verb, flags->render);
+    add_reconstruction_flags(verb, flags->reconstruction, "While the view moves");
     add_time_flags(verb, flags->render, true);
     add_report_flags(verb, flags->render.report);
     verb.callback([flags, &status] { status = view(*flags); });

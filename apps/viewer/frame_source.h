@@ -39,6 +39,8 @@ struct ShownFrame {
     RayCounts rays;                           // traced for it
     double render_s = 0;                      // of these rays
     float scale = 1;                          // of the full size
+    double kept_rate = 0;                     // frames a second that this scale was chosen for; 0: it was asked for
+    bool keeps_rate = true;                   // by frames before; false: no scale is small enough
     StageTimes stages;
 };
 

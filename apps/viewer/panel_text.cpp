@@ -72,6 +72,12 @@ constexpr NumberRow kRows[] = {
      [](const ViewState&, const ViewNumbers& n) {
          return n.frames_per_second > 0 ? fmt::format("{:.1f} a second", n.frames_per_second) : "";
      }},
+    {"Frames", "sized for",
+     [](const ViewState&, const ViewNumbers& n) {
+         if (n.frame->kept_rate == 0) return std::string();
+         return fmt::format("{:.0f} a second{}", n.frame->kept_rate,
+                            n.frame->keeps_rate ? "" : ", not reached: the smallest size");
+     }},
     {"Rays", "camera", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.camera, n); }},
     {"Rays", "bounce", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.bounce, n); }},
     {"Rays", "shadow", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.shadow, n); }},
@@ -93,6 +99,7 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     }
     append(rows, row_json("Stages", "pack",
                           fmt::format("{:.1f} ms, {} KiB", numbers.pack_ms, (numbers.packed_bytes + 1023) / 1024)));
+    append(rows, row_json("Stages", "packed by", numbers.encoder));
     return rows;
 }
 

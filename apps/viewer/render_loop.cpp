@@ -213,6 +213,8 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
         audience_.tell(0, notice_text("error", error.what()));
         const ViewState failed = std::exchange(view_, shown_);
         view_.display = failed.display;
+        // What was set at rest is first asked for by a frame of the movement.
+        if (failed.restir == shown_.restir) view_.restir.light = RestirLight::Off;
         tell_state();
         return std::nullopt;
     }
@@ -300,6 +302,7 @@ void RenderLoop::tell_state() {
     numbers.frames_per_second = is_done_ ? 0 : frames_per_second_;
     numbers.pack_ms = packer_.milliseconds();
     numbers.packed_bytes = packer_.bytes();
+    numbers.encoder = packer_.encoder();
     numbers.phase = is_done_ ? "done" : (is_moving() ? "moving" : "gathering");
     numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : std::nullopt);
     numbers.input = input_;

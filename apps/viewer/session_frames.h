@@ -30,6 +30,7 @@ public:
 private:
     ShownFrame reconstruct(const FrameRequest& request, float scale);
     RenderSettings settings_for(const FrameRequest& request, float scale);
+    void tell_pace(const FrameRequest& request, ShownFrame& frame) const;
     void use(const RenderSettings& settings);
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
     Rgba8Image show_layer(const FrameRequest& request, ShownFrame& frame);
@@ -44,6 +45,8 @@ private:
     double update_s_ = 0;    // of the scene, since the last frame
     FramePace pace_;
     std::atomic<bool> abandon_{false};
+    ReconstructionSettings reconstruction_settings_; // of the last frame
+    RestirSettings restir_settings_;
     uint32_t next_sample_ = 0;  // of the frames in real time
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
     bool shows_reconstruction_ = false;

@@ -172,6 +172,21 @@ std::vector<ViewSetting> make_settings() {
             return std::string();
         });
     choice(
+        "restir", "ReSTIR: light that pixels share", "Frames", restir_names(),
+        [](const ViewState& s) { return name_of(s.restir.light); },
+        [](ViewState& s, const std::string& name) {
+            s.restir.light = *restir_named(name);
+            return std::string();
+        });
+    numeric(
+        "restir_history", "Frames that share it, at most", "Frames", Kind::Whole, 0, 1024, 1,
+        [](const ViewState& s) { return s.restir.history; },
+        [](ViewState& s, float v) { s.restir.history = static_cast<uint32_t>(v); });
+    numeric(
+        "resolution_scale", "Resolution of light, a side", "Frames", Kind::Number, 0.1, 1, 0.05,
+        [](const ViewState& s) { return s.reconstruction.resolution_scale; },
+        [](ViewState& s, float v) { s.reconstruction.resolution_scale = v; });
+    choice(
         "moving_scale", "Size while moving", "Frames", strings(kScales),
         [](const ViewState& s) {
             return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];

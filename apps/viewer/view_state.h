@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "denoise/reconstruction_settings.h"
+#include "restir/restir_settings.h"
 #include "session/picture_metadata.h"
 #include "session/render_settings.h"
 
@@ -35,9 +37,12 @@ struct ViewState {
     float found_stops = 0; // of the last picture
     Camera lens;           // angle of view, aperture, focus; its place is the pose's
     ShownLayer layer = ShownLayer::Beauty;
-    bool is_real_time = false;    // also at rest, pictures are those of the movement
-    bool is_reconstructed = true; // of the movement: by what frames before have seen (denoise/)
-    float moving_scale = 0;       // of the size while moving; 0: whatever keeps the frame rate
+    bool is_real_time = false; // also at rest, pictures are those of the movement
+    // Frames of the movement; none of this touches the picture at rest.
+    bool is_reconstructed = true; // by what frames before have seen (denoise/); else they are their samples
+    ReconstructionSettings reconstruction;
+    RestirSettings restir;
+    float moving_scale = 0; // of the size; 0: whatever keeps the frame rate
     bool on_cuda = false;
 };
 

@@ -403,7 +403,9 @@ Reconstruction& Session::frame() {
     return *reconstruction_;
 }
 
-FrameTones Session::frame_tones() const { return reconstruction_.value().tones(noisy_frame_.value()); }
+FrameTones Session::frame_tones() const {
+    return reconstruction_.value().tones(features_ ? *features_ : noisy_frame_.value());
+}
 
 Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
     return current_film().display(history_.samples, tone_map, exposure_stops, settings_.transparent);

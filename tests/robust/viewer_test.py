@@ -260,6 +260,25 @@ class Pictures(CliTest):
             state = client.done()
             self.assertEqual((stops(state), state["values"]["exposed"]), ("+1.00 stops", "fixed"))
 
+    def test_light_that_pixels_share_and_its_resolution_are_switched_live_and_leave_the_picture_at_rest(self):
+        with Viewer("--restir", "di", "--restir-history", "7", "--resolution-scale", "0.5") as viewer, Client(viewer) as client:
+            home = client.done()
+            self.assertEqual([home["values"][name] for name in ("restir", "restir_history", "resolution_scale")], ["di", 7, 0.5])
+            self.assertEqual(home["hash"], self.rendered()[0])
+            client.set("mode", "real time")
+            for restir, scale in [("gi", 0.5), ("off", 0.25), ("di", 1)]:
+                client.set("restir", restir)
+                last = client.set("resolution_scale", scale)
+                client.picture(lambda h, n=last: h["input"] >= n)
+                state = client.done(lambda s, n=last: s["input"] >= n)
+                self.assertEqual([state["values"][name] for name in ("restir", "resolution_scale")], [restir, scale])
+                self.assertIn("reconstruction", [label for _, label, _ in state["rows"]])
+            client.set("denoiser", "off")
+            client.set("mode", "reference")
+            self.assertEqual(client.done(lambda s: s["values"]["mode"] == "reference" and s["hash"])["hash"], home["hash"])
+            client.set("resolution_scale", 0.05)
+            self.assertIn("Resolution of light", client.text("notice")["text"])
+
     def test_saved_files_are_those_of_a_render(self):
         with Viewer() as viewer:
             status, headers, png = viewer.get("/save?format=png")  # nobody need look
@@ -297,6 +316,8 @@ class Pictures(CliTest):
                 self.assertEqual((header["full_width"], header["full_height"]), (640, 480))
             self.assertLess(time.monotonic() - began, 2)
             self.assertLess(header["width"], 640)
+            said = client.text("state", lambda s: s["input"] >= number)["rows"]
+            self.assertIn(["Frames", "sized for", "8 a second"], said)
             # Input comes faster than pictures: these come all the same, and none is far behind.
             shown, end = [], time.monotonic() + 2
             while time.monotonic() < end:
