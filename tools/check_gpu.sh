@@ -2,14 +2,14 @@
 # Everything that touches device code, on a machine with a GPU, in one go:
 #   tools/check_gpu.sh BIN SCENES [PART ...]
 # BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
-# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench; all without any. Exits 1
-# when something failed.
+# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench, viewer; all without any. Exits
+# 1 when something failed.
 set -uo pipefail
 bin=$1 scenes=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(tests long pictures sanitizers references bench)
+[ ${#parts[@]} -gt 0 ] || parts=(tests long pictures sanitizers references bench viewer)
 export PERTEV_SCENES=$scenes
 status=0
 
@@ -49,6 +49,10 @@ for part in "${parts[@]}"; do
         done
         run "$bin/pertev" bench
         run "$bin/pertev" bench rays --check
+        ;;
+    viewer) # of a GPU whose nvJPEG is not where the loader looks: LD_LIBRARY_PATH says where
+        run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj"
+        run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj" --size 3840x2160 --most 200
         ;;
     *) echo "no such part: $part" && status=1 ;;
     esac
