@@ -50,6 +50,7 @@ struct PickedPoint {
     float distance = 0; // from the eye, metres
     Vec3 position, normal;
     Rgb albedo;
+    std::optional<Rgb> light; // of the pixel, linear, where the picture at rest is there
 };
 
 class FrameSource {

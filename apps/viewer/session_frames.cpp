@@ -212,6 +212,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     session_.render_frame(next_sample_, settings, view.restir);
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
+    shows_film_ = false;
     shows_layer_ = shows_layer;
     reconstruction_.pixels.clear();
     ShownFrame frame;
@@ -318,7 +319,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     frame.full_width = request.view.picture.width;
     frame.full_height = request.view.picture.height;
     frame.scale = scale;
-    frame.is_reference = !is_small && is_beauty(request.view.layer);
+    shows_film_ = frame.is_reference = !is_small && is_beauty(request.view.layer);
     frame.is_final = !is_small && frame.samples >= wanted;
     frame.stages = {{"render", 1e3 * frame.render_s}, {"tone map", 1e3 * display_s}};
     if (frame.is_reference) {
@@ -343,6 +344,15 @@ std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, fl
     settings.path.max_depth = 0;
     const RenderResult seen = session_.look_aside(camera_through(camera, aspect, x, y), settings);
     if (seen.ids.empty() || seen.ids.front().instance == kNoHit) return std::nullopt;
+    std::optional<Rgb> light;
+    if (shows_film_ && session_.camera() == camera) {
+        const Image film = session_.picture();
+        const auto place = [](float share, uint32_t side) {
+            return std::min(static_cast<uint32_t>(share * static_cast<float>(side)), side - 1);
+        };
+        const float* const values = film.at(place(x, film.width), place(y, film.height));
+        light = {values[0], values[1], values[2]};
+    }
     PickedPoint picked = {.instance = seen.ids.front().instance,
                           .primitive = seen.ids.front().primitive,
                           .material = seen.ids.front().material};
@@ -352,6 +362,7 @@ std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, fl
     picked.normal = {normal[0], normal[1], normal[2]};
     picked.position = {position[0], position[1], position[2]};
     picked.distance = values("depth")[0];
+    picked.light = light;
     return picked;
 }
 

@@ -51,6 +51,7 @@ private:
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
     bool shows_reconstruction_ = false;
     bool shows_layer_ = false;  // of it
+    bool shows_film_ = false;   // the last picture was that at rest
     Rgba8Image reconstruction_; // the last, as it is shown; empty while nothing competes with it
     Rgba8Image half_;           // the picture at rest that is not shown yet, at half_samples_ of its samples
     uint32_t half_samples_ = 0;

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "apps/viewer/client_message.h"
 #include "denoise/reconstruction_settings.h"
 #include "restir/restir_settings.h"
 #include "session/picture_metadata.h"
@@ -54,6 +55,7 @@ struct ViewSetting {
     const char* name;
     const char* label;
     const char* group;
+    const char* hint; // for who does not know it
     Kind kind;
     std::vector<std::string> choices;   // of a Choice
     double low = 0, high = 0, step = 1; // of a number
@@ -64,6 +66,9 @@ struct ViewSetting {
 
 /// All settings, in the panel's order.
 const std::vector<ViewSetting>& view_settings();
+
+/// Whether this asks for a picture to which samples that are being rendered mean nothing.
+bool begins_anew(const ClientMessage& message);
 
 /// Sets one by its name. Empty where that was done; else why not, and nothing was done.
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);

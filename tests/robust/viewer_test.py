@@ -8,7 +8,7 @@ import socket
 import time
 import unittest
 
-from cli_run import SANITIZED, CliTest, main
+from cli_run import SANITIZED, CliTest, main, read_exr
 from viewer_client import Client, Closed, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
@@ -300,6 +300,14 @@ class Pictures(CliTest):
             self.assertIn("floor", rows["instance"])
             self.assertIn("white", rows["material"])
             self.assertEqual(rows["normal"], "0, 1, 0")
+            client.done()
+            client.steer(type="pick", x=0.5, y=0.95, use="show")
+            light = {label: value for _, label, value in client.text("picked")["rows"]}["light"]
+            with open(self.path("saved.exr"), "wb") as file:
+                file.write(viewer.get("/save?format=exr")[2])
+            width, height, channels = read_exr(self.path("saved.exr"))
+            at = (int(0.95 * height), int(0.5 * width))
+            self.assertEqual(light, ", ".join(f"{channels[c][at[0]][at[1]]:.3g}" for c in "RGB"))
             client.set("aperture", 0.01)
             client.steer(type="pick", x=0.5, y=0.95, use="focus")
             self.assertIn("in focus", client.text("notice")["text"])
@@ -317,7 +325,7 @@ class Pictures(CliTest):
             self.assertLess(time.monotonic() - began, 2)
             self.assertLess(header["width"], 640)
             said = client.text("state", lambda s: s["input"] >= number)["rows"]
-            self.assertIn(["Frames", "sized for", "8 a second"], said)
+            self.assertIn(["Frames", "size chosen for", "8 a second"], said)
             # Input comes faster than pictures: these come all the same, and none is far behind.
             shown, end = [], time.monotonic() + 2
             while time.monotonic() < end:
