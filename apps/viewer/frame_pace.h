@@ -15,7 +15,7 @@ public:
     /// A frame of `scale` took so long, all its stages together; and before it `beside_s`, whatever its size (the scene
     /// moved).
     void took(float scale, double seconds, double beside_s = 0);
-    /// Of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32 or 1/16.
+    /// Of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32, 1/16, 3/64 or 1/32.
     float scale() const;
     double frame_s() const { return frame_s_; }
     /// Whether frames of this scale take no longer, by those before.
