@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How soon `pertev view` shows what is asked for: tools/view_latency.py PERTEV SCENE [options], with a GPU by default.
+"""How soon `pertev view` shows what is asked for: tools/view_latency.py PERTEV SCENE [options] [-- flags of pertev view],
+with a GPU by default.
 
 Steers a viewer 60 times a second through a WebSocket on this machine, decodes each picture with libjpeg, as a browser
 would, and acknowledges it then. For each encoder: milliseconds from an input to the first decoded picture that shows it
@@ -149,11 +150,12 @@ def main():
     parser.add_argument("--size", default="1920x1080")
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--most", type=float, default=50, help="milliseconds beyond the frame, at the median")
-    parser.add_argument("flags", nargs="*", help="more flags of pertev view, behind --")
-    given = parser.parse_args()
+    own = sys.argv[1:]
+    more = own[own.index("--") + 1 :] if "--" in own else []
+    given = parser.parse_args(own[: len(own) - len(more) - 1] if "--" in own else own)
     jpeg, is_good = Jpeg(os.path.abspath(given.pertev)), True
     for encoder in ["auto", "cpu"] if given.device != "cpu" else ["cpu"]:
-        flags = ["--jpeg", encoder, "--max-depth", "4", *given.flags]
+        flags = ["--jpeg", encoder, "--max-depth", "4", *more]
         with Viewer("--jpeg", encoder, size="320x180", spp=64, device=given.device) as viewer:
             mean, shift = off_by(viewer, jpeg)
         with Viewer(*flags, scene=given.scene, size=given.size, spp=100000, device=given.device) as viewer:

@@ -21,10 +21,12 @@ bool FramePace::fits(int step, double room) const {
 void FramePace::took(float scale, double seconds, double beside_s) {
     const double pixels = static_cast<double>(scale) * static_cast<double>(scale);
     const double full = seconds / pixels;
-    full_s_ = full_s_ == 0 ? full : full_s_ + 0.35 * (full - full_s_);
+    const bool is_first = full_s_ == 0;
+    full_s_ = is_first ? full : full_s_ + 0.35 * (full - full_s_);
     beside_s_ = beside_s;
     while (step_ < kLast && !fits(step_, 1)) ++step_;
-    if (step_ > 0 && fits(step_ - 1, kRoom)) --step_;
+    const int least = is_first ? 0 : std::max(step_ - 1, 0);
+    while (step_ > least && fits(step_ - 1, kRoom)) --step_;
 }
 
 bool FramePace::keeps_rate() const {

@@ -1,7 +1,8 @@
 #pragma once
 
 // Which part of the full resolution a moving picture has, so that frames keep a rate: pure arithmetic over measured
-// times. Few steps, and no step back at once: each change of size is a new film and a jump to the eye.
+// times. Few steps, and no step back at once: each change of size is a new film and a jump to the eye. The first frame
+// is small, and the next as large as that one says.
 
 #include <cstdint>
 
@@ -27,7 +28,7 @@ private:
     double frame_s_;
     double full_s_ = 0;   // of a frame at full size, by those before; 0: nothing is known
     double beside_s_ = 0; // of the last frame
-    int step_ = 4;
+    int step_ = 8;        // small, until a frame has told how fast the machine is
 };
 
 /// A side of the picture at this scale, pixels; at least 1.

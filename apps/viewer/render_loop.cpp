@@ -69,7 +69,8 @@ void RenderLoop::handle(const Command& command) {
     is_new_ = true;
     if (const Steer* asked = std::get_if<Steer>(&command)) return steer(*asked);
     if (const Save* save = std::get_if<Save>(&command)) return saves_.push_back(*save);
-    is_done_ = false; // somebody came: shows the present picture again
+    is_done_ = false;                   // somebody came: shows the present picture again
+    if (!last_) moved_at_s_ = now_s_(); // or a small one at once: a sample of a large picture may take long
 }
 
 void RenderLoop::steer(const Steer& asked) {

@@ -313,6 +313,17 @@ class Pictures(CliTest):
             self.assertIn("in focus", client.text("notice")["text"])
             self.assertIn("--aperture 0.01", client.done(lambda s: "--aperture" in s["flags"])["flags"])
 
+    def test_the_first_picture_is_there_long_before_a_sample_of_a_large_one(self):
+        with Viewer(size="2560x1440", spp=64) as viewer, Client(viewer) as client:
+            header, _ = client.picture()
+            self.assertLess(header["width"], 2560)
+            self.assertEqual((header["full_width"], header["full_height"]), (2560, 1440))
+            # Nothing is known of the machine yet, and yet the first step is shown soon.
+            began = time.monotonic()
+            last = client.steer(type="orbit", dx=0.01, dy=0)
+            client.picture(lambda h: h["input"] >= last)
+            self.assertLess(time.monotonic() - began, 3 if SANITIZED else 1.5)
+
     def test_while_the_camera_moves_pictures_are_small_and_soon_and_say_which_input_they_show(self):
         with Viewer(size="640x480", spp=1000) as viewer, Client(viewer) as client:
             client.picture()

@@ -61,6 +61,18 @@ TEST_CASE("the size while moving is the largest that keeps the frame rate, on ma
     }
 }
 
+TEST_CASE("the first frame is small on every machine, and the second as large as the machine allows") {
+    for (const double full_s : {0.001, 0.5, 20.0}) {
+        CAPTURE(full_s);
+        FramePace pace(0.12);
+        CHECK(frame_time(full_s, pace.scale()) < 0.1);
+        pace.took(pace.scale(), frame_time(full_s, pace.scale()));
+        const float second = pace.scale();
+        for (int i = 0; i < 20; ++i) pace.took(pace.scale(), frame_time(full_s, pace.scale()));
+        CHECK(pace.scale() == second);
+    }
+}
+
 TEST_CASE("a scene that takes its time to move leaves less for the picture, and what cannot be kept is said") {
     const auto settled = [](double full_s, double beside_s) {
         FramePace pace(0.12);
