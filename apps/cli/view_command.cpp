@@ -133,6 +133,18 @@ Pose start_pose(const PictureRecord& record, FrameSource& source, float scene_si
     return pose_of(camera, record.camera.target, record.camera.up, distance);
 }
 
+/// Of the GPU that renders; null where pictures are packed by the CPU.
+std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
+    if (flags.jpeg == "cpu") return nullptr;
+    try {
+        Messages said_already;
+        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, said_already);
+        return queue->is_cuda() ? std::move(queue) : nullptr;
+    } catch (const Error&) { // it has no room for two
+        return nullptr;
+    }
+}
+
 /// Once it is asked to end, the program ends in any case: nothing would be lost.
 void end_soon() {
     std::thread([] {
@@ -180,8 +192,7 @@ int view(const ViewFlags& flags) {
     start.speed = 0.12f * size;
     start.camera.pose = start_pose(start.record, source, size);
     let_time_move(flags, *ready, start);
-    std::unique_ptr<Queue> jpeg_queue;
-    if (on_cuda && flags.jpeg == "auto") jpeg_queue = choose_device(flags.render.machine.device, reporter.messages());
+    const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
     reporter.set_work("waiting for somebody to look");
     end_soon();
     run_viewer(
