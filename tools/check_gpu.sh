@@ -2,14 +2,14 @@
 # Everything that touches device code, on a machine with a GPU, in one go:
 #   tools/check_gpu.sh BIN SCENES [PART ...]
 # BIN is the folder of pertev and pertev_tests (build/bin, or a bundle of tools/make_portable.sh), SCENES the folder of the
-# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench; all without any. Exits 1
-# when something failed.
+# public test scenes (docs/scenes.md). Parts: tests, long, pictures, sanitizers, references, bench, viewer; all without any. Exits
+# 1 when something failed.
 set -uo pipefail
 bin=$1 scenes=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(tests long pictures sanitizers references bench)
+[ ${#parts[@]} -gt 0 ] || parts=(tests long pictures sanitizers references bench viewer)
 export PERTEV_SCENES=$scenes
 status=0
 
@@ -24,7 +24,7 @@ for part in "${parts[@]}"; do
     tests)
         files='*/consistency/*,*/watertight_test.cpp,*/ray_sets_test.cpp,*/glowing_room_test.cpp,*/path_parts_test.cpp'
         files+=',*/light_leak_test.cpp,*/meter_exposure_test.cpp,*/session_test.cpp,*/lamp_faces_test.cpp,*/hidden_back_test.cpp'
-        files+=',*/shadow_terminator_test.cpp,*/film_test.cpp,*/film_add_test.cpp,*/scene_on_device_test.cpp,*/predicted_bytes_test.cpp,*/queue_test.cpp,*/device_builder_test.cpp,*/structure_on_device_test.cpp'
+        files+=',*/shadow_terminator_test.cpp,*/film_test.cpp,*/film_add_test.cpp,*/scene_on_device_test.cpp,*/predicted_bytes_test.cpp,*/queue_test.cpp,*/device_builder_test.cpp,*/structure_on_device_test.cpp,*/viewer_frames_test.cpp'
         run "$bin/pertev_tests" --device cuda --source-file="$files"
         ;;
     long)
@@ -49,6 +49,10 @@ for part in "${parts[@]}"; do
         done
         run "$bin/pertev" bench
         run "$bin/pertev" bench rays --check
+        ;;
+    viewer) # nvJPEG is found in the bundle's lib/, too (the file libnvjpeg.so.13 of PyPI's nvidia-nvjpeg), or by LD_LIBRARY_PATH
+        run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj"
+        run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj" --size 3840x2160 --most 200
         ;;
     *) echo "no such part: $part" && status=1 ;;
     esac

@@ -10,6 +10,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_flags.h"
 #include "base/limits.h"
 #include "device/device_timer.h"
@@ -26,12 +27,10 @@ namespace {
 struct FramesFlags {
     RenderFlags render;
     uint32_t frames = 60;
-    bool still = false, sample_order = false;
+    bool still = false;
     ReconstructionFlags reconstruction;
     std::string write;
-    float resolution_scale = 1;
-    uint32_t reference = 0, restir_history = RestirSettings{}.history;
-    std::string restir{name_of(RestirLight::Off)};
+    uint32_t reference = 0;
 };
 
 /// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
@@ -60,12 +59,8 @@ struct FrameFigures {
 
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
-    ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
-    settings.resolution_scale = flags.resolution_scale;
-    settings.orders_samples = flags.sample_order;
-    RestirSettings restir;
-    restir.light = restir_named(flags.restir).value();
-    restir.history = flags.restir_history;
+    const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
+    const RestirSettings restir = restir_settings(flags.reconstruction);
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction;
     FrameFigures figures;
@@ -141,7 +136,7 @@ int bench_frames(const FramesFlags& flags) {
         reporter.event(fmt::format(
             R"({{"event":"frames","scene":{},"device":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"restir":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
             json_string(flags.render.scene.scene), json_string(queue->device_name()), settings.width, settings.height,
-            flags.render.max_depth, flags.frames, flags.still, json_string(flags.restir),
+            flags.render.max_depth, flags.frames, flags.still, json_string(flags.reconstruction.restir),
             json_number(figures.whole.median), json_number(figures.whole.least), json_number(figures.whole.greatest),
             json_number(figures.reconstruction.median), rays_a_second, part(&Likeness::flip),
             part(&Likeness::flip_of_sample), part(&Likeness::rel_mse), part(&Likeness::rel_mse_of_sample),
@@ -152,9 +147,10 @@ int bench_frames(const FramesFlags& flags) {
                                 "frame (median; {:.3f} to {:.3f}), "
                                 "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
                                 flags.render.scene.scene, queue->device_name(), settings.width, settings.height,
-                                flags.render.max_depth, flags.frames, flags.still ? "still" : "moving", flags.restir,
-                                figures.whole.median * 1e3, figures.whole.least * 1e3, figures.whole.greatest * 1e3,
-                                1 / figures.whole.median, figures.reconstruction.median * 1e3, rays_a_second, hash));
+                                flags.render.max_depth, flags.frames, flags.still ? "still" : "moving",
+                                flags.reconstruction.restir, figures.whole.median * 1e3, figures.whole.least * 1e3,
+                                figures.whole.greatest * 1e3, 1 / figures.whole.median,
+                                figures.reconstruction.median * 1e3, rays_a_second, hash));
     if (likeness) {
         reporter.answer(fmt::format(
             "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; relMSE {:.4f} and {:.4f}; "
@@ -181,24 +177,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->check(whole_between(1, 100000))
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
-    verb.add_flag("--sample-order", flags->sample_order,
-                  "draw samples so that errors are blue noise over the picture and\nover time");
-    add_reconstruction_flags(verb, flags->reconstruction);
-    verb.add_option("--restir", flags->restir,
-                    "light that pixels share: off, di (what lights send to the\nfirst surface), gi (what its "
-                    "surroundings send there, too)")
-        ->type_name("NAME")
-        ->check(one_of(restir_names()))
-        ->capture_default_str();
-    verb.add_option("--restir-history", flags->restir_history, "frames that it takes from the ones before for at most")
-        ->type_name("N")
-        ->check(whole_between(0, 1024))
-        ->capture_default_str();
-    verb.add_option("--resolution-scale", flags->resolution_scale,
-                    "find light at a lower resolution, by this factor of each side;\nedges and textures stay")
-        ->type_name("X")
-        ->check(number_between(0.1f, 1.0f))
-        ->capture_default_str();
+    add_reconstruction_flags(verb, flags->reconstruction, "Reconstruction");
     verb.add_option("--reference", flags->reference,
                     "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")
         ->type_name("SPP")

@@ -61,31 +61,4 @@ void refuse_flags_before(const CLI::App& verb) {
     }
 }
 
-void add_reconstruction_flags(CLI::App& verb, ReconstructionFlags& flags) {
-    verb.add_flag("--no-reconstruction", flags.none, "show the samples as they are");
-    verb.add_flag("--no-firefly-limit", flags.no_firefly_limit, "samples stay as bright as they are");
-    verb.add_flag("--no-history-limit", flags.no_history_limit, "means are not held within what recent frames say");
-    verb.add_flag("--no-follow-light", flags.no_follow_light,
-                  "where the scene moves: means are not changed as light has");
-    verb.add_flag("--no-anti-alias", flags.no_anti_alias, "no mean of shown pictures over time");
-    verb.add_option("--history", flags.settings.history, "frames of a mean at most")
-        ->type_name("N")
-        ->check(whole_between(1, 1024))
-        ->capture_default_str();
-    verb.add_option("--passes", flags.settings.passes, "of the wavelet filter")
-        ->type_name("N")
-        ->check(whole_between(0, 8))
-        ->capture_default_str();
-}
-
-ReconstructionSettings reconstruction_settings(const ReconstructionFlags& flags) {
-    if (flags.none) return {1, 0, false, false, false, false};
-    ReconstructionSettings settings = flags.settings;
-    settings.limit_fireflies = !flags.no_firefly_limit;
-    settings.limit_history = !flags.no_history_limit;
-    settings.follow_light = !flags.no_follow_light;
-    settings.anti_alias = !flags.no_anti_alias;
-    return settings;
-}
-
 } // namespace pertev

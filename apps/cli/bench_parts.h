@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "apps/cli/render_flags.h"
-#include "denoise/reconstruction_settings.h"
 #include "device/queue.h"
 #include "render/prepare_scene.h"
 
@@ -52,15 +51,6 @@ struct BenchedScene {
 /// The device, then the scene that flags name, seen and lit as they say, with its trees. Says what there is to say on
 /// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
 std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Reporter& reporter);
-
-/// Of how frames are reconstructed; all that is biased can be switched off.
-struct ReconstructionFlags {
-    ReconstructionSettings settings;
-    bool none = false;
-    bool no_firefly_limit = false, no_history_limit = false, no_anti_alias = false, no_follow_light = false;
-};
-void add_reconstruction_flags(CLI::App& verb, ReconstructionFlags& flags);
-ReconstructionSettings reconstruction_settings(const ReconstructionFlags& flags);
 
 /// Throws Error(BadInput) for a flag of `bench` itself before the name of this verb of it, which would not see it.
 void refuse_flags_before(const CLI::App& verb);

@@ -13,6 +13,7 @@
 #include "apps/cli/parse_values.h"
 #include "apps/cli/pfm_file.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "base/limits.h"
 #include "image/flip.h"
@@ -104,6 +105,7 @@ Rgba8Image strip_of(const std::vector<Rgba8Image>& pictures) {
 Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
                ToneMap tone_map, Reporter& reporter) {
     const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
+    const RestirSettings restir = restir_settings(flags.reconstruction);
     Scores scores;
     if (!flags.peer.empty()) scores.peer.emplace();
     const FrameCamera camera = {*ready.camera, ready.sequence};
@@ -115,7 +117,7 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         go_to(ready.sequence.time_of(frame), *ready.moving, session, reporter.messages());
         place_frame(frame, ready.scene(), camera, record);
         session.set_camera(record.camera.camera);
-        session.render_frame(number, settings);
+        session.render_frame(number, settings, restir);
         const Image ours = session.frame().picture();
         const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
         if (!flags.write_frames.empty()) {
@@ -216,7 +218,7 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
     add_light_path_flags(verb, flags->render, "Picture");
     verb.remove_option(verb.get_option("--spp")); // a frame has one
     verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
-    add_reconstruction_flags(verb, flags->reconstruction);
+    add_reconstruction_flags(verb, flags->reconstruction, "Reconstruction");
     verb.add_option("--reference", flags->reference,
                     "compare each frame with a picture of so many samples, by HDR-FLIP;\nits errors' mean change from "
                     "frame to frame is the flicker")

@@ -17,6 +17,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
@@ -35,9 +36,11 @@ constexpr auto kLongestEnd = std::chrono::milliseconds(800); // from Ctrl-C to t
 
 struct ViewFlags {
     RenderFlags render;
+    ReconstructionFlags reconstruction;
     std::string host = "127.0.0.1";
     uint32_t port = 8080;
     bool no_browser = false;
+    std::string jpeg = "auto";
 };
 
 bool is_this_machine_alone(const std::string& host) {
@@ -130,6 +133,18 @@ Pose start_pose(const PictureRecord& record, FrameSource& source, float scene_si
     return pose_of(camera, record.camera.target, record.camera.up, distance);
 }
 
+/// Of the GPU that renders; null where pictures are packed by the CPU.
+std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
+    if (flags.jpeg == "cpu") return nullptr;
+    try {
+        Messages said_already;
+        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, said_already);
+        return queue->is_cuda() ? std::move(queue) : nullptr;
+    } catch (const Error&) { // it has no room for two
+        return nullptr;
+    }
+}
+
 /// Once it is asked to end, the program ends in any case: nothing would be lost.
 void end_soon() {
     std::thread([] {
@@ -163,6 +178,11 @@ int view(const ViewFlags& flags) {
     start.view.finds_exposure = flags.render.exposure.empty() || flags.render.exposure == "auto";
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
+    start.view.is_reconstructed = !flags.reconstruction.none;
+    ReconstructionFlags asked = flags.reconstruction;
+    asked.none = false; // so that the panel's denoiser brings them back
+    start.view.reconstruction = reconstruction_settings(asked);
+    start.view.restir = restir_settings(asked);
     if (start.view.finds_exposure) {
         source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
         start.view.display.exposure_stops = 0;
@@ -172,10 +192,11 @@ int view(const ViewFlags& flags) {
     start.speed = 0.12f * size;
     start.camera.pose = start_pose(start.record, source, size);
     let_time_move(flags, *ready, start);
+    const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
     reporter.set_work("waiting for somebody to look");
     end_soon();
     run_viewer(
-        {.host = flags.host, .port = static_cast<uint16_t>(flags.port)}, start, source,
+        {.host = flags.host, .port = static_cast<uint16_t>(flags.port), .jpeg_queue = jpeg_queue.get()}, start, source,
         [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
     reporter.event(R"({"event":"done"})");
     return 0;
@@ -198,8 +219,14 @@ void add_view_command(CLI::App& app, int& status) {
         ->check(file_name())
         ->capture_default_str()
         ->group(group);
+    verb.add_option("--jpeg", flags->jpeg, "who packs pictures: auto (a GPU that renders, where nvJPEG is\nfound), cpu")
+        ->type_name("NAME")
+        ->check(one_of({"auto", "cpu"}))
+        ->capture_default_str()
+        ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
     add_shown_picture_flags(verb, flags->render);
+    add_reconstruction_flags(verb, flags->reconstruction, "While the view moves");
     add_time_flags(verb, flags->render, true);
     add_report_flags(verb, flags->render.report);
     verb.callback([flags, &status] { status = view(*flags); });

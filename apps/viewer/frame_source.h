@@ -39,6 +39,8 @@ struct ShownFrame {
     RayCounts rays;                           // traced for it
     double render_s = 0;                      // of these rays
     float scale = 1;                          // of the full size
+    double kept_rate = 0;                     // frames a second that this scale was chosen for; 0: it was asked for
+    bool keeps_rate = true;                   // by frames before; false: no scale is small enough
     StageTimes stages;
 };
 
@@ -48,6 +50,7 @@ struct PickedPoint {
     float distance = 0; // from the eye, metres
     Vec3 position, normal;
     Rgb albedo;
+    std::optional<Rgb> light; // of the pixel, linear, where the picture at rest is there
 };
 
 class FrameSource {

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "apps/viewer/client_message.h"
+#include "apps/viewer/view_state.h"
 
 namespace pertev {
 
@@ -40,7 +40,7 @@ class Inbox {
 public:
     static constexpr std::size_t kMost = 4096;
 
-    /// While commands wait that ask for another view, this flag is true. It outlives the inbox.
+    /// While commands wait that make the samples under way useless, this flag is true. It outlives the inbox.
     void raise(std::atomic<bool>& flag) { flag_ = &flag; }
 
     /// False where there is no room.
@@ -48,7 +48,7 @@ public:
         const std::lock_guard lock(mutex_);
         if (is_closed_ || commands_.size() >= kMost) return false;
         const Steer* steer = std::get_if<Steer>(&command);
-        if (flag_ != nullptr && steer != nullptr && moves_the_picture(steer->message.kind)) *flag_ = true;
+        if (flag_ != nullptr && steer != nullptr && begins_anew(steer->message)) *flag_ = true;
         commands_.push_back(std::move(command));
         there_is_more_.notify_one();
         return true;

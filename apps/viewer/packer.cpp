@@ -6,7 +6,6 @@
 
 #include "apps/viewer/panel_text.h"
 #include "base/stopwatch.h"
-#include "image/write_jpeg.h"
 #include "image/write_png.h"
 
 namespace pertev {
@@ -42,8 +41,9 @@ Rgba8Image shrunk(const Rgba8Image& picture, uint32_t factor) {
     return small;
 }
 
-Packer::Packer(Audience& audience, WebServer& server, std::function<double()> now_s)
-    : audience_(audience), server_(server), now_s_(std::move(now_s)), thread_([this] { run(); }) {}
+Packer::Packer(Audience& audience, WebServer& server, std::function<double()> now_s, Queue* jpeg_queue)
+    : audience_(audience), server_(server), now_s_(std::move(now_s)), jpeg_queue_(jpeg_queue),
+      thread_([this] { run(); }) {}
 
 Packer::~Packer() {
     is_ending_ = true;
@@ -51,6 +51,7 @@ Packer::~Packer() {
 }
 
 void Packer::run() {
+    JpegEncoder encoder(jpeg_queue_);
     while (!is_ending_) {
         const std::optional<SendJob> job = audience_.next_job(std::chrono::milliseconds(50));
         if (!job) continue;
@@ -58,7 +59,7 @@ void Packer::run() {
             server_.send_text(job->client, job->text);
         } else {
             try {
-                send_picture(*job);
+                send_picture(*job, encoder);
             } catch (const std::exception& error) { // above all no memory: the next one may fit again
                 audience_.tell(0, notice_text("error", error.what()));
                 std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -67,7 +68,7 @@ void Packer::run() {
     }
 }
 
-Bytes Packer::jpeg_of(const SendJob& job) {
+Bytes Packer::jpeg_of(const SendJob& job, JpegEncoder& encoder) {
     if (!jpegs_.empty() && jpegs_.front().number != job.picture->number) jpegs_.clear();
     for (const Packed& packed : jpegs_) {
         if (packed.quality == job.quality && packed.scale == job.scale) return packed.bytes;
@@ -77,8 +78,9 @@ Bytes Packer::jpeg_of(const SendJob& job) {
     const uint32_t factor = shrink_factor(job.scale);
     const bool half_chroma = job.quality < kFullColor;
     const auto bytes = std::make_shared<const std::vector<std::byte>>(
-        factor == 1 ? encode_jpeg_strips(image, job.quality, half_chroma)
-                    : encode_jpeg_strips(shrunk(image, factor), job.quality, half_chroma));
+        factor == 1 ? encoder.encode(image, job.quality, half_chroma)
+                    : encoder.encode(shrunk(image, factor), job.quality, half_chroma));
+    encoder_name_ = encoder.name();
     milliseconds_ = 1e3 * watch.seconds();
     bytes_ = bytes->size();
     jpegs_.push_back({job.picture->number, job.quality, job.scale, bytes});
@@ -93,9 +95,9 @@ Bytes Packer::png_of(const SendJob& job) {
     return png_.bytes;
 }
 
-void Packer::send_picture(const SendJob& job) {
+void Packer::send_picture(const SendJob& job, JpegEncoder& encoder) {
     const ShownFrame& frame = job.picture->frame;
-    const Bytes packed = job.is_piece ? png_of(job) : jpeg_of(job);
+    const Bytes packed = job.is_piece ? png_of(job) : jpeg_of(job, encoder);
     const std::size_t left = packed->size() - job.offset, count = job.is_piece ? std::min(job.piece_bytes, left) : left;
     FrameHeader header;
     header.kind = job.is_piece ? PictureKind::Piece : PictureKind::Jpeg;

@@ -10,14 +10,15 @@
 #include <vector>
 
 #include "apps/viewer/audience.h"
+#include "apps/viewer/jpeg_encoder.h"
 #include "apps/viewer/web_server.h"
 
 namespace pertev {
 
 class Packer {
 public:
-    /// Both outlive it. `now_s`: seconds of the clock that the audience is told.
-    Packer(Audience& audience, WebServer& server, std::function<double()> now_s);
+    /// All outlive it. `now_s`: seconds of the clock that the audience is told. `jpeg_queue`: as JpegEncoder.
+    Packer(Audience& audience, WebServer& server, std::function<double()> now_s, Queue* jpeg_queue);
     /// Ends the thread.
     ~Packer();
     Packer(const Packer&) = delete;
@@ -26,16 +27,19 @@ public:
     /// Of the last JPEG.
     double milliseconds() const { return milliseconds_; }
     std::size_t bytes() const { return bytes_; }
+    /// Which encoder made it.
+    const char* encoder() const { return encoder_name_; }
 
 private:
     void run();
-    void send_picture(const SendJob& job);
-    std::shared_ptr<const std::vector<std::byte>> jpeg_of(const SendJob& job);
+    void send_picture(const SendJob& job, JpegEncoder& encoder);
+    std::shared_ptr<const std::vector<std::byte>> jpeg_of(const SendJob& job, JpegEncoder& encoder);
     std::shared_ptr<const std::vector<std::byte>> png_of(const SendJob& job);
 
     Audience& audience_;
     WebServer& server_;
     std::function<double()> now_s_;
+    Queue* jpeg_queue_;
     struct Packed {
         uint32_t number = 0;
         int quality = 0;
@@ -46,6 +50,7 @@ private:
     Packed png_;
     std::atomic<double> milliseconds_{0};
     std::atomic<std::size_t> bytes_{0};
+    std::atomic<const char*> encoder_name_{""};
     std::atomic<bool> is_ending_{false};
     std::thread thread_;
 };

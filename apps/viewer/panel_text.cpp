@@ -34,11 +34,13 @@ std::string settings_json() {
     for (const ViewSetting& setting : view_settings()) {
         std::string choices;
         for (const std::string& choice : setting.choices) append(choices, json_string(choice));
-        append(list,
-               fmt::format(
-                   R"({{"name":"{}","label":{},"group":{},"kind":"{}","choices":[{}],"low":{},"high":{},"step":{}}})",
-                   setting.name, json_string(setting.label), json_string(setting.group), name_of(setting.kind), choices,
-                   json_number(setting.low), json_number(setting.high), json_number(setting.step)));
+        append(
+            list,
+            fmt::format(
+                R"({{"name":"{}","label":{},"group":{},"hint":{},"kind":"{}","choices":[{}],"low":{},"high":{},"step":{}}})",
+                setting.name, json_string(setting.label), json_string(setting.group), json_string(setting.hint),
+                name_of(setting.kind), choices, json_number(setting.low), json_number(setting.high),
+                json_number(setting.step)));
     }
     return list;
 }
@@ -72,6 +74,12 @@ constexpr NumberRow kRows[] = {
      [](const ViewState&, const ViewNumbers& n) {
          return n.frames_per_second > 0 ? fmt::format("{:.1f} a second", n.frames_per_second) : "";
      }},
+    {"Frames", "size chosen for",
+     [](const ViewState&, const ViewNumbers& n) {
+         if (n.frame->kept_rate == 0) return std::string();
+         return fmt::format("{:.0f} a second{}", n.frame->kept_rate,
+                            n.frame->keeps_rate ? "" : ", not reached: the smallest size");
+     }},
     {"Rays", "camera", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.camera, n); }},
     {"Rays", "bounce", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.bounce, n); }},
     {"Rays", "shadow", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.shadow, n); }},
@@ -93,6 +101,7 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     }
     append(rows, row_json("Stages", "pack",
                           fmt::format("{:.1f} ms, {} KiB", numbers.pack_ms, (numbers.packed_bytes + 1023) / 1024)));
+    append(rows, row_json("Stages", "packed by", numbers.encoder));
     return rows;
 }
 
@@ -173,6 +182,9 @@ std::string picked_text(const Scene& scene, const PickedPoint* point, float x, f
     row("distance", fmt::format("{:.4g} m", point->distance));
     row("position", text(point->position));
     row("normal", text(point->normal));
+    if (point->light) {
+        row("light", fmt::format("{:.3g}, {:.3g}, {:.3g}", point->light->r, point->light->g, point->light->b));
+    }
     row("albedo", fmt::format("{:.3g}, {:.3g}, {:.3g}", point->albedo.r, point->albedo.g, point->albedo.b));
     return fmt::format(R"({{"type":"picked",{},"position":{},"rows":[{}]}})", place, json_of(point->position), rows);
 }

@@ -18,6 +18,7 @@ struct ViewNumbers {
     double frames_per_second = 0;
     double pack_ms = 0;
     std::size_t packed_bytes = 0;
+    const char* encoder = "";         // that packed them
     std::string phase;                // "moving", "gathering", "done"
     std::string flags;                // of the camera and the time
     uint32_t input = 0, steerer = 0;  // the last input that all this knows of, and the client that it came from

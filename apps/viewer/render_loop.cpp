@@ -69,7 +69,8 @@ void RenderLoop::handle(const Command& command) {
     is_new_ = true;
     if (const Steer* asked = std::get_if<Steer>(&command)) return steer(*asked);
     if (const Save* save = std::get_if<Save>(&command)) return saves_.push_back(*save);
-    is_done_ = false; // somebody came: shows the present picture again
+    is_done_ = false;                   // somebody came: shows the present picture again
+    if (!last_) moved_at_s_ = now_s_(); // or a small one at once: a sample of a large picture may take long
 }
 
 void RenderLoop::steer(const Steer& asked) {
@@ -213,6 +214,8 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
         audience_.tell(0, notice_text("error", error.what()));
         const ViewState failed = std::exchange(view_, shown_);
         view_.display = failed.display;
+        // What was set at rest is first asked for by a frame of the movement.
+        if (failed.restir == shown_.restir) view_.restir.light = RestirLight::Off;
         tell_state();
         return std::nullopt;
     }
@@ -300,6 +303,7 @@ void RenderLoop::tell_state() {
     numbers.frames_per_second = is_done_ ? 0 : frames_per_second_;
     numbers.pack_ms = packer_.milliseconds();
     numbers.packed_bytes = packer_.bytes();
+    numbers.encoder = packer_.encoder();
     numbers.phase = is_done_ ? "done" : (is_moving() ? "moving" : "gathering");
     numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : std::nullopt);
     numbers.input = input_;

@@ -49,6 +49,12 @@ bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 /// Of the reconstruction, so that they are there only with it.
 bool is_reconstructed(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
 
+/// Whether a frame of the movement is one of the session's sequence (Session::render_frame), as all are that ask for
+/// more than samples.
+bool is_of_sequence(const ViewState& view) {
+    return view.is_reconstructed || view.restir.light != RestirLight::Off || view.reconstruction.resolution_scale < 1;
+}
+
 bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
@@ -190,15 +196,23 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     const bool goes_on = std::exchange(shows_reconstruction_, false);
     const uint32_t width_before = session_.settings().width;
     use(settings_for(request, scale));
-    const bool is_still =
-        session_.camera() == request.camera && goes_on && update_s == 0 && session_.settings().width == width_before;
+    const bool shows_layer = is_reconstructed(request.view.layer);
+    const ViewState& view = request.view;
+    ReconstructionSettings settings =
+        view.is_reconstructed ? view.reconstruction : of_samples_alone(view.reconstruction);
+    settings.keep_layers = shows_layer;
+    const bool is_alike = settings == reconstruction_settings_ && view.restir == restir_settings_;
+    const bool is_still = session_.camera() == request.camera && goes_on && update_s == 0 &&
+                          session_.settings().width == width_before && is_alike;
+    reconstruction_settings_ = settings;
+    restir_settings_ = view.restir;
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
-    const bool shows_layer = is_reconstructed(request.view.layer);
-    session_.render_frame(next_sample_, {.keep_layers = shows_layer});
+    session_.render_frame(next_sample_, settings, view.restir);
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
+    shows_film_ = false;
     shows_layer_ = shows_layer;
     reconstruction_.pixels.clear();
     ShownFrame frame;
@@ -222,8 +236,15 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     frame.scale = scale;
     frame.samples = still_frames_;
     frame.is_final = shows_layer && !request.is_moving && still_frames_ >= kFramesOfLayer;
-    pace_.took(scale, whole.seconds());
+    pace_.took(scale, whole.seconds(), update_s);
+    tell_pace(request, frame);
     return frame;
+}
+
+void SessionFrames::tell_pace(const FrameRequest& request, ShownFrame& frame) const {
+    if (request.view.moving_scale > 0) return;
+    frame.kept_rate = 1 / pace_.frame_s();
+    frame.keeps_rate = pace_.keeps_rate();
 }
 
 const std::string& SessionFrames::film_hash() {
@@ -256,9 +277,10 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const bool is_small = request.is_moving || request.view.is_real_time;
     const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
     if (is_reconstructed(request.view.layer)) return reconstruct(request, scale);
-    if (is_small && is_beauty(request.view.layer) && request.view.is_reconstructed) return reconstruct(request, scale);
-    update_s_ = 0;
-    const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer);
+    if (is_small && is_beauty(request.view.layer) && is_of_sequence(request.view)) return reconstruct(request, scale);
+    const double update_s = std::exchange(update_s_, 0);
+    const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer) &&
+                          request.view.is_reconstructed;
     if (competes && reconstruction_.pixels.empty()) { // before another size forgets it
         ShownFrame frame;
         expose(request, frame);
@@ -297,7 +319,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     frame.full_width = request.view.picture.width;
     frame.full_height = request.view.picture.height;
     frame.scale = scale;
-    frame.is_reference = !is_small && is_beauty(request.view.layer);
+    shows_film_ = frame.is_reference = !is_small && is_beauty(request.view.layer);
     frame.is_final = !is_small && frame.samples >= wanted;
     frame.stages = {{"render", 1e3 * frame.render_s}, {"tone map", 1e3 * display_s}};
     if (frame.is_reference) {
@@ -305,7 +327,8 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
         frame.hash = film_hash();
         frame.stages.emplace_back("hash", 1e3 * hash.seconds());
     }
-    if (is_small && !was_begun) pace_.took(scale, whole.seconds());
+    if (is_small && !was_begun) pace_.took(scale, whole.seconds(), update_s);
+    if (is_small) tell_pace(request, frame);
     return frame;
 }
 
@@ -321,6 +344,15 @@ std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, fl
     settings.path.max_depth = 0;
     const RenderResult seen = session_.look_aside(camera_through(camera, aspect, x, y), settings);
     if (seen.ids.empty() || seen.ids.front().instance == kNoHit) return std::nullopt;
+    std::optional<Rgb> light;
+    if (shows_film_ && session_.camera() == camera) {
+        const Image film = session_.picture();
+        const auto place = [](float share, uint32_t side) {
+            return std::min(static_cast<uint32_t>(share * static_cast<float>(side)), side - 1);
+        };
+        const float* const values = film.at(place(x, film.width), place(y, film.height));
+        light = {values[0], values[1], values[2]};
+    }
     PickedPoint picked = {.instance = seen.ids.front().instance,
                           .primitive = seen.ids.front().primitive,
                           .material = seen.ids.front().material};
@@ -330,6 +362,7 @@ std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, fl
     picked.normal = {normal[0], normal[1], normal[2]};
     picked.position = {position[0], position[1], position[2]};
     picked.distance = values("depth")[0];
+    picked.light = light;
     return picked;
 }
 

@@ -30,6 +30,7 @@ public:
 private:
     ShownFrame reconstruct(const FrameRequest& request, float scale);
     RenderSettings settings_for(const FrameRequest& request, float scale);
+    void tell_pace(const FrameRequest& request, ShownFrame& frame) const;
     void use(const RenderSettings& settings);
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
     Rgba8Image show_layer(const FrameRequest& request, ShownFrame& frame);
@@ -44,10 +45,13 @@ private:
     double update_s_ = 0;    // of the scene, since the last frame
     FramePace pace_;
     std::atomic<bool> abandon_{false};
+    ReconstructionSettings reconstruction_settings_; // of the last frame
+    RestirSettings restir_settings_;
     uint32_t next_sample_ = 0;  // of the frames in real time
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
     bool shows_reconstruction_ = false;
     bool shows_layer_ = false;  // of it
+    bool shows_film_ = false;   // the last picture was that at rest
     Rgba8Image reconstruction_; // the last, as it is shown; empty while nothing competes with it
     Rgba8Image half_;           // the picture at rest that is not shown yet, at half_samples_ of its samples
     uint32_t half_samples_ = 0;

@@ -20,6 +20,10 @@ using Kind = ViewSetting::Kind;
 constexpr const char* kLayers[] = {"picture",   "albedo",      "normal",          "depth",  "instances", "triangles",
                                    "materials", "heat: nodes", "heat: triangles", "motion", "deviation"};
 
+/// Settings after which samples gather anew.
+constexpr std::string_view kOfSamples[] = {"layer",    "integrator", "max_depth", "mode", "fov",
+                                           "aperture", "focus",      "structure", "walk", "rta"};
+
 constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
 constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
 
@@ -92,17 +96,18 @@ std::string set_rta(ViewState& state, const std::string& name) {
 
 std::vector<ViewSetting> make_settings() {
     std::vector<ViewSetting> all;
-    const auto choice = [&](const char* name, const char* label, const char* group, std::vector<std::string> choices,
-                            auto get, auto set) {
-        all.push_back({name, label, group, Kind::Choice, std::move(choices), 0, 0, 1,
+    const auto choice = [&](const char* name, const char* label, const char* group, const char* hint,
+                            std::vector<std::string> choices, auto get, auto set) {
+        all.push_back({name, label, group, hint, Kind::Choice, std::move(choices), 0, 0, 1,
                        [get](const ViewState& s) { return SettingValue(std::string(get(s))); },
                        [set](ViewState& s, const SettingValue& v) { return set(s, text_of(v)); }});
     };
-    const auto numeric = [&](const char* name, const char* label, const char* group, Kind kind, double low, double high,
-                             double step, auto get, auto set) {
+    const auto numeric = [&](const char* name, const char* label, const char* group, const char* hint, Kind kind,
+                             double low, double high, double step, auto get, auto set) {
         all.push_back({name,
                        label,
                        group,
+                       hint,
                        kind,
                        {},
                        low,
@@ -116,13 +121,17 @@ std::vector<ViewSetting> make_settings() {
     };
 
     choice(
-        "layer", "Show", "Picture", strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
+        "layer", "Show", "Picture",
+        "The picture, or something else of each pixel, in colours of its own. Heat: how much its camera ray had to "
+        "test",
+        strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
         [](ViewState& s, const std::string& name) {
             s.layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
             return std::string();
         });
     choice(
-        "exposed", "Exposure", "Picture", {"auto", "fixed"},
+        "exposed", "Exposure", "Picture",
+        "auto: a light meter finds how bright the picture is shown; fixed: the stops below alone do", {"auto", "fixed"},
         [](const ViewState& s) { return s.finds_exposure ? "auto" : "fixed"; },
         [](ViewState& s, const std::string& name) {
             const bool finds = name == "auto";
@@ -132,47 +141,71 @@ std::vector<ViewSetting> make_settings() {
             return std::string();
         });
     numeric(
-        "exposure", "Stops", "Picture", Kind::Number, -60, 60, 0.25,
+        "exposure", "Stops", "Picture",
+        "A stop more is twice the light. Where the exposure is auto, it is added to that", Kind::Number, -60, 60, 0.25,
         [](const ViewState& s) { return s.display.exposure_stops; },
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
     choice(
-        "tone_map", "Tone map", "Picture", tone_map_names(),
+        "tone_map", "Tone map", "Picture", "How light becomes the colours of a screen", tone_map_names(),
         [](const ViewState& s) { return name_of(s.display.tone_map); },
         [](ViewState& s, const std::string& name) {
             s.display.tone_map = *tone_map_named(name);
             return std::string();
         });
     choice(
-        "integrator", "Light", "Light", integrator_names(),
+        "integrator", "Light", "Light",
+        "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on", integrator_names(),
         [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
             set_integrator(s.picture, name);
             return std::string();
         });
     numeric(
-        "max_depth", "Scatterings, at most", "Light", Kind::Whole, 0, kMaxPathDepth - 1, 1,
-        [](const ViewState& s) { return s.picture.path.max_depth; },
+        "max_depth", "Scatterings, at most", "Light", "How often light is scattered at most on its way to the camera",
+        Kind::Whole, 0, kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
         [](ViewState& s, float v) { s.picture.path.max_depth = static_cast<uint32_t>(v); });
     numeric(
-        "spp", "Samples a pixel", "Light", Kind::Whole, 1, kMaxSamplesPerPixel, 1,
-        [](const ViewState& s) { return s.picture.samples; },
+        "spp", "Samples a pixel", "Light",
+        "At rest, each pixel is the mean of so many paths. Four times as many halve the noise", Kind::Whole, 1,
+        kMaxSamplesPerPixel, 1, [](const ViewState& s) { return s.picture.samples; },
         [](ViewState& s, float v) { s.picture.samples = static_cast<uint32_t>(v); });
     choice(
-        "mode", "At rest", "Frames", {"reference", "real time"},
-        [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
+        "mode", "At rest", "Frames",
+        "reference: samples gather until the picture is that of pertev render; real time: as while moving",
+        {"reference", "real time"}, [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
         [](ViewState& s, const std::string& name) {
             s.is_real_time = name == "real time";
             return std::string();
         });
     choice(
-        "denoiser", "Denoiser while moving", "Frames", {"svgf", "off"},
+        "denoiser", "Denoiser while moving", "Frames",
+        "svgf: frames are filtered and keep what those before have seen; off: they are their samples", {"svgf", "off"},
         [](const ViewState& s) { return s.is_reconstructed ? "svgf" : "off"; },
         [](ViewState& s, const std::string& name) {
             s.is_reconstructed = name == "svgf";
             return std::string();
         });
     choice(
-        "moving_scale", "Size while moving", "Frames", strings(kScales),
+        "restir", "ReSTIR: light that pixels share", "Frames",
+        "di: light of lamps is drawn together with neighbours and frames before, gi: that of surfaces, too. Helps "
+        "where there are many lamps, and takes time",
+        restir_names(), [](const ViewState& s) { return name_of(s.restir.light); },
+        [](ViewState& s, const std::string& name) {
+            s.restir.light = *restir_named(name);
+            return std::string();
+        });
+    numeric(
+        "restir_history", "Frames that share it, at most", "Frames",
+        "Fewer: light and shadows that move are followed sooner, with more noise", Kind::Whole, 0, 1024, 1,
+        [](const ViewState& s) { return s.restir.history; },
+        [](ViewState& s, float v) { s.restir.history = static_cast<uint32_t>(v); });
+    numeric(
+        "resolution_scale", "Resolution of light, a side", "Frames",
+        "Under 1, light is found for fewer pixels, which is faster. Edges and textures stay as they are", Kind::Number,
+        0.1, 1, 0.05, [](const ViewState& s) { return s.reconstruction.resolution_scale; },
+        [](ViewState& s, float v) { s.reconstruction.resolution_scale = v; });
+    choice(
+        "moving_scale", "Size while moving", "Frames", "automatic: as large as the frame rate allows", strings(kScales),
         [](const ViewState& s) {
             return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
         },
@@ -181,25 +214,29 @@ std::vector<ViewSetting> make_settings() {
             return std::string();
         });
     numeric(
-        "fov", "Angle of view, degrees", "Camera", Kind::Number, 0.01, 179, 1,
-        [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
+        "fov", "Angle of view, degrees", "Camera", "From the lower to the upper edge of the picture", Kind::Number,
+        0.01, 179, 1, [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
         [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
     numeric(
-        "aperture", "Radius of the lens, m", "Camera", Kind::Number, 0, 1e6, 0.005,
+        "aperture", "Radius of the lens, m", "Camera",
+        "0: all is sharp. The larger, the more is blurred that is not in focus", Kind::Number, 0, 1e6, 0.005,
         [](const ViewState& s) { return s.lens.aperture_radius; },
         [](ViewState& s, float v) { s.lens.aperture_radius = v; });
     numeric(
-        "focus", "Distance in focus, m", "Camera", Kind::Number, 1e-6, 1e9, 0.1,
-        [](const ViewState& s) { return s.lens.focus_distance; },
+        "focus", "Distance in focus, m", "Camera", "How far away things are sharp. Alt-click sets it", Kind::Number,
+        1e-6, 1e9, 0.1, [](const ViewState& s) { return s.lens.focus_distance; },
         [](ViewState& s, float v) { s.lens.focus_distance = v; });
     choice(
-        "structure", "Structure", "Rays (the picture stays the same)", names_of(all_structures()),
+        "structure", "Structure", "Rays (the picture stays the same)",
+        "How triangles are kept so that rays find them. Another one is faster or slower", names_of(all_structures()),
         [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
     choice(
-        "walk", "Walk", "Rays (the picture stays the same)", names_of(all_walks()),
+        "walk", "Walk", "Rays (the picture stays the same)",
+        "How rays go through the structure. Another one is faster or slower", names_of(all_walks()),
         [](const ViewState& s) { return name_of(shown_combination(s).walk); }, set_walk);
     choice(
-        "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)", {"on", "nodes", "off"},
+        "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)",
+        "Rays skip what lies behind the nearest hit so far. Off: they go through it all", {"on", "nodes", "off"},
         [](const ViewState& s) { return name_of_rta(shown_combination(s).options); }, set_rta);
     return all;
 }
@@ -228,6 +265,11 @@ const char* name_of(ShownLayer layer) { return kLayers[static_cast<std::size_t>(
 const std::vector<ViewSetting>& view_settings() {
     static const std::vector<ViewSetting> all = make_settings();
     return all;
+}
+
+bool begins_anew(const ClientMessage& message) {
+    if (message.kind != MessageKind::Set) return moves_the_picture(message.kind);
+    return std::ranges::find(kOfSamples, message.name) != std::end(kOfSamples);
 }
 
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value) {

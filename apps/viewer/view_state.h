@@ -8,6 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "apps/viewer/client_message.h"
+#include "denoise/reconstruction_settings.h"
+#include "restir/restir_settings.h"
 #include "session/picture_metadata.h"
 #include "session/render_settings.h"
 
@@ -35,9 +38,12 @@ struct ViewState {
     float found_stops = 0; // of the last picture
     Camera lens;           // angle of view, aperture, focus; its place is the pose's
     ShownLayer layer = ShownLayer::Beauty;
-    bool is_real_time = false;    // also at rest, pictures are those of the movement
-    bool is_reconstructed = true; // of the movement: by what frames before have seen (denoise/)
-    float moving_scale = 0;       // of the size while moving; 0: whatever keeps the frame rate
+    bool is_real_time = false; // also at rest, pictures are those of the movement
+    // Frames of the movement; none of this touches the picture at rest.
+    bool is_reconstructed = true; // by what frames before have seen (denoise/); else they are their samples
+    ReconstructionSettings reconstruction;
+    RestirSettings restir;
+    float moving_scale = 0; // of the size; 0: whatever keeps the frame rate
     bool on_cuda = false;
 };
 
@@ -49,6 +55,7 @@ struct ViewSetting {
     const char* name;
     const char* label;
     const char* group;
+    const char* hint; // for who does not know it
     Kind kind;
     std::vector<std::string> choices;   // of a Choice
     double low = 0, high = 0, step = 1; // of a number
@@ -59,6 +66,9 @@ struct ViewSetting {
 
 /// All settings, in the panel's order.
 const std::vector<ViewSetting>& view_settings();
+
+/// Whether this asks for a picture to which samples that are being rendered mean nothing.
+bool begins_anew(const ClientMessage& message);
 
 /// Sets one by its name. Empty where that was done; else why not, and nothing was done.
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);

@@ -77,7 +77,7 @@ void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSou
         Inbox& inbox;
         ~Closing() { inbox.close(); }
     } closing{inbox};
-    Packer packer(audience, server, now_s);
+    Packer packer(audience, server, now_s, options.jpeg_queue);
     RenderLoop loop(start, source, inbox, audience, packer, now_s);
     loop.run(goes_on);
 }

@@ -19,6 +19,7 @@ struct ViewerOptions {
     std::string host = "127.0.0.1";
     uint16_t port = 8080; // 0: any that is free
     WebLimits limits;
+    Queue* jpeg_queue = nullptr; // of a GPU, for nothing but packing pictures; outlives the viewer. Null: the CPU packs
 };
 
 /// What is looked at, and how it begins.

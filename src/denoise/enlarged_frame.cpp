@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "denoise/anti_alias.h"
+#include "denoise/sum_blocks.h"
 #include "device/launch.h"
 
 namespace pertev {
@@ -14,10 +15,12 @@ constexpr std::size_t kWideArrays = 3; // two shown pictures, and the one before
 EnlargedFrame::EnlargedFrame(Queue& queue, uint32_t width, uint32_t height)
     : queue_(&queue), width_(width), height_(height), wide_(queue, kWideArrays * width * height, "enlarged frame"),
       was_at_(queue, std::size_t(width) * height, "enlarged frame"),
-      picture_(wide_.data() + std::size_t(2) * width * height) {}
+      picture_(wide_.data() + std::size_t(2) * width * height),
+      tones_(queue, float4s_of_tones(width, height), "enlarged frame") {}
 
 std::size_t EnlargedFrame::predicted_bytes(uint32_t width, uint32_t height) {
-    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + sizeof(Vec2));
+    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + sizeof(Vec2)) +
+           float4s_of_tones(width, height) * sizeof(Float4);
 }
 
 Float4* EnlargedFrame::shown(uint32_t frame) const { return wide_.data() + frame % 2 * std::size_t(width_) * height_; }

@@ -27,6 +27,8 @@ public:
     const Float4* shown() const { return shown(frames_); }
     /// [pixels * 4]: room for what a display shows.
     uint8_t* room_for_bytes() const { return reinterpret_cast<uint8_t*>(picture_); }
+    /// For Reconstruction::tones().
+    Float4* room_for_tones() const { return tones_.data(); }
 
 private:
     Float4* shown(uint32_t frame) const;
@@ -37,6 +39,7 @@ private:
     Buffer<Float4> wide_;
     Buffer<Vec2> was_at_;
     Float4* picture_;
+    Buffer<Float4> tones_;
 };
 
 } // namespace pertev

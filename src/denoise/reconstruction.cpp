@@ -137,16 +137,18 @@ Image Reconstruction::picture() const {
 }
 
 FrameTones Reconstruction::tones(const NoisyFrame& frame) const {
-    PERTEV_CHECK(frames_ > 0 && !enlarged_ && frame.width() == width_ && frame.height() == height_);
-    const uint32_t side = block_side(width_, height_);
-    const uint32_t columns = (width_ + side - 1) / side, rows = (height_ + side - 1) / side;
-    const std::size_t row_sums = std::size_t(columns) * height_, blocks = std::size_t(columns) * rows;
-    Float4* const room = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_; // signals' room: 4 a pixel
+    const uint32_t width = shown_width(), height = shown_height();
+    PERTEV_CHECK(frames_ > 0 && frame.width() == width && frame.height() == height);
+    const uint32_t side = block_side(width, height);
+    const uint32_t columns = block_columns(width, side), rows = (height + side - 1) / side;
+    const std::size_t row_sums = std::size_t(columns) * height, blocks = std::size_t(columns) * rows;
+    Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_; // 4 a pixel
+    Float4* const room = enlarged_ ? enlarged_->room_for_tones() : signals;
     const BlockSums sums = {room, room + row_sums}, means = {room + 2 * row_sums, room + 2 * row_sums + blocks};
     launch(*queue_, "sum_block_rows", static_cast<uint32_t>(row_sums),
-           SumBlockRows{history(frames_).shown, frame.view(), width_, side, columns, sums});
+           SumBlockRows{shown(), frame.view(), width, side, columns, sums});
     launch(*queue_, "mean_of_block_rows", static_cast<uint32_t>(blocks),
-           MeanOfBlockRows{sums, height_, side, columns, means});
+           MeanOfBlockRows{sums, height, side, columns, means});
     std::vector<Float4> both(2 * blocks);
     queue_->copy_to_host(both.data(), means.scattered, both.size() * sizeof(Float4));
     FrameTones tones = {{columns, rows, 4, {}}, {columns, rows, 3, {}}};

@@ -64,7 +64,7 @@ public:
     void display(ToneMap tone_map, float exposure_stops);
     /// What the last display() brought.
     Rgba8Image displayed() const;
-    /// Of the last frame, which was made of `frame`, at its resolution.
+    /// Of the last picture, which was made of `frame`; of an enlarged one, `frame` is its features.
     FrameTones tones(const NoisyFrame& frame) const;
 
     // Of the last frame, where ReconstructionSettings::keep_layers was set.

@@ -28,6 +28,14 @@ struct ReconstructionSettings {
     bool operator==(const ReconstructionSettings&) const = default;
 };
 
+/// As `settings`, but the picture is that of the frame's samples alone: nothing is filtered, held or taken from others.
+inline ReconstructionSettings of_samples_alone(ReconstructionSettings settings) {
+    settings.history = 1;
+    settings.passes = 0;
+    settings.limit_fireflies = settings.limit_history = settings.follow_light = settings.anti_alias = false;
+    return settings;
+}
+
 /// Pixels of a side of the frame that light is found at, of a picture's side.
 inline uint32_t scaled_side(uint32_t side, const ReconstructionSettings& settings) {
     return std::max(static_cast<uint32_t>(static_cast<float>(side) * settings.resolution_scale + 0.5f), 1u);

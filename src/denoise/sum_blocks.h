@@ -20,6 +20,15 @@ inline uint32_t block_side(uint32_t width, uint32_t height) {
     return longer < 80 ? 1 : longer / 40;
 }
 
+inline uint32_t block_columns(uint32_t width, uint32_t side) { return (width + side - 1) / side; }
+
+/// Elements that sums and means of a frame take together: sums of rows, both; then means, both.
+inline std::size_t float4s_of_tones(uint32_t width, uint32_t height) {
+    const uint32_t side = block_side(width, height);
+    const std::size_t columns = block_columns(width, side), rows = (height + side - 1) / side;
+    return 2 * columns * (height + rows);
+}
+
 /// One row of pixels in one column of blocks each.
 struct SumBlockRows {
     const Float4* shown; // ShownColor

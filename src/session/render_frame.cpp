@@ -127,6 +127,8 @@ Reconstruction& Session::frame() {
     return *reconstruction_;
 }
 
-FrameTones Session::frame_tones() const { return reconstruction_.value().tones(noisy_frame_.value()); }
+FrameTones Session::frame_tones() const {
+    return reconstruction_.value().tones(features_ ? *features_ : noisy_frame_.value());
+}
 
 } // namespace pertev

@@ -156,6 +156,9 @@ class Bench(CliTest):
             with open(f"{folder}/frame-0001-denoised.pfm", "wb") as file:
                 file.write(b"PF\n32 24\n-1.0\n1234")
             self.refuse(2, *line, "--reference", "2", "--peer", folder, says=["frame-0001-denoised.pfm", "32x24"])
+        plain, shared, coarse = (self.succeed(*line, *flags, "--json").events("sequence_errors")[0]["last_frame"]
+                                 for flags in [[], ["--restir", "gi"], ["--resolution-scale", "0.5"]])
+        self.assertEqual(len({plain, shared, coarse}), 3)
         self.refuse(2, *line, "--peer", "x", says=["--reference"])
         self.refuse(2, "bench", "sequence", "cornell-box", says=["--frames"])
 

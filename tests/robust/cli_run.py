@@ -203,6 +203,36 @@ def read_exr(path):
     return width, height, rows
 
 
+def read_png(path):
+    """As decode_png, of a file."""
+    with open(path, "rb") as file:
+        return decode_png(file.read())
+
+
+def decode_png(data):
+    """[(r, g, b) of each pixel], row by row, of an 8-bit RGB picture."""
+    packed, at = b"", 8
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        if kind == b"IHDR":
+            width, height, depth, colours = struct.unpack_from(">IIBB", data, at + 8)
+            assert (depth, colours) == (8, 2), "8-bit RGB"
+        packed += data[at + 8 : at + 8 + size] if kind == b"IDAT" else b""
+        at += size + 12
+    raw, pixels, above = zlib.decompress(packed), [], bytearray(3 * width)
+    for y in range(height):
+        start = y * (3 * width + 1)
+        kind, row = raw[start], bytearray(raw[start + 1 : start + 1 + 3 * width])
+        for i in range(3 * width):
+            left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+            guess = left + above[i] - corner
+            paeth = min((left, above[i], corner), key=lambda value: abs(guess - value))
+            row[i] = (row[i] + [0, left, above[i], (left + above[i]) // 2, paeth][kind]) & 255
+        pixels += [tuple(row[i : i + 3]) for i in range(0, 3 * width, 3)]
+        above = row
+    return pixels
+
+
 def unpack_zip(packed):
     """Undoes OpenEXR's differences between bytes, then its split into even and odd ones."""
     values, last = bytearray(len(packed)), 128

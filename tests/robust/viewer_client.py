@@ -23,13 +23,16 @@ HEADER = struct.Struct("<BBHIIIHHHHII")
 class Viewer:
     """A viewer of a small picture, on a port of its own; ends with the block."""
 
-    def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4):
+    def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4, device="cpu"):
+        self.device = device
         self.arguments = ["view", scene, "--size", size, "--spp", str(spp), "--port", "0", "--no-browser", "--device",
-                          "cpu", *arguments]
+                          device, *arguments]
 
     def __enter__(self):
         self.scratch = tempfile.TemporaryDirectory()
-        environment = dict(os.environ, XDG_CACHE_HOME=self.scratch.name, CUDA_VISIBLE_DEVICES="", TERM="xterm")
+        environment = dict(os.environ, XDG_CACHE_HOME=self.scratch.name, TERM="xterm")
+        if self.device == "cpu":
+            environment["CUDA_VISIBLE_DEVICES"] = ""
         environment.pop("DISPLAY", None)
         self.process = subprocess.Popen([PROGRAM, *self.arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                         env=environment, cwd=self.scratch.name)

@@ -8,7 +8,7 @@ import socket
 import time
 import unittest
 
-from cli_run import SANITIZED, CliTest, main
+from cli_run import SANITIZED, CliTest, main, read_exr
 from viewer_client import Client, Closed, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
@@ -261,6 +261,25 @@ class Pictures(CliTest):
             state = client.done()
             self.assertEqual((stops(state), state["values"]["exposed"]), ("+1.00 stops", "fixed"))
 
+    def test_light_that_pixels_share_and_its_resolution_are_switched_live_and_leave_the_picture_at_rest(self):
+        with Viewer("--restir", "di", "--restir-history", "7", "--resolution-scale", "0.5") as viewer, Client(viewer) as client:
+            home = client.done()
+            self.assertEqual([home["values"][name] for name in ("restir", "restir_history", "resolution_scale")], ["di", 7, 0.5])
+            self.assertEqual(home["hash"], self.rendered()[0])
+            client.set("mode", "real time")
+            for restir, scale in [("gi", 0.5), ("off", 0.25), ("di", 1)]:
+                client.set("restir", restir)
+                last = client.set("resolution_scale", scale)
+                client.picture(lambda h, n=last: h["input"] >= n)
+                state = client.done(lambda s, n=last: s["input"] >= n)
+                self.assertEqual([state["values"][name] for name in ("restir", "resolution_scale")], [restir, scale])
+                self.assertIn("reconstruction", [label for _, label, _ in state["rows"]])
+            client.set("denoiser", "off")
+            client.set("mode", "reference")
+            self.assertEqual(client.done(lambda s: s["values"]["mode"] == "reference" and s["hash"])["hash"], home["hash"])
+            client.set("resolution_scale", 0.05)
+            self.assertIn("Resolution of light", client.text("notice")["text"])
+
     def test_saved_files_are_those_of_a_render(self):
         with Viewer() as viewer:
             status, headers, png = viewer.get("/save?format=png")  # nobody need look
@@ -282,10 +301,29 @@ class Pictures(CliTest):
             self.assertIn("floor", rows["instance"])
             self.assertIn("white", rows["material"])
             self.assertEqual(rows["normal"], "0, 1, 0")
+            client.done()
+            client.steer(type="pick", x=0.5, y=0.95, use="show")
+            light = {label: value for _, label, value in client.text("picked")["rows"]}["light"]
+            with open(self.path("saved.exr"), "wb") as file:
+                file.write(viewer.get("/save?format=exr")[2])
+            width, height, channels = read_exr(self.path("saved.exr"))
+            at = (int(0.95 * height), int(0.5 * width))
+            self.assertEqual(light, ", ".join(f"{channels[c][at[0]][at[1]]:.3g}" for c in "RGB"))
             client.set("aperture", 0.01)
             client.steer(type="pick", x=0.5, y=0.95, use="focus")
             self.assertIn("in focus", client.text("notice")["text"])
             self.assertIn("--aperture 0.01", client.done(lambda s: "--aperture" in s["flags"])["flags"])
+
+    def test_the_first_picture_is_there_long_before_a_sample_of_a_large_one(self):
+        with Viewer(size="2560x1440", spp=64) as viewer, Client(viewer) as client:
+            header, _ = client.picture()
+            self.assertLess(header["width"], 2560)
+            self.assertEqual((header["full_width"], header["full_height"]), (2560, 1440))
+            # Nothing is known of the machine yet, and yet the first step is shown soon.
+            began = time.monotonic()
+            last = client.steer(type="orbit", dx=0.01, dy=0)
+            client.picture(lambda h: h["input"] >= last)
+            self.assertLess(time.monotonic() - began, 3 if SANITIZED else 1.5)
 
     def test_while_the_camera_moves_pictures_are_small_and_soon_and_say_which_input_they_show(self):
         with Viewer(size="640x480", spp=1000) as viewer, Client(viewer) as client:
@@ -298,6 +336,8 @@ class Pictures(CliTest):
                 self.assertEqual((header["full_width"], header["full_height"]), (640, 480))
             self.assertLess(time.monotonic() - began, 2)
             self.assertLess(header["width"], 640)
+            said = client.text("state", lambda s: s["input"] >= number)["rows"]
+            self.assertIn(["Frames", "size chosen for", "8 a second"], said)
             # Input comes faster than pictures: these come all the same, and none is far behind.
             shown, end = [], time.monotonic() + 2
             while time.monotonic() < end:

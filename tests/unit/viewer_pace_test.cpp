@@ -61,6 +61,34 @@ TEST_CASE("the size while moving is the largest that keeps the frame rate, on ma
     }
 }
 
+TEST_CASE("the first frame is small on every machine, and the second as large as the machine allows") {
+    for (const double full_s : {0.001, 0.5, 20.0}) {
+        CAPTURE(full_s);
+        FramePace pace(0.12);
+        CHECK(frame_time(full_s, pace.scale()) < 0.1);
+        pace.took(pace.scale(), frame_time(full_s, pace.scale()));
+        const float second = pace.scale();
+        for (int i = 0; i < 20; ++i) pace.took(pace.scale(), frame_time(full_s, pace.scale()));
+        CHECK(pace.scale() == second);
+    }
+}
+
+TEST_CASE("a scene that takes its time to move leaves less for the picture, and what cannot be kept is said") {
+    const auto settled = [](double full_s, double beside_s) {
+        FramePace pace(0.12);
+        for (int i = 0; i < 60; ++i) pace.took(pace.scale(), frame_time(full_s, pace.scale()), beside_s);
+        return pace;
+    };
+    CHECK(settled(0.5, 0.06).keeps_rate());
+    CHECK(settled(0.5, 0.06).scale() < settled(0.5, 0).scale());
+    CHECK(settled(20, 0).keeps_rate());
+    CHECK(settled(60, 0).keeps_rate());
+    CHECK_FALSE(settled(600, 0).keeps_rate()); // at a 32nd of each side
+    const FramePace moves_slowly = settled(0.5, 0.3);
+    CHECK_FALSE(moves_slowly.keeps_rate());
+    CHECK(moves_slowly.scale() > 0.15f); // a speck would be no faster
+}
+
 TEST_CASE("a view that becomes dear makes pictures smaller within a few frames") {
     FramePace pace(0.1);
     for (int i = 0; i < 40; ++i) pace.took(pace.scale(), frame_time(0.07, pace.scale()));

@@ -46,6 +46,31 @@ TEST_CASE("every setting takes each of its choices or its bounds, gives it back,
     CHECK_FALSE(set_view_setting(state, "max_depth", 1.5).empty());
 }
 
+TEST_CASE(
+    "what gathers is broken off for another view or another light, and for nothing that the same samples can show") {
+    const auto breaks_off = [](const char* name) {
+        ClientMessage message;
+        message.kind = MessageKind::Set;
+        message.name = name;
+        return begins_anew(message);
+    };
+    std::size_t count = 0;
+    for (const ViewSetting& setting : view_settings()) {
+        CAPTURE(setting.name);
+        CHECK(std::string(setting.hint) != "");
+        count += breaks_off(setting.name);
+    }
+    CHECK(count == 10);
+    for (const char* name : {"exposure", "exposed", "tone_map", "spp", "denoiser", "restir", "resolution_scale", "x"}) {
+        CHECK_FALSE(breaks_off(name));
+    }
+    ClientMessage message;
+    message.kind = MessageKind::Pick;
+    CHECK_FALSE(begins_anew(message));
+    message.kind = MessageKind::Orbit;
+    CHECK(begins_anew(message));
+}
+
 TEST_CASE("an exposure that is fixed stays where it was found, and one that is found begins without more or less") {
     ViewState state;
     state.finds_exposure = true;

@@ -1,7 +1,7 @@
 // The panel: rows of numbers and settings as the viewer describes them. Nothing here knows a single setting: a new one is
 // a row of the program's own table (apps/viewer/view_state.cpp).
 
-/** @typedef {{name: string, label: string, group: string, kind: "choice" | "number" | "whole", choices: string[],
+/** @typedef {{name: string, label: string, group: string, hint: string, kind: "choice" | "number" | "whole", choices: string[],
  *   low: number, high: number, step: number}} Setting */
 
 /** @param {string} id @returns {HTMLElement} */
@@ -89,6 +89,7 @@ export class Settings {
         if (setting.kind === "choice") field.blur(); // keys steer again
       });
       const row = make("label", "", "row");
+      row.title = setting.hint;
       row.append(make("span", setting.label), field);
       this.place.append(row);
       this.fields.set(setting.name, field);

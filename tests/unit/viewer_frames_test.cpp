@@ -1,0 +1,121 @@
+// Pictures of the viewer (session_frames.h) beside those of a session alone, and the tones that they are exposed by.
+
+#include <doctest/doctest.h>
+
+#include "apps/viewer/session_frames.h"
+#include "image/picture_hash.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+struct Watched {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    MovingScene scene{test::make_mixed_scene(), std::nullopt, {}, messages};
+    FrameRequest request;
+
+    Watched() {
+        request.camera = test::mixed_scene_camera();
+        RenderSettings& picture = request.view.picture;
+        picture.width = 24, picture.height = 16;
+        picture.samples = 2;
+        picture.path.max_depth = 3;
+        request.view.lens = request.camera;
+        request.view.moving_scale = 1;
+    }
+    Session session() { return {queue, scene.prepared(), request.camera, request.view.picture}; }
+};
+
+} // namespace
+
+TEST_CASE("frames of the movement share light and find it as coarsely as is set; the picture at rest does not") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    Session plain = watched.session();
+    plain.render(2);
+    const std::string at_rest = picture_hash(plain.picture()).hex();
+    struct Case {
+        RestirLight light;
+        float scale;
+        bool filters;
+    };
+    for (const Case& set :
+         {Case{RestirLight::Off, 1, true}, Case{RestirLight::Direct, 1, true}, Case{RestirLight::Indirect, 0.5f, true},
+          Case{RestirLight::Off, 0.5f, false}, Case{RestirLight::Indirect, 1, false}}) {
+        CAPTURE(static_cast<int>(set.light));
+        CAPTURE(set.scale);
+        CAPTURE(set.filters);
+        Session session = watched.session(), alone = watched.session();
+        SessionFrames frames(session, watched.scene, 0.1);
+        request.view.restir.light = set.light;
+        request.view.is_reconstructed = set.filters;
+        ReconstructionSettings& settings = request.view.reconstruction;
+        settings.resolution_scale = set.scale;
+        request.is_moving = true;
+        for (uint32_t k = 0; k < 3; ++k) {
+            const std::optional<ShownFrame> shown = frames.next(request);
+            alone.render_frame(k, set.filters ? settings : of_samples_alone(settings), request.view.restir);
+            alone.frame().display(request.view.display.tone_map, 0);
+            REQUIRE(shown.has_value());
+            CHECK(shown->image.pixels == alone.frame().displayed().pixels);
+            CHECK(shown->samples == k + 1); // of one camera
+        }
+        request.is_moving = false;
+        request.budget_s = 100;
+        std::optional<ShownFrame> rests;
+        while (!rests || !rests->is_final) rests = frames.next(request);
+        CHECK(rests->hash == at_rest);
+    }
+}
+
+TEST_CASE("another way to share light, or another resolution of it, begins to gather anew") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    Session session = watched.session();
+    SessionFrames frames(session, watched.scene, 0.1);
+    request.is_moving = true;
+    const auto gathered = [&] { return frames.next(request).value().samples; };
+    CHECK(gathered() == 1);
+    CHECK(gathered() == 2);
+    request.view.restir.light = RestirLight::Direct;
+    CHECK(gathered() == 1);
+    request.view.reconstruction.resolution_scale = 0.5f;
+    CHECK(gathered() == 1);
+    CHECK(gathered() == 2);
+    request.view.is_reconstructed = false; // the samples themselves, which still share light
+    CHECK(gathered() == 1);
+}
+
+TEST_CASE("what the exposure goes by is the frame as it is shown, whatever its light was found at") {
+    Watched watched;
+    RenderSettings& picture = watched.request.view.picture;
+    for (const uint32_t width : {24u, 100u}) { // blocks of a pixel, and of two
+        picture.width = width;
+        picture.height = width * 2 / 3;
+        for (const float scale : {1.0f, 0.5f, 0.3f}) {
+            CAPTURE(width);
+            CAPTURE(scale);
+            Session session = watched.session();
+            ReconstructionSettings settings;
+            settings.resolution_scale = scale;
+            session.render_frame(0, settings);
+            const FrameTones tones = session.frame_tones();
+            const Image shown = session.frame().picture();
+            CHECK(shown.width == width);
+            double of_blocks = 0, of_pixels = 0, weights = 0;
+            const uint32_t columns = tones.all.width, side = (width + columns - 1) / columns;
+            for (uint32_t i = 0; i < columns * tones.all.height; ++i) {
+                const uint32_t x = i % columns * side, y = i / columns * side;
+                const double pixels = std::min(side, width - x) * std::min(side, picture.height - y);
+                for (int c = 0; c < 3; ++c) of_blocks += pixels * static_cast<double>(tones.all.pixels[3 * i + c]);
+                weights += pixels;
+            }
+            for (const float value : shown.pixels) of_pixels += static_cast<double>(value);
+            CHECK(weights == width * picture.height);
+            CHECK(of_blocks == doctest::Approx(of_pixels).epsilon(1e-4));
+        }
+    }
+}
