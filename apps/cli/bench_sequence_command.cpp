@@ -27,7 +27,7 @@ struct SequenceFlags {
     RenderFlags render;
     ReconstructionFlags reconstruction;
     uint32_t reference = 0;
-    std::string write_frames, write_samples, peer, strips;
+    std::string write, write_samples, peer, strips;
 };
 
 /// What one way of making frames is measured by, over a sequence.
@@ -120,8 +120,8 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         session.render_frame(number, settings, restir);
         const Image ours = session.frame().picture();
         const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
-        if (!flags.write_frames.empty()) {
-            write_png(std::filesystem::path(flags.write_frames) / fmt::format("frame-{:04}.png", number), shown(ours));
+        if (!flags.write.empty()) {
+            write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", number), shown(ours));
         }
         const RenderResult sample = sample_of(session, ready.settings, number, 1, kAovAlbedo | kAovNormal);
         if (!flags.write_samples.empty()) {
@@ -224,8 +224,7 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
                     "frame to frame is the flicker")
         ->type_name("SPP")
         ->check(whole_between(2, kMaxSamplesPerPixel));
-    verb.add_option("--write-frames", flags->write_frames, "write each frame as PNG into this folder")
-        ->type_name("FOLDER");
+    verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
     verb.add_option("--write-samples", flags->write_samples,
                     "write each frame's samples, albedo and normals as PFM into this\nfolder, for another denoiser")
         ->type_name("FOLDER");
