@@ -32,6 +32,9 @@ ALLOWED["restir"] = ALLOWED["render"] | {"render"}
 ALLOWED["session"] = set(ALLOWED)
 ALLOWED["lab"] = set(ALLOWED)
 
+# The machine that several integrators are made of.
+RAY_TREE = ("integrators", "ray_tree")
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")
 SUFFIXES = {".h", ".cpp", ".cu", ".inl"}
@@ -55,7 +58,8 @@ def fault_of(path, module, quoted, target):
         known = ", ".join(name for name in ALLOWED if name in ALLOWED[module])
         return f"{module} may know {known or 'nothing of ours'}, and not {owner}"
     parts = pathlib.PurePath(target).parts
-    if owner == "integrators" and len(parts) > 2 and path.parts[:2] != parts[:2] and path.stem != "make_integrator":
+    is_shared = path.parts[0] == "integrators" and len(path.parts) > 2 and parts[:2] == RAY_TREE
+    if owner == "integrators" and len(parts) > 2 and path.parts[:2] != parts[:2] and path.stem != "make_integrator" and not is_shared:
         return "an integrator's folder is seen by itself and integrators/make_integrator alone"
     return None
 

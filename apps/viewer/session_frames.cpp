@@ -46,9 +46,6 @@ uint32_t aovs_of(ShownLayer layer) {
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
-/// Of the reconstruction, so that they are there only with it.
-bool is_reconstructed(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
-
 bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
@@ -88,7 +85,7 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.height = scaled_side(settings.height, scale);
     settings.aovs |= aovs_of(request.view.layer);
     // Layers and heat maps need no light.
-    if (!is_beauty(request.view.layer) && !is_reconstructed(request.view.layer)) settings.path.max_depth = 0;
+    if (!is_beauty(request.view.layer) && !is_of_frames(request.view.layer)) settings.path.max_depth = 0;
     settings.pass_samples = 1;
     if (sample_s_ > 0 && scale == 1)
         settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
@@ -195,7 +192,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
-    const bool shows_layer = is_reconstructed(request.view.layer);
+    const bool shows_layer = is_of_frames(request.view.layer);
     session_.render_frame(next_sample_, {.keep_layers = shows_layer});
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
@@ -255,8 +252,9 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
     const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
-    if (is_reconstructed(request.view.layer)) return reconstruct(request, scale);
-    if (is_small && is_beauty(request.view.layer) && request.view.is_reconstructed) return reconstruct(request, scale);
+    if (is_of_frames(request.view.layer)) return reconstruct(request, scale);
+    const bool is_reconstructed = request.view.is_reconstructed && makes_frames(request.view.picture.integrator);
+    if (is_small && is_beauty(request.view.layer) && is_reconstructed) return reconstruct(request, scale);
     update_s_ = 0;
     const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer);
     if (competes && reconstruction_.pixels.empty()) { // before another size forgets it

@@ -64,5 +64,7 @@ const std::vector<ViewSetting>& view_settings();
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);
 
 const char* name_of(ShownLayer layer);
+/// Of the reconstruction, so that they are there only with it.
+bool is_of_frames(ShownLayer layer);
 
 } // namespace pertev

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
@@ -12,7 +14,9 @@
 #include "render/camera_work.h"
 #include "render/hidden_back_share.h"
 #include "render/place_meshes.h"
+#include "session/check_integrator.h"
 #include "session/meter_exposure.h"
+#include "session/settings_text.h"
 
 namespace pertev {
 namespace {
@@ -57,6 +61,7 @@ std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice&
 
 Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings)
     : queue_(queue), camera_(camera), settings_(settings), filter_(queue) {
+    check_integrator(settings);
     set_scene(scene);
     history_.cuts = 0;
 }
@@ -122,6 +127,7 @@ void Session::set_camera(const Camera& camera) {
 }
 
 void Session::set_settings(const RenderSettings& settings) {
+    check_integrator(settings);
     check_choice(tracers_of(settings, queue_.is_cuda()), queue_.is_cuda());
     const bool same = same_picture(settings_, settings);
     if (settings.width != settings_.width || settings.height != settings_.height) hidden_back_share_.reset();
@@ -348,6 +354,11 @@ std::optional<Image> Session::denoised() {
 }
 
 void Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
+    if (!makes_frames(settings_.integrator)) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--integrator {}: frames are reconstructed of path's samples alone",
+                                integrator_name(settings_)));
+    }
     RenderSettings of_light = settings_of_frames(settings_);
     of_light.width = scaled_side(settings_.width, settings);
     of_light.height = scaled_side(settings_.height, settings);
