@@ -23,6 +23,7 @@
 #include "base/error.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
+#include "session/check_integrator.h"
 
 extern char** environ;
 
@@ -130,6 +131,17 @@ Pose start_pose(const PictureRecord& record, FrameSource& source, float scene_si
     return pose_of(camera, record.camera.target, record.camera.up, distance);
 }
 
+/// Those that would show the scene as black, and why.
+std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSettings settings, const Scene& scene) {
+    std::vector<std::pair<IntegratorKind, std::string>> dark;
+    for (const std::string& name : integrator_names()) {
+        set_integrator(settings, name);
+        std::string why = why_dark(settings, scene);
+        if (!why.empty()) dark.emplace_back(settings.integrator, std::move(why));
+    }
+    return dark;
+}
+
 /// Once it is asked to end, the program ends in any case: nothing would be lost.
 void end_soon() {
     std::thread([] {
@@ -161,6 +173,7 @@ int view(const ViewFlags& flags) {
     start.view.picture = ready->settings;
     start.view.display = choose_shown_display(flags.render, session, reporter);
     start.view.finds_exposure = flags.render.exposure.empty() || flags.render.exposure == "auto";
+    start.view.dark = dark_integrators(ready->settings, ready->scene());
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
     if (start.view.finds_exposure) {

@@ -157,6 +157,9 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, const std::string& name) {
             RenderSettings wanted = s.picture;
             set_integrator(wanted, name);
+            for (const auto& [kind, why_dark] : s.dark) {
+                if (kind == wanted.integrator) return why_dark;
+            }
             const std::string why_not = why_no_layer(s.layer, wanted);
             if (!why_not.empty()) return why_not;
             wanted.path.max_depth = std::min(wanted.path.max_depth, most_depth(wanted.integrator));

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct ViewState {
     bool is_reconstructed = true; // of the movement: by what frames before have seen (denoise/)
     float moving_scale = 0;       // of the size while moving; 0: whatever keeps the frame rate
     bool on_cuda = false;
+    std::vector<std::pair<IntegratorKind, std::string>> dark; // those that would show the scene as black, and why
 };
 
 /// The value of a setting: text for choices, a number for the others.
