@@ -48,10 +48,9 @@ static_assert(sizeof(TreeState) == 32);
 
 /// Of one round.
 struct TreeCounts {
-    uint32_t rays;    // under way
-    uint32_t next;    // that go on after it
-    uint32_t shadows; // asked for since the last look
-    uint32_t unused = 0;
+    uint32_t rays;                 // under way
+    uint32_t next;                 // that go on after it
+    uint32_t shadows;              // asked for since the last look
     uint64_t bounces, all_shadows; // of all rounds
 };
 
