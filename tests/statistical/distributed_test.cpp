@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "tests/support/compare_pictures.h"
 #include "tests/support/flat_scenes.h"
@@ -69,8 +71,11 @@ TEST_CASE("irradiance under a disc is that of the closed form") {
     CHECK(floor_radiance(disc(0.5f, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 0.25)).epsilon(2e-3));
 }
 
-TEST_CASE("distributed is path tracing where no diffuse surface lights another") {
-    Scene scene = test::make_mixed_scene(); // of which each diffuse surface becomes a metal
+namespace {
+
+/// The mixed scene, of which each diffuse surface becomes a metal.
+Scene make_metal_scene() {
+    Scene scene = test::make_mixed_scene();
     for (Material& material : scene.materials) {
         const bool stays = material.kind == MaterialKind::Dielectric || material.kind == MaterialKind::Conductor ||
                            material.is_emissive();
@@ -80,19 +85,50 @@ TEST_CASE("distributed is path tracing where no diffuse surface lights another")
         material.kind = MaterialKind::MetallicRoughness;
     }
     scene.materials[0].roughness = 0.7f; // the floor
+    return scene;
+}
+
+/// A diffuse or a plastic sphere alone: nothing of what it scatters comes back. Point, spot and sun, and a sky.
+Scene make_convex_scene(bool is_glossy) {
+    Scene scene = test::make_furnace_scene(0.7f);
+    const Scene mixed = test::make_mixed_scene();
+    scene.environment = mixed.environment;
+    scene.lights = mixed.lights;
+    if (!is_glossy) return scene;
+    scene.materials[0].kind = MaterialKind::MetallicRoughness;
+    scene.materials[0].roughness = 0.3f;
+    return scene;
+}
+
+/// p-values of distributed against path, and of distributed 5 % brighter.
+std::pair<double, double> compare_with_path(const Scene& scene, float aperture, uint32_t samples) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::queue_asked_for();
-    RenderSettings settings = distributed_settings(14, 64);
+    Camera camera = test::mixed_scene_camera();
+    camera.aperture_radius = aperture;
+    camera.focus_distance = 5;
+    RenderSettings settings = distributed_settings(14, samples);
     settings.path.max_depth = 5;
     const auto estimate = [&](IntegratorKind integrator, uint32_t first_seed) {
         settings.integrator = integrator;
-        return test::estimate_picture(queue, prepared, test::mixed_scene_camera(), settings, 32, first_seed);
+        return test::estimate_picture(queue, prepared, camera, settings, 32, first_seed);
     };
     const test::PictureEstimate distributed = estimate(IntegratorKind::Distributed, 1);
     const test::PictureEstimate path = estimate(IntegratorKind::Path, 1000);
-    CHECK(test::p_value(distributed, path) > 0.001);
-    CHECK(test::p_value(test::brightened(distributed, 1.05, 5e-3), path) < 1e-4); // the test can see
+    return {test::p_value(distributed, path), test::p_value(test::brightened(distributed, 1.05, 5e-3), path)};
+}
+
+} // namespace
+
+TEST_CASE("distributed is path tracing where no diffuse surface lights another") {
+    for (const auto& [scene, aperture, samples] :
+         {std::tuple(make_metal_scene(), 0.0f, 64u), std::tuple(make_convex_scene(false), 0.3f, 16u),
+          std::tuple(make_convex_scene(true), 0.0f, 16u)}) {
+        const auto [same, brighter] = compare_with_path(scene, aperture, samples);
+        CHECK(same > 0.001);
+        CHECK(brighter < 1e-4); // the test can see
+    }
 }
 
 TEST_CASE("what distributed leaves out is what diffuse surfaces send to each other") {
