@@ -8,6 +8,7 @@
 
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
+#include "math/rgb.h"
 
 namespace pertev {
 

@@ -36,7 +36,7 @@ PictureEstimate estimate(LightStrategy strategy, uint32_t first_seed) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::queue_asked_for();
-    return estimate_picture(queue, prepared, test::mixed_scene_camera(), settings, 64, first_seed);
+    return test::estimate_picture(queue, prepared, test::mixed_scene_camera(), settings, 64, first_seed);
 }
 
 } // namespace

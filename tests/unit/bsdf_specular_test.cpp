@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <initializer_list>
+
 #include "shading/bsdf.h"
 
 using namespace pertev;

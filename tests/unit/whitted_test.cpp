@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

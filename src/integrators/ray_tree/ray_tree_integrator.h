@@ -13,6 +13,7 @@
 //
 // The functions stand in ray_tree_integrator_body.h, which each algorithm's .cpp includes.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "device/buffer.h"
