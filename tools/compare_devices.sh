@@ -31,6 +31,11 @@ helmet $scenes/gltf/DamagedHelmet/DamagedHelmet.glb
 glass $scenes/cornell-box-mcguire/CornellBox-Glass.obj
 mirror $scenes/cornell-box-mcguire/CornellBox-Mirror.obj
 water $scenes/cornell-box-mcguire/CornellBox-Water.obj
+cast $scenes/sibenik/sibenik.obj --integrator cast
+whitted $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator whitted --ambient 0.5
+whitted-lamps $scenes/sibenik/sibenik.obj --integrator whitted
+distributed $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator distributed
+distributed-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator distributed --aperture 0.05
 LIST
 done
 exit $status

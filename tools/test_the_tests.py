@@ -276,6 +276,20 @@ MUTATIONS = [
     Mutation("the wavefront draws other numbers", [edit("src/integrators/path/path_stages.h",
                                                         "round->first_sample + (", "1 + round->first_sample + (")],
              ["consistency/one_picture"]),
+    Mutation("a tree of rays leaves out refraction", [
+        edit("src/integrators/ray_tree/tree_vertex.h",
+             "follow_delta(branches.refraction, wo_local, branches.refracted, Branch::Refraction, least);", "")],
+             ["unit/whitted"]),
+    Mutation("a tree's vertex asks four lights alone", [
+        edit("src/integrators/ray_tree/tree_stages.h", "min(all, first_shadow + kShadowsAtOnce)",
+             "min(all, kShadowsAtOnce)")], ["unit/whitted"]),
+    Mutation("a lamp that a glossy surface sees counts twice", [
+        edit("src/integrators/ray_tree/tree_vertex.h",
+             "f = f - (1.0f - power_heuristic(sample.pdf, all.pdf)) * glossy;", "static_cast<void>(glossy);")],
+             ["statistical/distributed"]),
+    Mutation("layers pass all light on to a mirror beneath", [
+        edit("src/shading/bsdf.h", "light_through(bsdf, i, wo, {-wo.x, -wo.y, wo.z}) * one.mirror", "one.mirror")],
+             ["unit/bsdf_specular"]),
     Mutation("materials are taken for plain that let rays pass", [
         edit("src/shading/material_view.h", "m.alpha_mode == AlphaMode::Opaque && ", "")], ["consistency/one_picture"]),
     Mutation("boxes above where a subtree was put stay as they were", [

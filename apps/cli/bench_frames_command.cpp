@@ -12,6 +12,7 @@
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_flags.h"
+#include "base/error.h"
 #include "base/limits.h"
 #include "device/device_timer.h"
 #include "image/flip.h"
@@ -65,27 +66,40 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
     std::vector<double> whole, reconstruction;
     FrameFigures figures;
     DeviceTimer timer(queue);
+    const bool reconstructs = makes_frames(session.settings().integrator);
     for (uint32_t frame = 0; frame < flags.frames; ++frame) {
         throw_if_interrupted();
+        Rgba8Image sample;
         timer.start();
         if (!flags.still) session.set_camera(camera_of(first, frame, scene_size));
-        session.render_frame(frame, settings, restir);
-        session.frame().display(tone_map, exposure);
+        if (reconstructs) {
+            session.render_frame(frame, settings, restir);
+            session.frame().display(tone_map, exposure);
+        } else {
+            if (flags.still) session.cut();
+            session.render(1);
+            sample = session.display(exposure, tone_map);
+        }
         timer.stop();
         reporter.progress((frame + 1.0) / flags.frames, fmt::format("frame {} of {}", frame + 1, flags.frames));
         if (!flags.write.empty()) {
             write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", frame),
-                      session.frame().displayed());
+                      reconstructs ? session.frame().displayed() : sample);
         }
         if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
         whole.push_back(timer.seconds());
-        reconstruction.push_back(session.frame().seconds());
-        figures.rays = figures.rays + session.frame_rays();
+        reconstruction.push_back(reconstructs ? session.frame().seconds() : 0);
+        figures.rays = figures.rays + (reconstructs ? session.frame_rays() : session.stats().rays);
         figures.seconds += whole.back();
     }
     figures.whole = summarize_runs(whole);
     figures.reconstruction = summarize_runs(reconstruction);
     return figures;
+}
+
+/// Of the last frame.
+Image last_picture(Session& session) {
+    return makes_frames(session.settings().integrator) ? session.frame().picture() : session.picture();
 }
 
 /// How like the last frame is to a picture of many samples of the same view; means over channels and pixels.
@@ -97,7 +111,7 @@ struct Likeness {
 
 /// The frames begin anew after it.
 Likeness compare_last(Session& session, uint32_t samples, Reporter& reporter) {
-    const Image last = session.frame().picture();
+    const Image last = last_picture(session);
     session.render(1);
     const Image noisy = session.picture();
     session.cut();
@@ -120,13 +134,21 @@ int bench_frames(const FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
+    const bool asks_for_more =
+        flags.restir != name_of(RestirLight::Off) || flags.resolution_scale != 1 || flags.sample_order;
+    if (!makes_frames(settings.integrator) && asks_for_more) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
+                                "--sample-order are for path",
+                                flags.render.integrator));
+    }
     Session session(*queue, prepared, camera, settings);
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
     session.cut();
     const FrameFigures figures =
         measure(session, *queue, flags, length(bounds_of(scene).size()), exposure, tone_map, reporter);
-    const std::string hash = picture_hash(session.frame().picture()).hex();
+    const std::string hash = picture_hash(last_picture(session)).hex();
     std::optional<Likeness> likeness;
     if (flags.reference > 0) likeness = compare_last(session, flags.reference, reporter);
     reporter.end_progress();

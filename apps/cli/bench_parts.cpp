@@ -9,6 +9,7 @@
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
+#include "session/check_integrator.h"
 
 namespace pertev {
 
@@ -45,6 +46,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     benched->scene = load_scene(flags.scene, messages);
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
+    check_light(settings, benched->scene, messages);
     benched->camera = choose_camera(flags.scene, benched->scene, aspect_of(settings.width, settings.height), messages);
     throw_if_interrupted();
     reporter.set_work("building trees");

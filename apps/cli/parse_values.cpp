@@ -84,4 +84,17 @@ bool parse_rgb(const std::string& text, Rgb& color) {
     return value.has_value();
 }
 
+Rgb parse_radiance(const std::string& flag, const std::string& text) {
+    Rgb radiance;
+    bool is_one = parse_rgb(text, radiance);
+    if (const auto value = is_one ? std::nullopt : number_in(text)) {
+        radiance = grey(*value);
+        is_one = true;
+    }
+    if (is_one && radiance.r >= 0 && radiance.g >= 0 && radiance.b >= 0) return radiance;
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("{} {}: expected a radiance, R,G,B or one number for all three, each at least 0", flag, text));
+}
+
 } // namespace pertev

@@ -28,5 +28,7 @@ Vec3 parse_vec3(const std::string& flag, const std::string& text);
 Vec3 parse_position(const std::string& flag, const std::string& text);
 /// The three numbers of "r,g,b", or false when `text` does not look like numbers.
 bool parse_rgb(const std::string& text, Rgb& color);
+/// "0.5", or "r,g,b": a radiance, finite and at least 0.
+Rgb parse_radiance(const std::string& flag, const std::string& text);
 
 } // namespace pertev

@@ -10,6 +10,7 @@
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "formats/read_camera_path.h"
+#include "session/check_integrator.h"
 
 namespace pertev {
 namespace {
@@ -59,6 +60,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     RenderSettings& settings = ready->settings;
     settings = render_settings(flags, scene);
     settings.tracers = tracers;
+    check_light(settings, scene, messages);
     ready->camera.emplace(camera_choice(flags.scene), path, scene, aspect_of(settings.width, settings.height),
                           messages);
     ready->load_s = watch.seconds();

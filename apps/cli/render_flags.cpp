@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "image/write_image.h"
+#include "session/check_integrator.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -64,6 +65,32 @@ void check_camera_path(const RenderFlags& flags) {
         refuse(!text->empty(), fmt::format("{}: the camera's path says it; leave out one of them", flag));
     }
     refuse(flags.turntable > 0, "--turntable: the camera goes its path; leave out one of them");
+}
+
+/// All settings but the size. Throws Error where they do not go together.
+RenderSettings light_settings(const RenderFlags& flags) {
+    RenderSettings settings; // CLI11 has checked all names
+    settings.samples = flags.samples;
+    settings.filter = *filter_named(flags.filter);
+    settings.filter_radius = flags.filter_radius;
+    settings.transparent = flags.transparent;
+    settings.denoise = *denoise_named(flags.denoise);
+    settings.time_limit_s = flags.time_limit_s;
+    for (const std::string& name : flags.aovs) settings.aovs |= *aov_named(name);
+    settings.path = {.max_depth = flags.max_depth,
+                     .clamp = flags.clamp,
+                     .sampler = *sampler_named(flags.sampler),
+                     .seed = flags.seed};
+    if (!flags.ambient.empty()) settings.ambient = parse_radiance("--ambient", flags.ambient);
+    set_integrator(settings, flags.integrator);
+    check_integrator(settings);
+    refuse(
+        settings.ambient && !needs_punctual_lights(settings.integrator),
+        fmt::format("--ambient: a light of --integrator cast and whitted; {} finds what comes from all around itself",
+                    flags.integrator));
+    refuse(settings.path.clamp > 0 && settings.integrator != IntegratorKind::Path,
+           fmt::format("--clamp: of --integrator path; {} has no light scattered so often", flags.integrator));
+    return settings;
 }
 
 } // namespace
@@ -151,7 +178,8 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->check(whole_between(1, kMaxSamplesPerPixel))
         ->capture_default_str()
         ->group(group);
-    verb.add_option("--integrator", flags.integrator, "path, or its parts direct and indirect")
+    verb.add_option("--integrator", flags.integrator,
+                    "path, or its parts direct and indirect; cast, whitted,\ndistributed (docs/transport.md)")
         ->type_name("NAME")
         ->check(one_of(integrator_names()))
         ->capture_default_str()
@@ -160,6 +188,11 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->type_name("N")
         ->check(whole_between(0, kMaxPathDepth - 1))
         ->capture_default_str()
+        ->group(group);
+    verb.add_option("--ambient", flags.ambient,
+                    "of cast and whitted: radiance from all around that diffuse\nsurfaces reflect (cast 0, whitted the "
+                    "environment's mean)")
+        ->type_name("R,G,B")
         ->group(group);
     verb.add_option("--seed", flags.seed, "of the random numbers")
         ->type_name("N")
@@ -253,6 +286,7 @@ void check_shown_picture_flags(const RenderFlags& flags) {
                                 std::numeric_limits<float>::max()));
     }
     if (!flags.size.empty()) parse_size("--size", flags.size);
+    light_settings(flags);
     check_scene_options(flags.scene);
     check_camera_path(flags);
 }
@@ -288,24 +322,12 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
 }
 
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
-    RenderSettings settings; // CLI11 has checked all names
+    RenderSettings settings = light_settings(flags);
     if (!flags.size.empty()) {
         std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
     } else {
         set_default_size(settings, scene_camera(flags.scene, scene));
     }
-    settings.samples = flags.samples;
-    settings.filter = *filter_named(flags.filter);
-    settings.filter_radius = flags.filter_radius;
-    settings.transparent = flags.transparent;
-    settings.denoise = *denoise_named(flags.denoise);
-    settings.time_limit_s = flags.time_limit_s;
-    for (const std::string& name : flags.aovs) settings.aovs |= *aov_named(name);
-    settings.path = {.max_depth = flags.max_depth,
-                     .clamp = flags.clamp,
-                     .sampler = *sampler_named(flags.sampler),
-                     .seed = flags.seed};
-    set_integrator(settings, flags.integrator);
     return settings;
 }
 

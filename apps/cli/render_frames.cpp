@@ -27,7 +27,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      const PictureRecord& record) {
     SequenceRecord::Settings settings;
     for (const auto& [name, value] : settings_metadata(record)) {
-        if (name == "pertev.denoise") continue; // it stands there only where one is
+        if (name == "pertev.denoise" || name == "pertev.ambient") continue; // they stand there only where they are
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
     std::string layers;
@@ -42,6 +42,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
+                                     {"--ambient", flags.ambient},
                                      {"--denoise", picture.denoise == Denoise::None ? "" : flags.denoise},
                                      {"--transparent", picture.transparent ? "yes" : "no"}});
     return settings;

@@ -24,6 +24,7 @@
 #include "base/error.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
+#include "session/check_integrator.h"
 
 extern char** environ;
 
@@ -145,6 +146,17 @@ std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
     }
 }
 
+/// Those that would show the scene as black, and why.
+std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSettings settings, const Scene& scene) {
+    std::vector<std::pair<IntegratorKind, std::string>> dark;
+    for (const std::string& name : integrator_names()) {
+        set_integrator(settings, name);
+        std::string why = why_dark(settings, scene);
+        if (!why.empty()) dark.emplace_back(settings.integrator, std::move(why));
+    }
+    return dark;
+}
+
 /// Once it is asked to end, the program ends in any case: nothing would be lost.
 void end_soon() {
     std::thread([] {
@@ -176,6 +188,7 @@ int view(const ViewFlags& flags) {
     start.view.picture = ready->settings;
     start.view.display = choose_shown_display(flags.render, session, reporter);
     start.view.finds_exposure = flags.render.exposure.empty() || flags.render.exposure == "auto";
+    start.view.dark = dark_integrators(ready->settings, ready->scene());
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
     start.view.is_reconstructed = !flags.reconstruction.none;

@@ -46,13 +46,11 @@ uint32_t aovs_of(ShownLayer layer) {
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
-/// Of the reconstruction, so that they are there only with it.
-bool is_reconstructed(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
-
 /// Whether a frame of the movement is one of the session's sequence (Session::render_frame), as all are that ask for
 /// more than samples.
 bool is_of_sequence(const ViewState& view) {
-    return view.is_reconstructed || view.restir.light != RestirLight::Off || view.reconstruction.resolution_scale < 1;
+    return makes_frames(view.picture.integrator) &&
+           (view.is_reconstructed || view.restir.light != RestirLight::Off || view.reconstruction.resolution_scale < 1);
 }
 
 bool same_metering(const RenderSettings& a, const RenderSettings& b) {
@@ -94,7 +92,7 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.height = scaled_side(settings.height, scale);
     settings.aovs |= aovs_of(request.view.layer);
     // Layers and heat maps need no light.
-    if (!is_beauty(request.view.layer) && !is_reconstructed(request.view.layer)) settings.path.max_depth = 0;
+    if (!is_beauty(request.view.layer) && !is_of_frames(request.view.layer)) settings.path.max_depth = 0;
     settings.pass_samples = 1;
     if (sample_s_ > 0 && scale == 1)
         settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
@@ -196,7 +194,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     const bool goes_on = std::exchange(shows_reconstruction_, false);
     const uint32_t width_before = session_.settings().width;
     use(settings_for(request, scale));
-    const bool shows_layer = is_reconstructed(request.view.layer);
+    const bool shows_layer = is_of_frames(request.view.layer);
     const ViewState& view = request.view;
     ReconstructionSettings settings =
         view.is_reconstructed ? view.reconstruction : of_samples_alone(view.reconstruction);
@@ -276,7 +274,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
     const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
-    if (is_reconstructed(request.view.layer)) return reconstruct(request, scale);
+    if (is_of_frames(request.view.layer)) return reconstruct(request, scale);
     if (is_small && is_beauty(request.view.layer) && is_of_sequence(request.view)) return reconstruct(request, scale);
     const double update_s = std::exchange(update_s_, 0);
     const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer) &&

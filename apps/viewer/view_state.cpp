@@ -94,6 +94,13 @@ std::string set_rta(ViewState& state, const std::string& name) {
     return set_combination(state, wanted);
 }
 
+/// Some layers are of frames, which not every integrator makes.
+std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
+    if (!is_of_frames(layer) || makes_frames(settings.integrator)) return {};
+    return fmt::format("{}: a layer of reconstructed frames, which {} does not make", name_of(layer),
+                       integrator_name(settings));
+}
+
 std::vector<ViewSetting> make_settings() {
     std::vector<ViewSetting> all;
     const auto choice = [&](const char* name, const char* label, const char* group, const char* hint,
@@ -126,8 +133,10 @@ std::vector<ViewSetting> make_settings() {
         "test",
         strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
         [](ViewState& s, const std::string& name) {
-            s.layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
-            return std::string();
+            const auto layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
+            const std::string why_not = why_no_layer(layer, s.picture);
+            if (why_not.empty()) s.layer = layer;
+            return why_not;
         });
     choice(
         "exposed", "Exposure", "Picture",
@@ -154,16 +163,27 @@ std::vector<ViewSetting> make_settings() {
         });
     choice(
         "integrator", "Light", "Light",
-        "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on", integrator_names(),
-        [](const ViewState& s) { return integrator_name(s.picture); },
+        "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on; cast, whitted and "
+        "distributed: trees of rays, without most of what surfaces send on",
+        integrator_names(), [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
-            set_integrator(s.picture, name);
+            RenderSettings wanted = s.picture;
+            set_integrator(wanted, name);
+            for (const auto& [kind, why_dark] : s.dark) {
+                if (kind == wanted.integrator) return why_dark;
+            }
+            const std::string why_not = why_no_layer(s.layer, wanted);
+            if (!why_not.empty()) return why_not;
+            wanted.path.max_depth = std::min(wanted.path.max_depth, most_depth(wanted.integrator));
+            s.picture = wanted;
             return std::string();
         });
     numeric(
         "max_depth", "Scatterings, at most", "Light", "How often light is scattered at most on its way to the camera",
         Kind::Whole, 0, kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
-        [](ViewState& s, float v) { s.picture.path.max_depth = static_cast<uint32_t>(v); });
+        [](ViewState& s, float v) {
+            s.picture.path.max_depth = std::min(static_cast<uint32_t>(v), most_depth(s.picture.integrator));
+        });
     numeric(
         "spp", "Samples a pixel", "Light",
         "At rest, each pixel is the mean of so many paths. Four times as many halve the noise", Kind::Whole, 1,
@@ -261,6 +281,8 @@ std::string why_no_value(const ViewSetting& setting, const SettingValue& value) 
 } // namespace
 
 const char* name_of(ShownLayer layer) { return kLayers[static_cast<std::size_t>(layer)]; }
+
+bool is_of_frames(ShownLayer layer) { return layer == ShownLayer::Motion || layer == ShownLayer::Deviation; }
 
 const std::vector<ViewSetting>& view_settings() {
     static const std::vector<ViewSetting> all = make_settings();

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct ViewState {
     RestirSettings restir;
     float moving_scale = 0; // of the size; 0: whatever keeps the frame rate
     bool on_cuda = false;
+    std::vector<std::pair<IntegratorKind, std::string>> dark; // those that would show the scene as black, and why
 };
 
 /// The value of a setting: text for choices, a number for the others.
@@ -74,5 +76,7 @@ bool begins_anew(const ClientMessage& message);
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);
 
 const char* name_of(ShownLayer layer);
+/// Of the reconstruction, so that they are there only with it.
+bool is_of_frames(ShownLayer layer);
 
 } // namespace pertev

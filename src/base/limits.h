@@ -20,6 +20,7 @@ inline constexpr uint64_t kFreeBakedTriangles = 1u << 21; // in copies of shared
 inline constexpr uint64_t kMaxBakedExpansion = 8;         // further such triangles for each of the scene's meshes
 inline constexpr uint32_t kMaxSamplesPerPixel = (1u << 23) - 1; // of the largest value they just fit the film's sums
 inline constexpr uint32_t kMaxPathDepth = 1u << 16;
+inline constexpr uint32_t kMaxTreeDepth = 255;                // of a tree of rays, whose branches wait in memory
 inline constexpr int kMaxBvhDepth = 64;                       // levels; also the capacity of a walk's stack
 inline constexpr uint64_t kMaxBruteForceTriangles = 1u << 16; // of a picture whose rays test all of them
 inline constexpr float kMaxSampleValue = 0x1p40f;             // a larger sample counts as invalid

@@ -1,22 +1,57 @@
 #include "integrators/make_integrator.h"
 
+#include "base/limits.h"
 #include "integrators/path/path_integrator.h"
+#include "integrators/ray_tree/ray_tree_integrator.h"
 
 namespace pertev {
+namespace {
+
+RayTreeSettings tree_settings(const IntegratorSettings& settings) {
+    return {.max_depth = settings.path.max_depth,
+            .sampler = settings.path.sampler,
+            .seed = settings.path.seed,
+            .has_ambient = settings.ambient.has_value(),
+            .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
+}
+
+template <class Algorithm>
+std::unique_ptr<Integrator> make_ray_tree(Queue& queue, const IntegratorSettings& settings) {
+    return std::make_unique<RayTreeIntegrator<Algorithm>>(queue, tree_settings(settings),
+                                                          settings.body == PathBody::Loop, settings.batch);
+}
+
+template <class Algorithm>
+void set_tree_settings(Integrator& integrator, const IntegratorSettings& settings) {
+    static_cast<RayTreeIntegrator<Algorithm>&>(integrator).set_settings(tree_settings(settings));
+}
+
+} // namespace
+
+bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+
+bool finds_all_light(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+
+uint32_t most_depth(IntegratorKind kind) { return kind == IntegratorKind::Path ? kMaxPathDepth - 1 : kMaxTreeDepth; }
+
+bool needs_punctual_lights(IntegratorKind kind) {
+    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted;
+}
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
-    if (a.integrator != b.integrator) return false;
-    switch (a.integrator) {
-    case IntegratorKind::Path:
-        break;
-    }
-    return a.path == b.path;
+    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
     switch (settings.integrator) {
     case IntegratorKind::Path:
         break;
+    case IntegratorKind::Cast:
+        return make_ray_tree<Cast>(queue, settings);
+    case IntegratorKind::Whitted:
+        return make_ray_tree<Whitted>(queue, settings);
+    case IntegratorKind::Distributed:
+        return make_ray_tree<Distributed>(queue, settings);
     }
     return std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
 }
@@ -27,18 +62,34 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::Path:
         static_cast<PathIntegrator&>(integrator).set_settings(to.path);
         break;
+    case IntegratorKind::Cast:
+        set_tree_settings<Cast>(integrator, to);
+        break;
+    case IntegratorKind::Whitted:
+        set_tree_settings<Whitted>(integrator, to);
+        break;
+    case IntegratorKind::Distributed:
+        set_tree_settings<Distributed>(integrator, to);
+        break;
     }
     return true;
 }
 
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
                             bool walks_itself) {
+    if (walks_itself && settings.body == PathBody::Loop) return 0;
+    const uint64_t all = pixels * samples;
     switch (settings.integrator) {
     case IntegratorKind::Path:
         break;
+    case IntegratorKind::Cast:
+        return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch);
+    case IntegratorKind::Whitted:
+        return RayTreeIntegrator<Whitted>::predicted_bytes(tree_settings(settings), all, settings.batch);
+    case IntegratorKind::Distributed:
+        return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch);
     }
-    if (walks_itself && settings.body == PathBody::Loop) return 0;
-    return PathIntegrator::wavefront_bytes(pixels * samples, settings.batch, on_cuda);
+    return PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda);
 }
 
 } // namespace pertev

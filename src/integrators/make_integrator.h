@@ -4,22 +4,43 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
+#include "math/rgb.h"
 
 namespace pertev {
 
-enum class IntegratorKind : uint8_t { Path };
+enum class IntegratorKind : uint8_t {
+    Path,
+    Cast,        // integrators/cast/cast.h
+    Whitted,     // integrators/whitted/whitted.h
+    Distributed, // integrators/distributed/distributed.h
+};
 
 struct IntegratorSettings {
     IntegratorKind integrator = IntegratorKind::Path;
-    PathSettings path;
+    PathSettings path; // of which all integrators have max_depth, sampler and seed
+
+    // Of Cast and Whitted: radiance from all around that diffuse surfaces reflect, W/(sr m2). None: Whitted takes the
+    // mean of the environment.
+    std::optional<Rgb> ambient;
 
     // How the device does it: the light stays the same.
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront
-    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes each
+    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes each; or trees of rays
 };
+
+/// Whether its samples can be taken apart for frames that are reconstructed (FilmView::frame), for pictures that are
+/// denoised, and for ReSTIR.
+bool makes_frames(IntegratorKind kind);
+/// Whether its mean is all light that there is, so that another one of these has the same.
+bool finds_all_light(IntegratorKind kind);
+/// The largest PathSettings::max_depth.
+uint32_t most_depth(IntegratorKind kind);
+/// Whether point, spot and directional lights alone light surfaces.
+bool needs_punctual_lights(IntegratorKind kind);
 
 /// Whether both give the same samples.
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);

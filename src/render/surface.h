@@ -67,9 +67,21 @@ struct Surface {
         // A mirror or smooth glass needs no soft horizon: its direction is the right one but here, where it is folded
         // back at the triangle's plane, so that no light is lost.
         if (!sample.is_delta() || frame.normal == geometric_normal) return {};
-        sample.wi = wi - (2.0f * dot(wi, geometric_normal)) * geometric_normal;
+        sample.wi = folded(wi);
         return sample;
     }
+
+    /// The delta direction `wi_local` of the BSDF seen from wo, in world space, folded back as sample() does it. False
+    /// where it carries nothing.
+    HD bool place_specular(Vec3 wo, Vec3 wo_local, Vec3 wi_local, Vec3& wi) const {
+        wi = normalize(frame.to_world(wi_local));
+        if (is_consistent(wo, wi, wo_local, wi_local)) return true;
+        wi = folded(wi);
+        return !(frame.normal == geometric_normal);
+    }
+
+    /// Mirrored at the triangle's plane.
+    HD Vec3 folded(Vec3 wi) const { return wi - (2.0f * dot(wi, geometric_normal)) * geometric_normal; }
 };
 
 /// Bound of the rounding of a point on a light, per component: 16 units, as of an instance that is not turned.

@@ -23,7 +23,7 @@ RenderSettings meter_settings(const RenderSettings& picture) {
     meter.filter_radius = 0;
     meter.aovs = 0;
     meter.time_kinds = false;
-    meter.integrator = IntegratorKind::Path; // whichever the picture has: the light is the same
+    if (finds_all_light(meter.integrator)) meter.integrator = IntegratorKind::Path; // the light is the same
     meter.path.sampler = SamplerKind::Sobol;
     meter.path.seed = 0;
     return meter;

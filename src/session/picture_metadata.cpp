@@ -14,6 +14,8 @@ namespace {
 
 std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
+std::string comma_separated(Rgb c) { return fmt::format("{},{},{}", c.r, c.g, c.b); }
+
 void append(ExrMetadata& metadata, const ExrMetadata& more) {
     metadata.insert(metadata.end(), more.begin(), more.end());
 }
@@ -111,6 +113,8 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                             {"pertev.clamp", settings.path.clamp},
                             {"pertev.two_sided_lights", static_cast<int32_t>(scene.two_sided_lights)},
                             {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)}};
+    if (settings.ambient && needs_punctual_lights(settings.integrator))
+        metadata.emplace_back("pertev.ambient", comma_separated(*settings.ambient));
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }

@@ -1,7 +1,10 @@
 // The part of a Session that makes frames of a sequence.
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "session/session.h"
+#include "session/settings_text.h"
 
 namespace pertev {
 
@@ -36,6 +39,11 @@ NoisyFrame& Session::fit(std::optional<NoisyFrame>& frame, uint32_t width, uint3
 }
 
 void Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
+    if (!makes_frames(settings_.integrator)) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--integrator {}: frames are reconstructed of path's samples alone",
+                                integrator_name(settings_)));
+    }
     RenderSettings of_light = settings_of_frames(settings_);
     of_light.width = scaled_side(settings_.width, settings);
     of_light.height = scaled_side(settings_.height, settings);

@@ -12,6 +12,7 @@
 #include "render/camera_work.h"
 #include "render/hidden_back_share.h"
 #include "render/place_meshes.h"
+#include "session/check_integrator.h"
 #include "session/meter_exposure.h"
 
 namespace pertev {
@@ -57,6 +58,7 @@ std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice&
 
 Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings)
     : queue_(queue), camera_(camera), settings_(settings), filter_(queue) {
+    check_integrator(settings);
     set_scene(scene);
     history_.cuts = 0;
 }
@@ -123,6 +125,7 @@ void Session::set_camera(const Camera& camera) {
 }
 
 void Session::set_settings(const RenderSettings& settings) {
+    check_integrator(settings);
     check_choice(tracers_of(settings, queue_.is_cuda()), queue_.is_cuda());
     const bool same = same_picture(settings_, settings);
     if (settings.width != settings_.width || settings.height != settings_.height) hidden_back_share_.reset();

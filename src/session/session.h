@@ -59,9 +59,9 @@ public:
     /// set_scene.
     void update_scene(const PreparedScene& scene, uint32_t parts);
     void set_camera(const Camera& camera);
-    /// Throws Error(BadInput), and nothing is done, where the device has no such tracer; Error(OutOfMemory, OverLimit)
-    /// where the structure of another one cannot be had: the next set_settings must then come before anything is
-    /// rendered.
+    /// Throws what check_integrator does, and Error(BadInput), and nothing is done, where the device has no such
+    /// tracer; Error(OutOfMemory, OverLimit) where the structure of another one cannot be had: the next set_settings
+    /// must then come before anything is rendered.
     void set_settings(const RenderSettings& settings);
     /// What was seen before tells nothing of what comes (a camera that jumps, a measurement that begins again).
     void cut();
@@ -103,7 +103,7 @@ public:
     /// frames since the last cut, each of which had its own scene and camera. The film stays as it is. The frame is
     /// a function of scene, camera, settings and number of each of these frames, on every device alike. `restir` is
     /// off where the path settings ask for indirect light alone, or find lights by one strategy alone. Throws
-    /// Error(OutOfMemory, DeviceFault).
+    /// Error(OutOfMemory, DeviceFault), and Error(BadInput) for an integrator that makes no frames (makes_frames).
     void render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir = {});
     /// Of the last render_frame, for its exposure (session/adaptive_exposure.h). Throws as render_frame.
     FrameTones frame_tones() const;

@@ -7,6 +7,8 @@ namespace {
 
 // A switch names each value, so that the compiler tells of one that was forgotten; these list them.
 constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
+constexpr IntegratorKind kIntegrators[] = {IntegratorKind::Cast, IntegratorKind::Whitted, // beside Path
+                                           IntegratorKind::Distributed};
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
                                     PixelFilter::BlackmanHarris};
@@ -22,6 +24,20 @@ std::string_view name_of(PathLight light) {
         return "direct";
     case PathLight::Indirect:
         return "indirect";
+    }
+    return "";
+}
+
+std::string_view name_of(IntegratorKind integrator) {
+    switch (integrator) {
+    case IntegratorKind::Path:
+        return "path";
+    case IntegratorKind::Cast:
+        return "cast";
+    case IntegratorKind::Whitted:
+        return "whitted";
+    case IntegratorKind::Distributed:
+        return "distributed";
     }
     return "";
 }
@@ -46,20 +62,33 @@ std::vector<std::string> names_of(const T (&values)[kCount]) {
 std::string_view integrator_name(const RenderSettings& settings) {
     switch (settings.integrator) {
     case IntegratorKind::Path:
+        return name_of(settings.path.light);
+    case IntegratorKind::Cast:
+    case IntegratorKind::Whitted:
+    case IntegratorKind::Distributed:
         break;
     }
-    return name_of(settings.path.light);
+    return name_of(settings.integrator);
 }
 
 bool set_integrator(RenderSettings& settings, std::string_view name) {
-    const std::optional<PathLight> light = value_named(kLights, name);
-    if (!light) return false;
-    settings.integrator = IntegratorKind::Path;
-    settings.path.light = *light;
+    if (const std::optional<PathLight> light = value_named(kLights, name)) {
+        settings.integrator = IntegratorKind::Path;
+        settings.path.light = *light;
+        return true;
+    }
+    const std::optional<IntegratorKind> kind = value_named(kIntegrators, name);
+    if (!kind) return false;
+    settings.integrator = *kind;
+    settings.path.light = PathLight::Path;
     return true;
 }
 
-std::vector<std::string> integrator_names() { return names_of(kLights); }
+std::vector<std::string> integrator_names() {
+    std::vector<std::string> names = names_of(kLights);
+    for (std::string& name : names_of(kIntegrators)) names.push_back(std::move(name));
+    return names;
+}
 
 std::string_view name_of(SamplerKind sampler) {
     switch (sampler) {

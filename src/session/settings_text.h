@@ -13,7 +13,8 @@
 
 namespace pertev {
 
-/// "path", "direct" or "indirect": the integrator and which part of the light it shows.
+/// The integrator, "path" by name of the part of the light that it shows: "path", "direct" or "indirect"; "cast",
+/// "whitted", "distributed".
 std::string_view integrator_name(const RenderSettings& settings);
 /// False, and nothing done, where there is no such integrator.
 bool set_integrator(RenderSettings& settings, std::string_view name);

@@ -103,6 +103,23 @@ struct Lobe {
         }
         return {};
     }
+    HD SpecularBranches specular(Vec3 wo) const {
+        switch (kind) {
+        case LobeKind::None:
+        case LobeKind::Diffuse:
+        case LobeKind::Sheen:
+            break;
+        case LobeKind::Conductor:
+            return conductor.specular(wo);
+        case LobeKind::Dielectric:
+            return dielectric.specular(wo);
+        case LobeKind::Schlick:
+            return schlick.specular(wo);
+        case LobeKind::Coat:
+            return coat.specular(wo);
+        }
+        return {};
+    }
     /// What it adds under `way`, which a layer then moves to beneath itself.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, Passage& way) const {
         switch (kind) {
@@ -192,15 +209,26 @@ struct Bsdf {
     /// sample() looks at u_lobe.
     HD bool draws_lobe() const { return !is_diffuse() && (layer_count != 0 || base.kind != LobeKind::None); }
 
+    /// What all delta lobes together send to wo: the means of what sample() draws of them.
+    HD SpecularBranches specular(Vec3 wo) const {
+        return is_diffuse() || wo.z == 0 ? SpecularBranches{} : specular_of_lobes(*this, wo);
+    }
+    /// Reflectance of the diffuse base, [0, 1], whatever lies on it.
+    HD Rgb diffuse_albedo() const {
+        return base.kind == LobeKind::Diffuse ? base.diffuse.share * base.diffuse.albedo : Rgb{0, 0, 0};
+    }
+
     /// Of all that is not diffuse, seen at `cos_o` >= 0.
     HD Gloss gloss(float cos_o) const { return is_diffuse() ? Gloss{} : gloss_of_lobes(*this, cos_o); }
 
-    HD bool has_delta() const {
-        if (base.kind != LobeKind::None && base.lobe_class() == LobeClass::Specular) return true;
+    /// Whether any lobe is of this class.
+    HD bool has(LobeClass lobe_class) const {
+        if (base.kind != LobeKind::None && base.lobe_class() == lobe_class) return true;
         for (int i = 0; i < layer_count; ++i)
-            if (layers[i].lobe_class() == LobeClass::Specular) return true;
+            if (layers[i].lobe_class() == lobe_class) return true;
         return false;
     }
+    HD bool has_delta() const { return has(LobeClass::Specular); }
     /// eval() is black for every pair of directions: light sampling is of no use here.
     HD bool has_delta_only() const {
         if (is_stacked && !has_delta_layers_only(*this)) return false;
@@ -276,6 +304,26 @@ private:
         Passage way;
         const BsdfValue layers = bsdf.evaluate_layers(0, wo, wi, classes, way);
         return layers + masked(bsdf.base.lobe_class(), bsdf.base.evaluate(wo, wi, way), classes);
+    }
+    HD_CALL static SpecularBranches specular_of_lobes(Bsdf bsdf, Vec3 wo) {
+        SpecularBranches sum;
+        for (int i = bsdf.layer_count; i >= 0; --i) { // the base is number 0
+            const SpecularBranches one = i > 0 ? bsdf.layers[i - 1].specular(wo) : bsdf.base.specular(wo);
+            sum.mirror += light_through(bsdf, i, wo, {-wo.x, -wo.y, wo.z}) * one.mirror;
+            if (is_black(one.refraction)) continue;
+            sum.refraction = light_through(bsdf, i, wo, one.refracted) * one.refraction;
+            sum.refracted = one.refracted;
+        }
+        return sum;
+    }
+    /// What the layers from `last` on leave of light along wi to wo.
+    HD static float light_through(const Bsdf& bsdf, int last, Vec3 wo, Vec3 wi) {
+        return bsdf.is_stacked ? light_through_stack(bsdf, last, wo, wi) : 1.0f;
+    }
+    HD_CALL static float light_through_stack(Bsdf bsdf, int last, Vec3 wo, Vec3 wi) {
+        Passage way;
+        bsdf.evaluate_layers(last, wo, wi, kAllLobeClasses, way);
+        return way.light;
     }
     HD_CALL static bool has_delta_layers_only(Bsdf bsdf) {
         for (int i = 0; i < bsdf.layer_count; ++i)

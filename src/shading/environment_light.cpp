@@ -151,7 +151,8 @@ EnvironmentView view_of(const EnvironmentData& data) {
             {data.columns.starts.data(), data.columns.guide.data(), data.width, guide_bits_for(data.width)},
             data.rotation_turns,
             data.is_constant,
-            data.constant};
+            data.constant,
+            data.mean_radiance};
 }
 
 } // namespace pertev

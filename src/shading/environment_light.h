@@ -33,6 +33,7 @@ struct EnvironmentView {
     float rotation_turns = 0;          // [0, 1): rotation about +y, 1 is a full turn
     bool is_constant = true;           // radiance is `constant` from everywhere; pixels and row_bounds are not read
     Rgb constant;
+    Rgb mean; // over all directions, W/(sr m2)
 };
 
 /// Place in the image in texels: x in [0, width], y in [0, height], (0, 0) the upper left corner.

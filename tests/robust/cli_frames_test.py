@@ -123,6 +123,8 @@ class MovingPictures(CliTest):
                     says=["f-###.json: /settings", "--fps"])
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--seed", "1",
                     "--continue", says=["pertev.seed"])
+        self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--integrator",
+                    "distributed", "--continue", says=["pertev.integrator"])
         write(self.path("m.gltf"), moving_gltf() + " ")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
                     says=["hash of the scene's file"])

@@ -15,14 +15,14 @@ class WhatIsRefused(CliTest):
                      "--environment-rotation inf", "--exposure much", "--exposure inf", "--seed -1",
                      "--seed 4294967296", "--threads 0", "--filter-radius nan", "--filter-radius 1e9",
                      "--view-height inf", "--max-depth -1", "--tone-map x", "--sampler x", "--filter x",
-                     "--integrator x", "--projection x", "--aov x", "--aov albedo", "--size 10", "--size 0x10",
+                     "--integrator x", "--integrator whitted --ambient x", "--integrator whitted --ambient 1,2", "--integrator cast --ambient -1", "--integrator cast --ambient nan", "--projection x", "--aov x", "--aov albedo", "--size 10", "--size 0x10",
                      "--size x", "--size 10x", "--size 10x10x10", "--size -1x10", "--size nanxnan", "--device gpu",
                      "--device cuda:x", "--eye 1,2", "--eye 1,2,nan", "--target 1,2,3,4", "--up x,y,z",
                      "--structure x", "--walk x", "--walk moon=compressed", "--walk shadow=x", "--rta x", "--order x",
                      "--distribution x", "--build x", "--build sbvh", "--environment -1,0,0", "--environment 1,2", "--environment no.hdr", "--allow-path nowhere"]:
             with self.subTest(flag=flag):
                 arguments = flag.split()
-                self.refuse(2, "render", "cornell-box", "-o", "x.png", *arguments, says=[arguments[0]])
+                self.refuse(2, "render", "cornell-box", "-o", "x.png", *arguments, says=[arguments[-2] if len(arguments) > 2 else arguments[0]])
 
     def test_a_flag_given_twice_ends_with_2_and_is_said_to_be(self):
         for line in ["render cornell-box -o x.png --size 8x8 --size 9x9", "render cornell-box -o x.png --spp 1 --spp 2",
@@ -50,9 +50,21 @@ class WhatIsRefused(CliTest):
         for flag, output in [("--transparent", "x.jpg"), ("--transparent", "x.hdr"), ("--aov albedo", "x.png"),
                              ("--exposure 1", "x.exr"), ("--exposure auto", "x.hdr"), ("--tone-map agx", "x.exr"),
                              ("--view-height 2 --projection perspective", "x.png"),
-                             ("--focus 2 --aperture 0", "x.png"), ("--denoise svgf --max-depth 0", "x.png")]:
+                             ("--focus 2 --aperture 0", "x.png"), ("--denoise svgf --max-depth 0", "x.png"),
+                             ("--ambient 1", "x.png"), ("--ambient 1 --integrator distributed", "x.png"),
+                             ("--clamp 1 --integrator whitted --ambient 1", "x.png")]:
             with self.subTest(flag=flag, output=output):
                 self.refuse(2, "render", "nowhere.obj", "-o", output, *flag.split(), says=[flag.split()[0] + ": "])
+
+    def test_what_an_integrator_cannot_do_is_one_line(self):
+        for flags, code, says in [
+                ("--integrator whitted --denoise svgf", 2, "--denoise svgf: reconstructs pictures of --integrator path, not of whitted"),
+                ("--integrator distributed --max-depth 256", 3, "--max-depth 256: with --integrator distributed at most 255"),
+                ("--integrator cast", 2, "this scene has lamps alone: --integrator distributed or path knows all lights")]:
+            with self.subTest(flags=flags):
+                outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])
+                self.assertEqual(len(outcome.stderr.strip().splitlines()), 1, outcome)
+        self.refuse(2, "bench", "frames", "cornell-box", "--integrator", "distributed", "--restir", "di", says=["are for path"])
 
     def test_a_flag_that_the_scene_makes_useless_is_a_warning(self):
         write(self.path("floor.obj"), FLOOR)

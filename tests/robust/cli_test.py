@@ -18,7 +18,7 @@ FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
-              "--integrator --max-depth --seed --sampler --filter --filter-radius --clamp --device --threads "
+              "--integrator --max-depth --ambient --seed --sampler --filter --filter-radius --clamp --device --threads "
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue",
     "info": "--allow-path --quiet -q --json",
@@ -387,7 +387,8 @@ class WhatIsRendered(CliTest):
     def test_every_choice_that_changes_the_light_changes_the_hash(self):
         choices = [[], ["--seed", "1"], ["--sampler", "independent"], ["--filter", "box"], ["--filter", "tent"],
                    ["--filter", "gaussian"], ["--filter-radius", "3"], ["--integrator", "direct"],
-                   ["--integrator", "indirect"], ["--max-depth", "2"], ["--clamp", "0.1"], ["--fov", "30"],
+                   ["--integrator", "indirect"], ["--integrator", "distributed"], ["--integrator", "cast", "--ambient", "0.5"],
+                   ["--integrator", "whitted", "--ambient", "0.5,0.2,0.1"], ["--max-depth", "2"], ["--clamp", "0.1"], ["--fov", "30"],
                    ["--environment", "1,0.5,0.2"], ["--environment", "1,1,1", "--environment-scale", "3"],
                    ["--aperture", "0.05", "--focus", "0.9"], ["--aperture", "0.05", "--focus", "1.3"],
                    ["--eye", "0.3,0.3,-0.7"], ["--target", "0.2,0.2,0"], ["--up", "1,1,0"],

@@ -205,6 +205,14 @@ class Pictures(CliTest):
     def test_settings_change_the_picture_as_flags_do(self):
         with Viewer() as viewer, Client(viewer) as client:
             client.done()
+            client.set("integrator", "distributed")
+            state = client.done(lambda s: s["values"]["integrator"] == "distributed")
+            self.assertEqual(state["hash"], self.rendered("--integrator", "distributed", spp=state["spp"])[0])
+            client.set("layer", "motion")
+            self.assertIn("which distributed does not make", client.text("notice")["text"])
+            client.set("integrator", "whitted")
+            self.assertIn("this scene has lamps alone", client.text("notice")["text"])
+            client.set("integrator", "path")
             for name, value, flag in [("max_depth", 1, "--max-depth"), ("integrator", "direct", "--integrator"),
                                       ("spp", 7, "--spp")]:
                 client.set(name, value)

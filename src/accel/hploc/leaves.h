@@ -86,7 +86,7 @@ struct FindBounds {
         for (uint32_t k = 0; k < kTrianglesAtOnce; ++k) {
             const uint64_t i = thread + static_cast<uint64_t>(k) * stride;
             if (i >= count) break;
-            const Vec3 centre = centre_of(bounds_of(load_triangle(triangles + i)));
+            const Vec3 centre = centre_of(hploc::bounds_of(load_triangle(triangles + i)));
             const float values[6] = {centre.x, centre.y, centre.z, -centre.x, -centre.y, -centre.z};
             for (int v = 0; v < 6; ++v) least[v] = ordered(values[v]) < least[v] ? ordered(values[v]) : least[v];
         }
@@ -112,7 +112,7 @@ struct MakeCodes {
     HD void operator()(uint32_t i) const {
         const Vec3 lo = centres->lo();
         const float extent = max_component(centres->hi() - lo);
-        const Vec3 from = centre_of(bounds_of(load_triangle(triangles + i))) - lo;
+        const Vec3 from = centre_of(hploc::bounds_of(load_triangle(triangles + i))) - lo;
         const auto cell = [&](float x) {
             return spread_bits(
                 static_cast<uint64_t>(to_int(extent > 0 ? x / extent * 0x1p21f : 0.0f, 0, (1 << 21) - 1)));
@@ -130,7 +130,7 @@ struct PlaceLeaves {
 
     HD void operator()(uint32_t i) const {
         const uint32_t triangle = order[i];
-        const Bounds3 box = bounds_of(load_triangle(triangles + triangle));
+        const Bounds3 box = hploc::bounds_of(load_triangle(triangles + triangle));
         climb.tree.nodes[i] = {box.lo, triangle, box.hi, kNone};
         climb.ends[i] = kNone;
         if (i == 0) climb.tree.nodes[climb.tree.count] = {{}, kNone, {}, kNone}; // is not used

@@ -9,16 +9,13 @@
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
 #include "render/film_view.h"
+#include "render/first_hit.h"
 #include "render/picture_view.h"
 #include "render/ray_origin.h"
 #include "render/surface.h"
+#include "shading/power_heuristic.h"
 
 namespace pertev {
-
-HD inline float power_heuristic(float pdf, float other_pdf) {
-    const float ratio = other_pdf / pdf;
-    return 1.0f / (1.0f + ratio * ratio);
-}
 
 /// Whether light that was scattered `rough` times by other than delta lobes is asked for.
 HD inline bool counts(PathLight light, uint32_t rough) {
@@ -136,33 +133,6 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     return true;
 }
 
-/// Auxiliary channels of what a camera ray hit first.
-HD inline void add_first_hit(const FilmView& film, const PathState& path, const Hit& hit, const Surface& surface,
-                             Vec3 camera_axis, Vec3 centre) {
-    add_channel(film, path.pixel, kFilmHits, 1.0f);
-    if ((film.aovs & kAovAlbedo) != 0) {
-        add_channels(film, path.pixel, channel_offset(film.aovs, kAovAlbedo),
-                     {surface.albedo.r, surface.albedo.g, surface.albedo.b});
-    }
-    if ((film.aovs & kAovNormal) != 0) {
-        const Vec3 normal = surface.frame.normal;
-        add_channels(film, path.pixel, channel_offset(film.aovs, kAovNormal),
-                     dot(normal, path.direction) > 0 ? -normal : normal);
-    }
-    if ((film.aovs & kAovDepth) != 0) {
-        add_channel(film, path.pixel, channel_offset(film.aovs, kAovDepth),
-                    dot(surface.position - path.origin, camera_axis));
-    }
-    if ((film.aovs & kAovPosition) != 0) { // in the file's coordinates: the film adds both without rounding
-        const uint32_t channel = channel_offset(film.aovs, kAovPosition);
-        add_channels(film, path.pixel, channel, surface.position);
-        add_channels(film, path.pixel, channel, centre);
-    }
-    if ((film.aovs & kAovIds) != 0 && path.sample == 0) {
-        film.ids[path.pixel] = {hit.instance, hit.primitive, surface.material};
-    }
-}
-
 /// The surface that a camera ray met, for a frame. Emission follows by itself.
 HD inline void store_first_hit(const NoisyFrameView& frame, const PathState& path, const Hit& hit,
                                const Surface& surface, Vec3 camera_axis) {
@@ -217,9 +187,7 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     const Rgb radiance_before = path.radiance;
     wants_shadow = false;
     if (hit.instance == kNoHit) {
-        if (path.depth == 0 && (film.aovs & kAovIds) != 0 && path.sample == 0) {
-            film.ids[path.pixel] = {kNoHit, kNoHit, kNoHit};
-        }
+        if (path.depth == 0) add_no_first_hit(film, path.pixel, path.sample);
         if (is_frame && path.depth == 0) store_no_hit(film.frame, path.pixel);
         const bool is_hidden = picture.hide_background && path.depth == 0;
         if (scene.lights.has_environment() && !is_hidden) {
@@ -241,7 +209,7 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
         if (path.depth == 0) store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
         if (path.depth == 1) film.frame.gloss[path.pixel].w = hit.t;
     } else if (path.depth == 0) {
-        add_first_hit(film, path, hit, surface, picture.camera.axis, scene.centre);
+        add_first_hit(film, path.pixel, path.sample, {path.origin, path.direction}, hit, surface, picture);
     }
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;

@@ -20,6 +20,11 @@ struct CoatLobe {
     HD LobeClass lobe_class() const { return interface().lobe_class(); }
     HD float energy() const { return strength * interface().energy(); }
     HD Gloss gloss(float cos_o) const { return {strength * fresnel_schlick(cos_o, grey(f0)), alpha}; }
+    HD SpecularBranches specular(Vec3 wo) const {
+        SpecularBranches branches;
+        if (interface().is_smooth()) branches.mirror = strength * fresnel_schlick(abs(wo.z), grey(f0));
+        return branches;
+    }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};

@@ -23,6 +23,11 @@ struct ConductorLobe {
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(fresnel_conductor_average(eta, k)); }
     HD Gloss gloss(float cos_o) const { return {fresnel_conductor(cos_o, eta, k), alpha}; }
+    HD SpecularBranches specular(Vec3 wo) const {
+        SpecularBranches branches;
+        if (is_smooth()) branches.mirror = fresnel_conductor(abs(wo.z), eta, k);
+        return branches;
+    }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
         if (is_smooth() || !(wo.z * wi.z > 0)) return {};

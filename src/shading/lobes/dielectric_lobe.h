@@ -36,6 +36,17 @@ struct DielectricLobe {
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return 1; }
     HD Gloss gloss(float) const { return {grey(1), alpha}; }
+    HD SpecularBranches specular(Vec3 wo) const {
+        if (!is_smooth()) return {};
+        const float eta = eta_from(wo);
+        const DielectricFresnel fresnel = fresnel_dielectric(min(abs(wo.z), 1.0f), eta);
+        const float r = fresnel.reflectance;
+        SpecularBranches branches = {.mirror = grey(r)};
+        if (!(r < 1)) return branches;
+        branches.refraction = (1.0f - r) * tint;
+        branches.refracted = refracted(wo, eta, fresnel);
+        return branches;
+    }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
         if (is_smooth() || !(abs(wo.z) > 0 && abs(wi.z) > 0)) return {};
@@ -111,8 +122,11 @@ private:
         const float r = fresnel.reflectance;
         if (u_lobe < r) return draw_mirror(wo, grey(1), r);
         if (!(r < 1)) return {};
-        const Vec3 wi = normalize(Vec3{-wo.x / eta, -wo.y / eta, -copysign(fresnel.cos_t, wo.z)});
-        return {.sample = {.wi = wi, .weight = tint, .pdf = 1.0f - r, .is_transmission = true}};
+        return {
+            .sample = {.wi = refracted(wo, eta, fresnel), .weight = tint, .pdf = 1.0f - r, .is_transmission = true}};
+    }
+    HD static Vec3 refracted(Vec3 wo, float eta, const DielectricFresnel& fresnel) {
+        return normalize(Vec3{-wo.x / eta, -wo.y / eta, -copysign(fresnel.cos_t, wo.z)});
     }
 };
 

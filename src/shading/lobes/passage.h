@@ -8,6 +8,7 @@
 //   evaluate    value and density of what it adds under a Passage; a layer then moves the Passage to beneath itself
 //   gloss       seen at a cosine: what a denoiser is told (shading/gloss.h); none of a diffuse lobe
 //   draw        a direction from u_lobe and u in [0, 1), or word that what is beneath is to draw one
+//   specular    what it sends along single directions, as if it were alone; a lobe that is diffuse has none
 // A layer also takes `beneath`, the energy of all that it lies on.
 
 #include "base/host_device.h"
@@ -32,6 +33,13 @@ struct Passage {
         light = light * (1.0f - max(at_o, at_i));
         reach = reach * p_beneath;
     }
+};
+
+/// What delta lobes send along the only two directions that they have: into wo comes `mirror` of the light from the
+/// mirror image of wo, and `refraction` of the light from `refracted`. Nothing is drawn.
+struct SpecularBranches {
+    Rgb mirror = {}, refraction = {}; // [0, 1]
+    Vec3 refracted = {};              // unit, on the other side; where `refraction` is not black
 };
 
 /// What draw() gives.

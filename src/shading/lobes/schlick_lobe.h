@@ -51,6 +51,11 @@ struct SchlickLobe {
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(fresnel_schlick_average(mixed_f0())); }
     HD Gloss gloss(float cos_o) const { return {fresnel_schlick(cos_o, mixed_f0()), alpha}; }
+    HD SpecularBranches specular(Vec3 wo) const {
+        SpecularBranches branches;
+        if (is_smooth()) branches.mirror = fresnel_schlick(abs(wo.z), mixed_f0());
+        return branches;
+    }
     HD Rgb mixed_f0() const { return lerp(grey(f0), base_color, metallic); }
 
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {

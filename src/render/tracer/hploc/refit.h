@@ -56,7 +56,7 @@ private:
         uint32_t child = node.child_base, triangle = node.triangle_base;
         float cost = 0;
         for (uint32_t bit = 0; bit < 24; ++bit) {
-            if (node.triangles >> bit & 1u) slots[bit % 8].extend(bounds_of(triangles[triangle++]));
+            if (node.triangles >> bit & 1u) slots[bit % 8].extend(hploc::bounds_of(triangles[triangle++]));
         }
         for (uint32_t s = 0; s < 8; ++s) {
             if (inner_slots(node) >> s & 1u) {

@@ -1,0 +1,25 @@
+#pragma once
+
+// Ray casting: what a camera ray meets first is lit by the lights that it sees, and that is all.
+//
+// Source: Appel, "Some Techniques for Shading Machine Renderings of Solids", AFIPS 1968.
+
+#include "integrators/ray_tree/tree_vertex.h"
+
+namespace pertev {
+
+struct Cast {
+    static constexpr uint32_t kMostBranches = 0; // rays that a vertex sends on
+
+    /// A point, a spot or a direction each: hard shadows.
+    HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
+    HD static bool ask_for_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
+        return vertex.ask_for_punctual_light(number, shadow);
+    }
+    HD static void follow(const TreeVertex& vertex) { vertex.add_ambient(); }
+
+    /// Without one that was asked for.
+    static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; }
+};
+
+} // namespace pertev

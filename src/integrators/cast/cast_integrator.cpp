@@ -1,0 +1,6 @@
+#include "integrators/cast/cast.h"
+#include "integrators/ray_tree/ray_tree_integrator_body.h"
+
+namespace pertev {
+template class RayTreeIntegrator<Cast>;
+} // namespace pertev

@@ -1,0 +1,186 @@
+#pragma once
+
+// The stages of a round of trees, in their order. Launched one by one on a device; a thread of the CPU runs the same
+// ones over a few trees of its own.
+
+#include "device/atomic_add.h"
+#include "integrators/ray_tree/tree_vertex.h"
+#include "render/film_view.h"
+#include "render/first_hit.h"
+#include "render/tiled_pixel.h"
+
+namespace pertev {
+
+/// The samples that trees are begun for: [first_sample, ...) of pixels [first_pixel, + pixels) in tiled order, sample
+/// by sample.
+struct TreeSamples {
+    uint32_t first_pixel, pixels, first_sample;
+};
+
+/// Trees 0, 1, ... become samples `first`, first + 1, ... of `samples`, with the camera's ray under way.
+struct BeginTrees {
+    CameraRays camera;
+    RayTreeSettings settings;
+    TreesView trees;
+    TreeSamples samples;
+    uint64_t first;
+
+    HD void operator()(uint32_t i) const {
+        const uint64_t number = first + i;
+        TreeState state = {};
+        state.sample = samples.first_sample + static_cast<uint32_t>(number / samples.pixels);
+        state.pixel = tiled_pixel(samples.first_pixel + static_cast<uint32_t>(number % samples.pixels), camera.width,
+                                  camera.height);
+        state.rays = 1;
+        const Ray line = camera.ray(state.pixel, settings.sampler, sample_key(settings, state.pixel, state.sample));
+        PendingRay ray;
+        ray.origin = line.origin;
+        ray.direction = line.direction;
+        trees.states[i] = state;
+        trees.store_ray(i, 0, ray);
+        trees.queue_ray(i, i, ray, tree_key(state, settings.seed, 0, false), 0);
+    }
+};
+
+/// What the rays under way have met. The vertex's shadow rays from `first_shadow` on are queued, kShadowsAtOnce at
+/// most: the stage runs again until all have been. The first time emission is added, the last time (`is_last`) what the
+/// vertex sends on goes on the stack, over the ray that ended there.
+template <class Algorithm>
+struct ShadeTrees {
+    PictureView picture;
+    RayTreeSettings settings;
+    FilmView film;
+    TreesView trees;
+    uint32_t round, first_shadow;
+    bool is_last;
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t tree = trees.owners[round % 2][i];
+        TreeState state = trees.states[tree];
+        state.shadows = 0;
+        const PendingRay ray = trees.load_ray(tree, state.pending);
+        const Hit hit = trees.hits().load(i);
+        if (hit.instance == kNoHit) {
+            if (first_shadow == 0) add_background(state, ray);
+        } else {
+            shade(tree, state, ray, hit);
+        }
+        trees.states[tree] = state;
+    }
+
+private:
+    HD void add_background(TreeState& state, const PendingRay& ray) const {
+        const LightSetView& lights = picture.scene.lights;
+        if (ray.depth == 0) add_no_first_hit(film, state.pixel, state.sample);
+        if (!lights.has_environment() || (picture.hide_background && ray.depth == 0)) return;
+        const float light_pdf = ray.bsdf_pdf > 0 ? pdf_environment(lights, ray.direction) : 0.0f;
+        add_emission(state, ray, environment_radiance(lights.environment, ray.direction), light_pdf);
+    }
+    /// `light_pdf`: density with which light sampling at the ray's start draws its direction, 1/sr; 0: it cannot.
+    HD static void add_emission(TreeState& state, const PendingRay& ray, Rgb emission, float light_pdf) {
+        const float weight = ray.bsdf_pdf > 0 && light_pdf > 0 ? power_heuristic(ray.bsdf_pdf, light_pdf) : 1.0f;
+        state.radiance += ray.weight * (weight * emission);
+    }
+    HD void shade(uint32_t tree, TreeState& state, const PendingRay& ray, const Hit& hit) const {
+        const SceneView& scene = picture.scene;
+        const Surface surface = make_surface(scene, hit, ray.direction);
+        if (first_shadow == 0) {
+            if (ray.depth == 0) {
+                add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
+            }
+            if (!is_black(surface.emission)) {
+                const uint32_t light =
+                    ray.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
+                add_emission(state, ray, surface.emission,
+                             light != kNoLight ? pdf_light_hit(scene.lights, light, ray.origin, surface.position)
+                                               : 0.0f);
+            }
+        }
+        if (surface.is_unlit || ray.depth >= settings.max_depth) return;
+        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface};
+        ask_for_lights(vertex);
+        if (is_last) Algorithm::follow(vertex);
+    }
+    HD void ask_for_lights(const TreeVertex& vertex) const {
+        const uint32_t all = Algorithm::shadow_rays(picture.scene.lights);
+        const uint32_t key = tree_key(vertex.state, settings.seed, vertex.number(), true);
+        uint32_t places[kShadowsAtOnce] = {};
+        uint32_t count = 0;
+        for (uint32_t number = first_shadow; number < min(all, first_shadow + kShadowsAtOnce); ++number) {
+            TreeShadowRay shadow;
+            if (!Algorithm::ask_for_light(vertex, number, shadow)) continue;
+            const uint32_t place = atomic_add(&trees.counts->shadows, 1u);
+            trees.queue_shadow(place, shadow, vertex.surface.triangle, key);
+            places[count++] = place;
+        }
+        vertex.state.shadows = count;
+        if (count > 0) trees.asked[vertex.tree] = {places[0], places[1], places[2], places[3]};
+    }
+};
+static_assert(kShadowsAtOnce == 4, "TreesView::asked");
+
+/// Light whose shadow ray met nothing, tree by tree, in the order in which it was asked for.
+struct AddTreeLight {
+    TreesView trees;
+    uint32_t round;
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t tree = trees.owners[round % 2][i];
+        TreeState& state = trees.states[tree];
+        if (state.shadows == 0) return;
+        const Uint4 asked = trees.asked[tree];
+        const uint32_t places[] = {asked.x, asked.y, asked.z, asked.w};
+        Rgb radiance = state.radiance;
+        for (uint32_t k = 0; k < state.shadows; ++k) {
+            if (trees.shadow_keys[places[k]] != kNoHit) continue;
+            const Float4 c = trees.contributions[places[k]];
+            radiance += Rgb{c.x, c.y, c.z};
+        }
+        state.radiance = radiance;
+    }
+};
+
+/// Takes the next ray of each tree off its stack; a tree that has none is a sample of the film.
+struct TakeNextRays {
+    RayTreeSettings settings;
+    FilmView film;
+    TreesView trees;
+    uint32_t round;
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t tree = trees.owners[round % 2][i];
+        TreeState& state = trees.states[tree];
+        if (state.pending == 0) return add_radiance(film, state.pixel, state.radiance);
+        const PendingRay ray = trees.load_ray(tree, --state.pending);
+        const uint32_t key = tree_key(state, settings.seed, state.rays++, false);
+        trees.queue_ray(atomic_add(&trees.counts->next, 1u), tree, ray, key, round + 1);
+    }
+};
+
+/// One thread counts: what was asked for since the last time, and, where `ends_round`, the rays that go on.
+struct CountTrees {
+    TreeCounts* counts;
+    bool ends_round;
+
+    HD void operator()(uint32_t) const {
+        counts->all_shadows += counts->shadows;
+        counts->shadows = 0;
+        if (!ends_round) return;
+        counts->bounces += counts->next;
+        counts->rays = counts->next;
+        counts->next = 0;
+    }
+};
+
+/// One thread: `trees` begin a first round.
+struct BeginRounds {
+    TreeCounts* counts;
+    uint32_t trees;
+
+    HD void operator()(uint32_t) const {
+        counts->rays = trees;
+        counts->next = counts->shadows = 0;
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,151 @@
+#pragma once
+
+// A surface that a ray of a tree has met, as an algorithm sees it: what it may ask for there. Each algorithm
+// (integrators/cast/cast.h, whitted/whitted.h, distributed/distributed.h) is a few lines over these.
+
+#include "integrators/ray_tree/ray_tree_settings.h"
+#include "integrators/ray_tree/tree_memory.h"
+#include "render/picture_view.h"
+#include "render/ray_origin.h"
+#include "render/surface.h"
+#include "shading/power_heuristic.h"
+
+namespace pertev {
+
+/// What becomes of a ray whose weight is less than the least: left out, which loses its light, or kept by chance with a
+/// weight that makes up for those that are not (Russian roulette), which does not.
+enum class WeakRays : uint8_t { LeftOut, ByChance };
+struct LeastWeight {
+    float weight;
+    WeakRays weaker;
+};
+
+/// Random numbers of a tree, in groups of four (math/sampler.h). Rays are numbered in the order in which they are
+/// traced, and ray v ends at vertex v.
+///   camera         place in the pixel, then the light of vertex 0
+///   lens           place on the lens
+///   scatter, of v  a glossy direction from vertex v, then the light of vertex v where that is not the first
+///   choices, of v  the lobe, then whether weak rays are kept: mirror, refraction, glossy
+enum TreeGroup : uint32_t { kTreeScatter, kTreeChoices, kTreeGroups };
+inline constexpr uint32_t kTreeNumberLobe = 0;
+enum class Branch : uint32_t { Mirror = 1, Refraction = 2, Glossy = 3 }; // with its number of the choices
+
+/// The coin of blended surfaces for ray `number` of a tree; its vertex's shadow rays toss another one.
+HD inline uint32_t tree_key(const TreeState& tree, uint32_t seed, uint32_t number, bool is_shadow) {
+    return coin_key({tree.pixel, tree.sample, seed}, number, is_shadow);
+}
+
+struct TreeVertex {
+    const PictureView& picture;
+    const RayTreeSettings& settings;
+    const TreesView& trees;
+    uint32_t tree;
+    TreeState& state;
+    const PendingRay& ray; // that ends here
+    const Surface& surface;
+
+    HD Vec3 wo() const { return -ray.direction; }
+    HD uint32_t number() const { return state.rays - 1; }
+    HD SampleKey key() const { return sample_key(settings, state.pixel, state.sample); }
+    HD uint32_t group(TreeGroup of) const { return kCameraGroups + number() * kTreeGroups + of; }
+
+    /// Light of the punctual light `light`, by all lobes but delta ones. True where `shadow` is to be traced.
+    HD bool ask_for_punctual_light(uint32_t light, TreeShadowRay& shadow) const {
+        LightSample sample;
+        const LightSetView& lights = picture.scene.lights;
+        if (surface.bsdf.has_delta_only()) return false;
+        if (!sample_punctual_light(lights.punctual[light], 1.0f, surface.position, sample)) return false;
+        const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
+        return ask_for(sample, all.f * sample.radiance, shadow);
+    }
+
+    /// One point of one light, drawn by power: also of lamps and the environment. A glossy ray may run into these as
+    /// well, so what glossy lobes scatter of them is weighted by the power heuristic.
+    HD bool ask_for_drawn_light(TreeShadowRay& shadow) const {
+        if (surface.bsdf.has_delta_only()) return false;
+        const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
+        LightSample sample;
+        if (!sample_light(picture.scene.lights, surface.position, sample_bits(settings.sampler, key(), of, Pair::Last),
+                          sample)) {
+            return false;
+        }
+        const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
+        if (is_black(all.f) || is_hole(sample)) return false;
+        Rgb f = all.f;
+        if (!sample.is_delta && surface.bsdf.has(LobeClass::Glossy)) {
+            const Rgb glossy = scattered(surface, wo(), sample.wi, only(LobeClass::Glossy)).f;
+            f = f - (1.0f - power_heuristic(sample.pdf, all.pdf)) * glossy;
+        }
+        return ask_for(sample, f * ((1.0f / sample.pdf) * sample.radiance), shadow);
+    }
+
+    /// What a constant radiance from all around sends here by the diffuse lobe (Whitted's ambient term).
+    HD void add_ambient() const { state.radiance += ray.weight * surface.bsdf.diffuse_albedo() * settings.ambient; }
+
+    /// Sends rays along the directions of the delta lobes: both branches.
+    HD void follow_specular(LeastWeight least) const {
+        if (!surface.bsdf.has_delta()) return;
+        const Vec3 wo_local = surface.frame.to_local(wo());
+        const SpecularBranches branches = surface.bsdf.specular(wo_local);
+        // The refraction waits deeper in the stack: the mirror's part of the tree comes first.
+        follow_delta(branches.refraction, wo_local, branches.refracted, Branch::Refraction, least);
+        follow_delta(branches.mirror, wo_local, {-wo_local.x, -wo_local.y, wo_local.z}, Branch::Mirror, least);
+    }
+
+    /// Sends one ray along a direction drawn by the glossy lobes.
+    HD void follow_glossy(LeastWeight least) const {
+        if (!surface.bsdf.has(LobeClass::Glossy)) return;
+        const float lobe =
+            surface.bsdf.draws_lobe() ? sample_1d(settings.sampler, key(), group(kTreeChoices), kTreeNumberLobe) : 0.5f;
+        const BsdfSample drawn = surface.sample(wo(), lobe, sample_2d(settings.sampler, key(), group(kTreeScatter)));
+        if (!(drawn.pdf > 0) || drawn.is_delta()) return; // delta lobes have been followed
+        const BsdfValue value = scattered(surface, wo(), drawn.wi, only(LobeClass::Glossy));
+        if (!(value.pdf > 1e-30f)) return;
+        follow(drawn.wi, (1.0f / value.pdf) * value.f, value.pdf, Branch::Glossy, least);
+    }
+
+private:
+    /// Out of line: a kernel holds it once, however often it is asked.
+    HD_CALL static BsdfValue scattered(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes) {
+        return surface.evaluate(wo, wi, classes);
+    }
+    /// The ray to what was drawn of a light, `f_times_light` of which arrives if nothing is in between.
+    HD bool ask_for(const LightSample& light, Rgb f_times_light, TreeShadowRay& shadow) const {
+        if (is_black(f_times_light)) return false;
+        shadow.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+        shadow.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        shadow.contribution = ray.weight * f_times_light;
+        return true;
+    }
+    /// Whether the point drawn lies in a hole of the lamp.
+    HD bool is_hole(const LightSample& light) const {
+        if (light.instance == kNoLight || picture.scene.any_alpha == 0) return false;
+        const AcceptHit accept = {picture.scene, {}, {}, tree_key(state, settings.seed, number(), true)};
+        return !accept.passes_alpha(light.instance, light.primitive, light.b1, light.b2);
+    }
+    HD void follow_delta(Rgb weight, Vec3 wo_local, Vec3 wi_local, Branch branch, LeastWeight least) const {
+        Vec3 wi;
+        if (is_black(weight) || !surface.place_specular(wo(), wo_local, wi_local, wi)) return;
+        follow(wi, weight, 0, branch, least);
+    }
+    HD void follow(Vec3 wi, Rgb factor, float bsdf_pdf, Branch branch, LeastWeight least) const {
+        PendingRay child;
+        child.weight = ray.weight * factor;
+        const float largest = max_component(child.weight);
+        if (!(largest > 0)) return;
+        if (largest < least.weight) {
+            if (least.weaker == WeakRays::LeftOut) return;
+            const float u = sample_1d(settings.sampler, key(), group(kTreeChoices), static_cast<uint32_t>(branch));
+            if (!(u * least.weight < largest)) return;
+            child.weight = (least.weight / largest) * child.weight;
+        }
+        child.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
+        child.direction = wi;
+        child.bsdf_pdf = bsdf_pdf;
+        child.depth = ray.depth + 1;
+        child.start = surface.triangle;
+        trees.store_ray(tree, state.pending++, child);
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,32 @@
+#pragma once
+
+// Whitted's ray tracing: where a mirror or a smooth glass is met the reflected and the refracted ray are both followed,
+// by Fresnel's shares, and what is not mirror-like is lit by the lights that it sees and by a constant ambient light.
+//
+// Source: Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980; rays that hardly count end:
+// Hall, Greenberg, "A Testbed for Realistic Image Synthesis", 1983 (adaptive tree depth).
+
+#include "integrators/ray_tree/tree_vertex.h"
+
+namespace pertev {
+
+struct Whitted {
+    static constexpr uint32_t kMostBranches = 2;
+    static constexpr LeastWeight kLeast = {0x1p-10f, WeakRays::LeftOut};
+
+    HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
+    HD static bool ask_for_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
+        return vertex.ask_for_punctual_light(number, shadow);
+    }
+    HD static void follow(const TreeVertex& vertex) {
+        vertex.add_ambient();
+        vertex.follow_specular(kLeast);
+    }
+
+    /// Without one that was asked for: the mean of the environment, right for a convex surface under an even sky.
+    static Rgb ambient(const EnvironmentView* environment) {
+        return environment != nullptr ? environment->mean : Rgb{0, 0, 0};
+    }
+};
+
+} // namespace pertev

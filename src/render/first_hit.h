@@ -1,0 +1,46 @@
+#pragma once
+
+// Auxiliary channels of what a camera ray met first, the same whatever integrator asks.
+
+#include "render/film_view.h"
+#include "render/picture_view.h"
+#include "render/surface.h"
+
+namespace pertev {
+
+/// Of a camera ray's start and direction.
+struct RayLine {
+    Vec3 origin, direction; // unit
+};
+
+/// `surface` is what `hit` made.
+HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample, const RayLine& ray, const Hit& hit,
+                             const Surface& surface, const PictureView& picture) {
+    add_channel(film, pixel, kFilmHits, 1.0f);
+    if ((film.aovs & kAovAlbedo) != 0) {
+        add_channels(film, pixel, channel_offset(film.aovs, kAovAlbedo),
+                     {surface.albedo.r, surface.albedo.g, surface.albedo.b});
+    }
+    if ((film.aovs & kAovNormal) != 0) {
+        const Vec3 normal = surface.frame.normal;
+        add_channels(film, pixel, channel_offset(film.aovs, kAovNormal),
+                     dot(normal, ray.direction) > 0 ? -normal : normal);
+    }
+    if ((film.aovs & kAovDepth) != 0) {
+        add_channel(film, pixel, channel_offset(film.aovs, kAovDepth),
+                    dot(surface.position - ray.origin, picture.camera.axis));
+    }
+    if ((film.aovs & kAovPosition) != 0) { // in the file's coordinates: the film adds both without rounding
+        const uint32_t channel = channel_offset(film.aovs, kAovPosition);
+        add_channels(film, pixel, channel, surface.position);
+        add_channels(film, pixel, channel, picture.scene.centre);
+    }
+    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {hit.instance, hit.primitive, surface.material};
+}
+
+/// Of a camera ray that met nothing.
+HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
+    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
+}
+
+} // namespace pertev

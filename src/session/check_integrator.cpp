@@ -1,0 +1,75 @@
+#include "session/check_integrator.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "session/settings_text.h"
+
+namespace pertev {
+namespace {
+
+bool has_punctual_light(const Scene& scene) {
+    return std::ranges::any_of(scene.lights, [](const Light& light) { return max_component(light.intensity) > 0; });
+}
+bool has_lamp(const Scene& scene) {
+    return std::ranges::any_of(scene.instances,
+                               [&](const Instance& instance) { return scene.materials[instance.material].is_lamp(); });
+}
+bool is_all_unlit(const Scene& scene) {
+    return std::ranges::all_of(scene.instances, [&](const Instance& instance) {
+        return scene.materials[instance.material].kind == MaterialKind::Unlit;
+    });
+}
+
+/// Surfaces are to be lit, by lights that are not there.
+bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
+    const bool wants_lights = needs_punctual_lights(settings.integrator) && !settings.ambient;
+    return wants_lights && settings.path.max_depth > 0 && !has_punctual_light(scene) && !is_all_unlit(scene);
+}
+bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
+    return settings.integrator == IntegratorKind::Whitted && scene.environment;
+}
+
+/// "this scene has lamps alone"
+std::string lights_of(const Scene& scene) {
+    const bool has_both = has_lamp(scene) && scene.environment;
+    const std::string others = fmt::format("{}{}{}", has_lamp(scene) ? "lamps" : "", has_both ? " and " : "",
+                                           scene.environment ? "an environment" : "");
+    return others.empty() ? "this scene has none" : fmt::format("this scene has {} alone", others);
+}
+
+} // namespace
+
+void check_integrator(const RenderSettings& settings) {
+    const std::string_view name = integrator_name(settings);
+    if (!makes_frames(settings.integrator) && settings.denoise != Denoise::None) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--denoise {}: reconstructs pictures of --integrator path, not of {}",
+                                name_of(settings.denoise), name));
+    }
+    if (settings.path.max_depth > most_depth(settings.integrator)) {
+        throw Error(ErrorCode::OverLimit, fmt::format("--max-depth {}: with --integrator {} at most {}",
+                                                      settings.path.max_depth, name, most_depth(settings.integrator)));
+    }
+}
+
+std::string why_dark(const RenderSettings& settings, const Scene& scene) {
+    if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
+    return fmt::format("--integrator {}: point, spot and directional lights alone light its surfaces, and {}: "
+                       "--integrator distributed or path knows all lights, --ambient 0.5 lights all surfaces alike",
+                       integrator_name(settings), lights_of(scene));
+}
+
+void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages) {
+    if (const std::string why = why_dark(settings, scene); !why.empty()) throw Error(ErrorCode::BadInput, why);
+    if (!lacks_lights(settings, scene)) return;
+    messages.note(fmt::format("--integrator {}: point, spot and directional lights cast its shadows, and {}; surfaces "
+                              "show the environment's mean as ambient light (--integrator distributed casts shadows "
+                              "of all lights)",
+                              integrator_name(settings), lights_of(scene)));
+}
+
+} // namespace pertev

@@ -1,0 +1,22 @@
+#pragma once
+
+// What an integrator cannot do, told in one line before anything is rendered.
+
+#include <string>
+
+#include "base/messages.h"
+#include "scene/scene.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// Whether the settings go together. Throws Error(BadInput), Error(OverLimit) for a tree of rays that is too deep.
+void check_integrator(const RenderSettings& settings);
+
+/// Why the integrator would show all surfaces as black, for want of lights that it knows; empty where it does not.
+std::string why_dark(const RenderSettings& settings, const Scene& scene);
+
+/// Throws Error(BadInput) that says why_dark; a note tells what whitted leaves out.
+void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages);
+
+} // namespace pertev

@@ -1,0 +1,17 @@
+#pragma once
+
+// The weight of a sample that two techniques might have drawn.
+//
+// Source: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2.4.
+
+#include "base/host_device.h"
+
+namespace pertev {
+
+/// Of the technique with density `pdf` > 0, where the other has `other_pdf`.
+HD inline float power_heuristic(float pdf, float other_pdf) {
+    const float ratio = other_pdf / pdf;
+    return 1.0f / (1.0f + ratio * ratio);
+}
+
+} // namespace pertev

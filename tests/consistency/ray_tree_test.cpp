@@ -1,0 +1,179 @@
+// The one-picture law for trees of rays: cast, whitted and distributed give the same bytes for any number of threads,
+// any split of the samples, all stages over all trees or a few trees a thread, any number of them in flight. With
+// --device cuda the GPU joins in.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel_for.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr IntegratorKind kTrees[] = {IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Distributed};
+
+RenderSettings tree_settings(IntegratorKind integrator) {
+    RenderSettings settings;
+    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.height = 21;
+    settings.samples = 4;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    settings.transparent = true;
+    settings.integrator = integrator;
+    settings.path.max_depth = 6;
+    return settings;
+}
+
+/// The mixed scene with more lights than a vertex asks for at once.
+Scene tree_scene() {
+    Scene scene = test::make_mixed_scene();
+    for (int i = 0; i < 3; ++i) scene.lights.push_back(scene.lights[static_cast<std::size_t>(i)]);
+    scene.lights[3].position = {2, 1.5f, 3};
+    return scene;
+}
+
+struct TreePicture {
+    Hash128 hash;
+    RayCounts rays;
+};
+
+TreePicture picture_of(Queue& queue, const RenderSettings& settings) {
+    Camera camera = test::mixed_scene_camera();
+    camera.aperture_radius = 0.05f;
+    camera.focus_distance = 6;
+    const RenderResult result = test::render(queue, tree_scene(), camera, settings);
+    CHECK(result.invalid_samples == 0);
+    return {test::render_hash(result), result.rays};
+}
+
+void check_same(const TreePicture& a, const TreePicture& b) {
+    CHECK(a.hash == b.hash);
+    CHECK(a.rays.camera == b.rays.camera);
+    CHECK(a.rays.bounce == b.rays.bounce);
+    CHECK(a.rays.shadow == b.rays.shadow);
+}
+
+} // namespace
+
+TEST_CASE("pictures of trees of rays do not depend on threads, passes, bodies or how many are in flight") {
+    for (const IntegratorKind integrator : kTrees) {
+        CAPTURE(static_cast<int>(integrator));
+        Queue queue = Queue::make_cpu();
+        RenderSettings settings = tree_settings(integrator);
+        const TreePicture reference = picture_of(queue, settings);
+        CHECK((reference.rays.bounce > 0) == (integrator != IntegratorKind::Cast));
+        CHECK(reference.rays.shadow > 37 * 21);
+
+        set_thread_count(1);
+        check_same(picture_of(queue, settings), reference);
+        set_thread_count(5);
+        settings.pass_samples = 3;
+        check_same(picture_of(queue, settings), reference);
+        set_thread_count(0);
+        settings.body = PathBody::Wavefront;
+        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
+            settings.batch = batch;
+            check_same(picture_of(queue, settings), reference);
+            if (!test::cuda_requested()) continue;
+            Queue gpu = test::make_cuda_queue();
+            check_same(picture_of(gpu, settings), reference);
+        }
+        settings.path.seed = 1;
+        CHECK(picture_of(queue, settings).hash != reference.hash);
+    }
+}
+
+TEST_CASE("every integrator tells the same of the first surface") {
+    Queue queue = test::queue_asked_for();
+    const auto layers_of = [&](IntegratorKind integrator) {
+        RenderSettings settings = tree_settings(integrator);
+        settings.samples = 2;
+        RenderResult result = test::render(queue, tree_scene(), test::mixed_scene_camera(), settings);
+        std::ranges::fill(result.picture.pixels, 0.0f);
+        return test::render_hash(result);
+    };
+    const Hash128 of_path = layers_of(IntegratorKind::Path);
+    for (const IntegratorKind integrator : kTrees) CHECK(layers_of(integrator) == of_path);
+}
+
+TEST_CASE("a session goes from one integrator to another, and each picture is that of a fresh one") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = tree_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = tree_settings(IntegratorKind::Path);
+    settings.samples = 1;
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    for (const IntegratorKind integrator : {IntegratorKind::Whitted, IntegratorKind::Distributed, IntegratorKind::Path,
+                                            IntegratorKind::Cast, IntegratorKind::Whitted}) {
+        settings.integrator = integrator;
+        settings.path.max_depth = settings.path.max_depth == 6 ? 3 : 6; // less memory, and more
+        session.set_settings(settings);
+        session.render(1);
+        CHECK(test::render_hash(session.result()) ==
+              test::render_hash(test::render(queue, scene, test::mixed_scene_camera(), settings)));
+    }
+}
+
+TEST_CASE("a picture of trees that is abandoned leaves no sample behind, and the next one is whole") {
+    Queue queue = Queue::make_cpu();
+    Messages messages;
+    const Scene scene = tree_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const RenderSettings settings = tree_settings(IntegratorKind::Distributed);
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    std::atomic<bool> is_abandoned = true;
+    session.abandon_when(&is_abandoned);
+    CHECK(session.render(settings.samples) == 0);
+    is_abandoned = false;
+    // Asked to end after its first pass, and gone on with: what Ctrl-C and a render anew do.
+    RenderSettings passes = settings;
+    passes.pass_samples = 1;
+    session.set_settings(passes);
+    CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
+    CHECK(session.render(settings.samples - 1) == settings.samples - 1);
+    CHECK(test::render_hash(session.result()) ==
+          test::render_hash(test::render(queue, scene, test::mixed_scene_camera(), settings)));
+}
+
+TEST_CASE("memory of trees is said beforehand") {
+    Messages messages;
+    const Scene scene = tree_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    for (const IntegratorKind integrator : kTrees) {
+        RenderSettings settings = tree_settings(integrator);
+        settings.body = PathBody::Wavefront;
+        Queue queue = test::queue_asked_for();
+        Session session(queue, prepared, test::mixed_scene_camera(), settings);
+        session.render(settings.samples);
+        const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
+        CHECK(queue.allocated_bytes() >= predicted);
+        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
+    }
+}
+
+TEST_CASE("trees of rays are no frames, and are not too deep") {
+    RenderSettings settings = tree_settings(IntegratorKind::Whitted);
+    settings.denoise = Denoise::Svgf;
+    Queue queue = Queue::make_cpu();
+    Messages messages;
+    const Scene scene = test::make_furnace_scene(0.5f);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto refused = [&](const auto& body) { return test::bad_input_message(body); };
+    CHECK(refused([&] { Session(queue, prepared, {}, settings); }) ==
+          "--denoise svgf: reconstructs pictures of --integrator path, not of whitted");
+    settings.denoise = Denoise::None;
+    Session session(queue, prepared, {}, settings);
+    CHECK(refused([&] { session.render_frame(0, {}); }) ==
+          "--integrator whitted: frames are reconstructed of path's samples alone");
+    settings.path.max_depth = 256;
+    const auto error = test::thrown_error([&] { session.set_settings(settings); });
+    CHECK(test::says(error, "--max-depth 256: with --integrator whitted at most 255"));
+}

@@ -1,0 +1,189 @@
+// Distributed ray tracing against closed forms, and against path tracing where both reach the same light.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "tests/support/compare_pictures.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr double kPiD = 3.141592653589793;
+
+RenderSettings distributed_settings(uint32_t side, uint32_t samples) {
+    RenderSettings settings;
+    settings.width = settings.height = side;
+    settings.samples = samples;
+    settings.filter = PixelFilter::Box;
+    settings.integrator = IntegratorKind::Distributed;
+    return settings;
+}
+
+/// A flat lamp of `mesh`, facing down, over a white floor; its radiosity where it is looked at from just above.
+double floor_radiance(const Mesh& lamp, Vec3 at) {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 50), test::white(1));
+    test::add(scene, lamp, {.name = "lamp", .base_color = {0, 0, 0}, .emission = {4, 4, 4}});
+    Queue queue = test::queue_asked_for();
+    const RenderResult result =
+        test::render(queue, scene, test::camera_down(at + Vec3{0, 0.1f, 0}, 1e-3f), distributed_settings(1, 1024));
+    CHECK(result.rays.bounce == 0);
+    return static_cast<double>(result.picture.at(0, 0)[0]);
+}
+
+/// Share of a surface's view that a parallel rectangle takes which has a corner above it, sides over its height.
+double corner_factor(double x, double y) {
+    const double sx = std::sqrt(1 + x * x), sy = std::sqrt(1 + y * y);
+    return (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy)) / (2 * kPiD);
+}
+
+Mesh disc(float height, float radius) {
+    constexpr uint32_t kCorners = 256;
+    Mesh mesh;
+    mesh.positions.push_back({0, height, 0});
+    for (uint32_t i = 0; i < kCorners; ++i) {
+        const double angle = 2 * kPiD * i / kCorners;
+        mesh.positions.push_back(
+            {radius * static_cast<float>(std::cos(angle)), height, radius * static_cast<float>(std::sin(angle))});
+        mesh.indices.insert(mesh.indices.end(), {0, 1 + i, 1 + (i + 1) % kCorners}); // its front down
+    }
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("irradiance under a rectangular lamp is that of the closed form") {
+    const Mesh lamp = test::sheet({0, 2, 0}, {1.5f, 0, 0}, {0, 0, 1});
+    CHECK(floor_radiance(lamp, {0, 0, 0}) == doctest::Approx(4 * 4 * corner_factor(0.75, 0.5)).epsilon(2e-3));
+    CHECK(floor_radiance(lamp, {1.5f, 0, 1}) == doctest::Approx(4 * corner_factor(1.5, 1)).epsilon(2e-3));
+}
+
+TEST_CASE("irradiance under a disc is that of the closed form") {
+    CHECK(floor_radiance(disc(2, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 4)).epsilon(2e-3));
+    CHECK(floor_radiance(disc(0.5f, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 0.25)).epsilon(2e-3));
+}
+
+namespace {
+
+/// The mixed scene, of which each diffuse surface becomes a metal.
+Scene make_metal_scene() {
+    Scene scene = test::make_mixed_scene();
+    for (Material& material : scene.materials) {
+        const bool stays = material.kind == MaterialKind::Dielectric || material.kind == MaterialKind::Conductor ||
+                           material.is_emissive();
+        if (stays) continue;
+        material.metallic = 1;
+        material.roughness = material.kind == MaterialKind::MetallicRoughness ? 0.6f : 0.0f;
+        material.kind = MaterialKind::MetallicRoughness;
+    }
+    scene.materials[0].roughness = 0.7f; // the floor
+    return scene;
+}
+
+/// A diffuse or a plastic sphere alone: nothing of what it scatters comes back. Point, spot and sun, and a sky.
+Scene make_convex_scene(bool is_glossy) {
+    Scene scene = test::make_furnace_scene(0.7f);
+    const Scene mixed = test::make_mixed_scene();
+    scene.environment = mixed.environment;
+    scene.lights = mixed.lights;
+    if (!is_glossy) return scene;
+    scene.materials[0].kind = MaterialKind::MetallicRoughness;
+    scene.materials[0].roughness = 0.3f;
+    return scene;
+}
+
+/// p-values of distributed against path, and of distributed 5 % brighter.
+std::pair<double, double> compare_with_path(const Scene& scene, float aperture, uint32_t samples) {
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::queue_asked_for();
+    Camera camera = test::mixed_scene_camera();
+    camera.aperture_radius = aperture;
+    camera.focus_distance = 5;
+    RenderSettings settings = distributed_settings(14, samples);
+    settings.path.max_depth = 5;
+    const auto estimate = [&](IntegratorKind integrator, uint32_t first_seed) {
+        settings.integrator = integrator;
+        return test::estimate_picture(queue, prepared, camera, settings, 32, first_seed);
+    };
+    const test::PictureEstimate distributed = estimate(IntegratorKind::Distributed, 1);
+    const test::PictureEstimate path = estimate(IntegratorKind::Path, 1000);
+    return {test::p_value(distributed, path), test::p_value(test::brightened(distributed, 1.05, 5e-3), path)};
+}
+
+} // namespace
+
+TEST_CASE("distributed is path tracing where no diffuse surface lights another") {
+    for (const auto& [scene, aperture, samples] :
+         {std::tuple(make_metal_scene(), 0.0f, 64u), std::tuple(make_convex_scene(false), 0.3f, 16u),
+          std::tuple(make_convex_scene(true), 0.0f, 16u)}) {
+        const auto [same, brighter] = compare_with_path(scene, aperture, samples);
+        CHECK(same > 0.001);
+        CHECK(brighter < 1e-4); // the test can see
+    }
+}
+
+TEST_CASE("what distributed leaves out is what diffuse surfaces send to each other") {
+    const Scene scene = test::make_mixed_scene();
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings = distributed_settings(24, 32);
+    const auto mean_of = [&](const Scene& lit, IntegratorKind integrator) {
+        settings.integrator = integrator;
+        const RenderResult result = test::render(queue, lit, test::mixed_scene_camera(), settings);
+        double sum = 0;
+        for (const float value : result.picture.pixels) sum += static_cast<double>(value);
+        return sum / static_cast<double>(result.picture.pixels.size());
+    };
+    const double path = mean_of(scene, IntegratorKind::Path), less = mean_of(scene, IntegratorKind::Distributed);
+    CHECK(less < 0.99 * path);
+    CHECK(less > 0.7 * path);
+}
+
+TEST_CASE("a lens is sharp at its distance, and blurs a point elsewhere over its circle of confusion") {
+    constexpr uint32_t kSide = 33; // the lamp is in the middle of a pixel
+    constexpr float kFocus = 4, kAperture = 0.6f;
+    Camera camera;
+    camera.fov_y = 2 * 0.24497866f; // the view is half as high as it is far away
+    camera.aperture_radius = kAperture;
+    camera.focus_distance = kFocus;
+    const double pixels_a_metre = kSide / (0.5 * static_cast<double>(kFocus)); // in the plane in focus
+    for (const float distance : {4.0f, 3.0f, 8.0f}) {
+        CAPTURE(distance);
+        Scene scene;
+        const float half = 0.007f * distance; // almost a pixel, as seen
+        test::add(scene, test::sheet({0, 0, -distance}, {half, 0, 0}, {0, half, 0}),
+                  {.name = "lamp", .base_color = {0, 0, 0}, .emission = {1000, 1000, 1000}});
+        Queue queue = test::queue_asked_for();
+        const RenderResult result = test::render(queue, scene, camera, distributed_settings(kSide, 256));
+        // The rays through a point of the plane in focus spread from the lens's disc, so the lamp's image there is a
+        // disc of radius A |d - f| / d.
+        const double radius = static_cast<double>(kAperture * std::fabs(distance - kFocus) / distance) * pixels_a_metre;
+        double sum = 0, squares = 0, farthest = 0;
+        for (uint32_t y = 0; y < kSide; ++y) {
+            for (uint32_t x = 0; x < kSide; ++x) {
+                const double value = static_cast<double>(result.picture.at(x, y)[0]);
+                const double r = std::hypot(x - 16.0, y - 16.0);
+                sum += value;
+                squares += value * r * r;
+                if (value > 0) farthest = std::max(farthest, r);
+            }
+        }
+        CHECK(sum > 0);
+        CHECK(farthest < radius + 1.5); // the pixel's half diagonal, and the lamp's
+        CHECK(farthest > radius - 1.5);
+        if (radius == 0) {
+            CHECK(farthest == 0);
+        } else { // the mean square of an even disc is r^2 / 2, that of pixel and lamp about 1/6 each
+            CHECK(squares / sum == doctest::Approx(radius * radius / 2 + 1.0 / 3).epsilon(0.15));
+        }
+    }
+}

@@ -1,0 +1,31 @@
+#pragma once
+
+// Whether two ways to render give one picture in the mean: each is rendered several times with independent samples, and
+// every channel of every pixel, and of the whole picture, is compared by Welch's test.
+
+#include <vector>
+
+#include "session/render_picture.h"
+
+namespace pertev::test {
+
+/// Of every channel of every pixel, and last of the whole picture: its mean and the variance of that, from independent
+/// renders of independent samples.
+struct PictureEstimate {
+    std::vector<double> mean, variance_of_mean;
+    uint32_t renders; // the fewer, the less a variance is known: hence Student's t below
+
+    std::size_t pixel_values() const { return mean.size() - 3; }
+};
+
+/// Renders with seeds first_seed, first_seed + 1, ... and independent numbers.
+PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
+                                 RenderSettings settings, uint32_t renders, uint32_t first_seed);
+
+/// Two-sided p-value of the largest deviation of all, Sidak corrected; of two means by Welch's test.
+double p_value(const PictureEstimate& a, const PictureEstimate& b);
+
+/// Brighter in those pixels whose means are off by more than `least_error`, as those of the background are not.
+PictureEstimate brightened(PictureEstimate estimate, double factor, double least_error);
+
+} // namespace pertev::test

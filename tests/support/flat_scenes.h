@@ -1,0 +1,54 @@
+#pragma once
+
+// Scenes of a few flat sheets, for pictures that are known in closed form, and a camera without perspective over them.
+
+#include "scene/scene.h"
+
+namespace pertev::test {
+
+/// The sheet centre + s x + t y for s, t in [-1, 1]; its front is where cross(x, y) points.
+inline Mesh sheet(Vec3 centre, Vec3 x, Vec3 y) {
+    Mesh mesh;
+    mesh.positions = {centre - x - y, centre + x - y, centre + x + y, centre - x + y};
+    mesh.indices = {0, 1, 2, 0, 2, 3};
+    return mesh;
+}
+
+inline void add(Scene& scene, Mesh mesh, const Material& material) {
+    scene.meshes.push_back(std::move(mesh));
+    scene.materials.push_back(material);
+    scene.instances.push_back(
+        {"", static_cast<uint32_t>(scene.meshes.size() - 1), static_cast<uint32_t>(scene.materials.size() - 1), {}});
+}
+
+/// A sheet of side 2 `half` in the plane y = `height` about (0, height, 0), its front up.
+inline Mesh floor_at(float height, float half) { return sheet({0, height, 0}, {0, 0, half}, {half, 0, 0}); }
+
+inline Material white(float albedo = 1) { return {.name = "white", .base_color = grey(albedo)}; }
+/// Reflects all light as a perfect mirror.
+inline Material mirror() {
+    return {.name = "mirror",
+            .kind = MaterialKind::MetallicRoughness,
+            .base_color = {1, 1, 1},
+            .metallic = 1,
+            .roughness = 0};
+}
+
+inline Light point_light(Vec3 position, Rgb intensity) {
+    Light light;
+    light.kind = LightKind::Point;
+    light.position = position;
+    light.intensity = intensity;
+    return light;
+}
+
+/// Looks straight down from `eye` without perspective; the picture's right is +x, its lower edge +z.
+inline Camera camera_down(Vec3 eye, float height) {
+    Camera camera;
+    camera.projection = Projection::Orthographic;
+    camera.ortho_height = height;
+    camera.world_from_camera = look_at(eye, eye + Vec3{0, -1, 0}, {0, 0, -1});
+    return camera;
+}
+
+} // namespace pertev::test
