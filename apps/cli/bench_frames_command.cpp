@@ -112,6 +112,7 @@ struct Likeness {
 /// The frames begin anew after it.
 Likeness compare_last(Session& session, uint32_t samples, Reporter& reporter) {
     const Image last = last_picture(session);
+    session.cut(); // frames without reconstruction have left their sample in the film
     session.render(1);
     const Image noisy = session.picture();
     session.cut();
@@ -134,8 +135,9 @@ int bench_frames(const FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
-    const bool asks_for_more =
-        flags.restir != name_of(RestirLight::Off) || flags.resolution_scale != 1 || flags.sample_order;
+    const ReconstructionSettings& wanted = flags.reconstruction.settings;
+    const bool asks_for_more = flags.reconstruction.restir != name_of(RestirLight::Off) ||
+                               wanted.resolution_scale != 1 || wanted.orders_samples;
     if (!makes_frames(settings.integrator) && asks_for_more) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
@@ -156,23 +158,24 @@ int bench_frames(const FramesFlags& flags) {
     if (reporter.json()) {
         const auto part = [&](double Likeness::*of) { return likeness ? json_number(*likeness.*of) : "null"; };
         reporter.event(fmt::format(
-            R"({{"event":"frames","scene":{},"device":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"restir":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
-            json_string(flags.render.scene.scene), json_string(queue->device_name()), settings.width, settings.height,
-            flags.render.max_depth, flags.frames, flags.still, json_string(flags.reconstruction.restir),
-            json_number(figures.whole.median), json_number(figures.whole.least), json_number(figures.whole.greatest),
+            R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"restir":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
+            json_string(flags.render.scene.scene), json_string(queue->device_name()),
+            json_string(flags.render.integrator), settings.width, settings.height, flags.render.max_depth, flags.frames,
+            flags.still, json_string(flags.reconstruction.restir), json_number(figures.whole.median),
+            json_number(figures.whole.least), json_number(figures.whole.greatest),
             json_number(figures.reconstruction.median), rays_a_second, part(&Likeness::flip),
             part(&Likeness::flip_of_sample), part(&Likeness::rel_mse), part(&Likeness::rel_mse_of_sample),
             part(&Likeness::mean), part(&Likeness::reference_mean), hash));
         return 0;
     }
-    reporter.answer(fmt::format("{} on {}: {}x{}, at most {} scatterings, {} frames, camera {}, ReSTIR {}\n{:.3f} ms a "
-                                "frame (median; {:.3f} to {:.3f}), "
-                                "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
-                                flags.render.scene.scene, queue->device_name(), settings.width, settings.height,
-                                flags.render.max_depth, flags.frames, flags.still ? "still" : "moving",
-                                flags.reconstruction.restir, figures.whole.median * 1e3, figures.whole.least * 1e3,
-                                figures.whole.greatest * 1e3, 1 / figures.whole.median,
-                                figures.reconstruction.median * 1e3, rays_a_second, hash));
+    reporter.answer(fmt::format(
+        "{} on {}: {}x{}, {}, at most {} scatterings, {} frames, camera {}, ReSTIR {}\n{:.3f} ms a "
+        "frame (median; {:.3f} to {:.3f}), "
+        "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
+        flags.render.scene.scene, queue->device_name(), settings.width, settings.height, flags.render.integrator,
+        flags.render.max_depth, flags.frames, flags.still ? "still" : "moving", flags.reconstruction.restir,
+        figures.whole.median * 1e3, figures.whole.least * 1e3, figures.whole.greatest * 1e3, 1 / figures.whole.median,
+        figures.reconstruction.median * 1e3, rays_a_second, hash));
     if (likeness) {
         reporter.answer(fmt::format(
             "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; relMSE {:.4f} and {:.4f}; "

@@ -76,6 +76,7 @@ void SessionFrames::set_time(double time_s) {
     const bool was_behind = std::exchange(is_behind_, true);
     const uint32_t parts = scene_.set_time(time_s, said_already);
     if (was_behind) {
+        shows_reconstruction_ = false; // its frames are forgotten
         session_.set_scene(scene_.prepared());
     } else if (parts != 0) {
         session_.update_scene(scene_.prepared(), parts);
@@ -210,6 +211,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     session_.render_frame(next_sample_, settings, view.restir);
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
+    reconstructed_as_ = session_.settings();
     shows_film_ = false;
     shows_layer_ = shows_layer;
     reconstruction_.pixels.clear();
@@ -278,7 +280,8 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (is_small && is_beauty(request.view.layer) && is_of_sequence(request.view)) return reconstruct(request, scale);
     const double update_s = std::exchange(update_s_, 0);
     const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer) &&
-                          request.view.is_reconstructed;
+                          request.view.is_reconstructed && same_light(reconstructed_as_, settings_for(request, scale));
+    if (!competes) shows_reconstruction_ = false;     // another size forgets it
     if (competes && reconstruction_.pixels.empty()) { // before another size forgets it
         ShownFrame frame;
         expose(request, frame);

@@ -46,6 +46,7 @@ private:
     FramePace pace_;
     std::atomic<bool> abandon_{false};
     ReconstructionSettings reconstruction_settings_; // of the last frame
+    RenderSettings reconstructed_as_;                // that the last frame was made with
     RestirSettings restir_settings_;
     uint32_t next_sample_ = 0;  // of the frames in real time
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera

@@ -101,6 +101,12 @@ std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
                        integrator_name(settings));
 }
 
+std::string why_too_deep(const RenderSettings& settings) {
+    const uint32_t most = most_depth(settings.integrator);
+    if (settings.path.max_depth <= most) return {};
+    return fmt::format("{}: at most {} scatterings", integrator_name(settings), most);
+}
+
 std::vector<ViewSetting> make_settings() {
     std::vector<ViewSetting> all;
     const auto choice = [&](const char* name, const char* label, const char* group, const char* hint,
@@ -174,9 +180,9 @@ std::vector<ViewSetting> make_settings() {
             }
             const std::string why_not = why_no_layer(s.layer, wanted);
             if (!why_not.empty()) return why_not;
-            wanted.path.max_depth = std::min(wanted.path.max_depth, most_depth(wanted.integrator));
-            s.picture = wanted;
-            return std::string();
+            const std::string too_deep = why_too_deep(wanted);
+            if (too_deep.empty()) s.picture = wanted;
+            return too_deep;
         });
     numeric(
         "max_depth", "Scatterings, at most", "Light", "How often light is scattered at most on its way to the camera",

@@ -130,7 +130,7 @@ private:
         return max(alpha / max(length(now_seen - then_seen), 1e-6f), 1.0f);
     }
 
-    HD static float ratio_of(float was, float is) { return was > 0 ? is / was : 1.0f; }
+    HD static float ratio_of(float was, float is) { return was > 1e-12f ? is / was : 1.0f; }
 
     /// `mean`, the one that the taps hold, with this frame's sample; its w: frames.
     HD Float4 gone_on(const Taps& taps, Float4 mean, Float4 sample, float most_frames) const {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t kBlock = 4;     // pixels of the frame, along each side, for one of the small pictures
 constexpr std::size_t kArrays = 5; // guide; light as it was and as it is, twice
-constexpr uint32_t kPasses = 2;    // of SpreadLight: its means reach over 6 pixels to each side
+constexpr uint32_t kPasses = 2;    // of SpreadLight: its means reach over 12 pixels of the frame to each side
 
 uint32_t small_side(uint32_t side) { return (side + kBlock - 1) / kBlock; }
 

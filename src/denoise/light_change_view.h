@@ -2,7 +2,8 @@
 
 // How light on surfaces has changed since the frame before, and what that makes of a mean over frames. It is known by
 // two small pictures that one camera takes by the same random numbers, of the scene as it was and as it is: what
-// differs between them is the light, and not the noise.
+// differs between them is the light, and little of the noise (some where a lamp's share of all light changes, as the
+// same numbers then draw another lamp now and then).
 //
 // Source: Schied, Peters, Dachsbacher, "Gradient Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018
 // (A-SVGF), of which the gradients by the same random numbers are. There they shorten histories; here histories follow
@@ -56,7 +57,7 @@ HD inline LightStep light_step(const LightChangeView& change, Vec2 pixel, Vec3 n
 /// `light`, a mean over frames, after light about it has gone from `was` to `is`: by their ratio, but never up by more
 /// than their difference.
 HD inline float followed(float light, float was, float is) {
-    if (!(was > 0)) return light + is;
+    if (!(was > 1e-12f)) return light + is; // no ratio of such numbers is one of light
     const float by_ratio = light * (is / was);
     return is > was ? min(by_ratio, light + (is - was)) : by_ratio;
 }

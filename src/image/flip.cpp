@@ -157,6 +157,8 @@ void normalize_signed(std::vector<float>& taps, const std::vector<float>& across
     for (float& tap : taps) tap /= (tap > 0 ? positive : -negative) * other;
 }
 
+constexpr uint64_t kPixels = 4096; // at least, that a thread takes at once
+
 struct Features {
     Plane edges, points; // strength at each pixel
 };
@@ -177,7 +179,7 @@ Features find_features(const Plane& lightness, Size size, float pixels_per_degre
     const auto strength = [&](const std::vector<float>& taps) {
         Plane x = convolve(lightness, size, taps, bell);
         const Plane y = convolve(lightness, size, bell, taps);
-        for (std::size_t i = 0; i < x.size(); ++i) x[i] = sqrt(x[i] * x[i] + y[i] * y[i]);
+        parallel_for(x.size(), kPixels, [&](uint64_t i) { x[i] = sqrt(x[i] * x[i] + y[i] * y[i]); });
         return x;
     };
     return {strength(edge), strength(point)};
@@ -194,20 +196,20 @@ Vec3 clamp_to_unit(Vec3 c) { return {clamp_to_unit(c.x), clamp_to_unit(c.y), cla
 
 Perceived perceive(const std::vector<Vec3>& linear, Size size, float pixels_per_degree) {
     Plane y(size.count()), cx(size.count()), cz(size.count()), lightness(size.count());
-    for (std::size_t i = 0; i < linear.size(); ++i) {
+    parallel_for(linear.size(), kPixels, [&](uint64_t i) {
         const Vec3 c = ycxcz_of(clamp_to_unit(linear[i]));
         y[i] = c.x;
         cx[i] = c.y;
         cz[i] = c.z;
         lightness[i] = (c.x + 16.0f) / 116.0f;
-    }
+    });
     Perceived result;
     result.features = find_features(lightness, size, pixels_per_degree);
     y = filter(y, size, kAchromatic, pixels_per_degree);
     cx = filter(cx, size, kRedGreen, pixels_per_degree);
     cz = filter(cz, size, kBlueYellow, pixels_per_degree);
     result.colour.resize(size.count());
-    parallel_for(result.colour.size(), 4096, [&](uint64_t i) {
+    parallel_for(result.colour.size(), kPixels, [&](uint64_t i) {
         result.colour[i] = hunt_lab_of(clamp_to_unit(rgb_of_ycxcz({y[i], cx[i], cz[i]})));
     });
     return result;
@@ -228,7 +230,7 @@ Plane error_map(const std::vector<Vec3>& picture, const std::vector<Vec3>& refer
     const Perceived a = perceive(picture, size, pixels_per_degree), b = perceive(reference, size, pixels_per_degree);
     const float largest = largest_colour_difference();
     Plane result(size.count());
-    parallel_for(result.size(), 4096, [&](uint64_t i) {
+    parallel_for(result.size(), kPixels, [&](uint64_t i) {
         const float colour = redistribute(hyab(a.colour[i], b.colour[i]), largest);
         const float edge = abs(a.features.edges[i] - b.features.edges[i]);
         const float point = abs(a.features.points[i] - b.features.points[i]);
@@ -302,12 +304,11 @@ FlipResult hdr_flip(const Image& picture, const Image& reference, float pixels_p
         const float stops =
             range.first + (range.last - range.first) * static_cast<float>(k) / static_cast<float>(count - 1);
         const auto shown = [&, scale = exp2(stops)](const std::vector<Vec3>& from) {
-            std::vector<Vec3> to;
-            to.reserve(from.size());
-            for (const Vec3 v : from) {
-                const Vec3 s = min(scale * v, Vec3{0x1p40f, 0x1p40f, 0x1p40f}); // its square is still finite
-                to.push_back({curve(s.x), curve(s.y), curve(s.z)});
-            }
+            std::vector<Vec3> to(from.size());
+            parallel_for(from.size(), kPixels, [&](uint64_t i) {
+                const Vec3 s = min(scale * from[i], Vec3{0x1p40f, 0x1p40f, 0x1p40f}); // its square is still finite
+                to[i] = {curve(s.x), curve(s.y), curve(s.z)};
+            });
             return to;
         };
         const Plane map = error_map(shown(a), shown(b), size_of(picture), pixels_per_degree);

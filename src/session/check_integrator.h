@@ -13,7 +13,8 @@ namespace pertev {
 /// Whether the settings go together. Throws Error(BadInput), Error(OverLimit) for a tree of rays that is too deep.
 void check_integrator(const RenderSettings& settings);
 
-/// Why the integrator would show all surfaces as black, for want of lights that it knows; empty where it does not.
+/// Why nothing would be lit, for want of lights that the integrator knows, though mirrors may show lamps; empty where
+/// something may be.
 std::string why_dark(const RenderSettings& settings, const Scene& scene);
 
 /// Throws Error(BadInput) that says why_dark; a note tells what whitted leaves out.

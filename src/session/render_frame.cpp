@@ -1,5 +1,7 @@
 // The part of a Session that makes frames of a sequence.
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -33,7 +35,6 @@ NoisyFrame& Session::fit(std::optional<NoisyFrame>& frame, uint32_t width, uint3
     if (frame && frame->width() == width && frame->height() == height && frame->splits_light() == splits_light) {
         return *frame;
     }
-    if (frame && frame->splits_light() != splits_light) reconstruction_.reset(); // what it knows is of other signals
     frame.reset(); // before the new one, so that both need not fit
     return frame.emplace(queue_, width, height, splits_light);
 }
@@ -51,7 +52,9 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         of_light.path.sampler = SamplerKind::SpaceTime;
         of_light.path.frame_width = of_light.width;
     }
+    const bool split_light = noisy_frame_ && noisy_frame_->splits_light();
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
+    if (frame.splits_light() != split_light) reconstruction_.reset(); // what it knows is of other signals
     if (!reconstruction_ || reconstruction_->width() != of_light.width ||
         reconstruction_->height() != of_light.height) {
         reconstruction_.reset(); // before the new one, so that both need not fit
@@ -92,8 +95,9 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         features_.reset();
         reconstruction_->add(frame, light.camera.view, light.scene, before, change, settings);
     }
-    keep_light(number, of_light, settings);
-    has_moved_ = scene_has_changed_ = false;
+    has_moved_ = false; // the frame is whole, whatever follows
+    const bool has_changed = std::exchange(scene_has_changed_, false);
+    keep_light(number, of_light, settings.follow_light && has_changed);
 }
 
 /// A small picture by sample `number`, as frames take it.
@@ -109,22 +113,31 @@ void Session::take_small(uint32_t number, const Camera& camera, RenderSettings o
 /// How light has changed since the frame before, where that has left a small picture of the scene as it was.
 LightChangeView Session::look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings) {
     const bool is_known = settings.follow_light && scene_has_changed_ && camera_of_light_ &&
-                          reconstruction_->frames() > 0 && light_change_ && light_change_->fits(*noisy_frame_);
+                          reconstruction_->frames() > 0 && light_change_ && light_change_->fits(*noisy_frame_) &&
+                          path_of_light_ == of_light.path;
     if (!is_known) return {};
     take_small(number_of_light_, *camera_of_light_, of_light, light_change_->after());
     return light_change_->compare();
 }
 
-/// For the next frame, as what has moved once mostly goes on.
-void Session::keep_light(uint32_t number, const RenderSettings& of_light, const ReconstructionSettings& settings) {
+/// For the next frame where `goes_on`, as what has moved once mostly does. Where there is no room, light is not
+/// followed.
+void Session::keep_light(uint32_t number, const RenderSettings& of_light, bool goes_on) {
     camera_of_light_.reset();
-    if (!settings.follow_light || !scene_has_changed_) return;
-    if (!light_change_ || !light_change_->fits(*noisy_frame_)) {
-        light_change_.reset(); // before the new one, so that both need not fit
-        light_change_.emplace(queue_, noisy_frame_->width(), noisy_frame_->height(), noisy_frame_->splits_light());
+    if (!goes_on) return;
+    try {
+        if (!light_change_ || !light_change_->fits(*noisy_frame_)) {
+            light_change_.reset(); // before the new one, so that both need not fit
+            light_change_.emplace(queue_, noisy_frame_->width(), noisy_frame_->height(), noisy_frame_->splits_light());
+        }
+        take_small(number, camera_, of_light, light_change_->before());
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::OutOfMemory) throw;
+        light_change_.reset();
+        return;
     }
-    take_small(number, camera_, of_light, light_change_->before());
     camera_of_light_ = camera_;
+    path_of_light_ = of_light.path;
     number_of_light_ = number;
 }
 

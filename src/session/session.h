@@ -133,7 +133,7 @@ private:
     void copy_places();
     void take_small(uint32_t number, const Camera& camera, RenderSettings of_light, NoisyFrame& frame);
     LightChangeView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
-    void keep_light(uint32_t number, const RenderSettings& of_light, const ReconstructionSettings& settings);
+    void keep_light(uint32_t number, const RenderSettings& of_light, bool goes_on);
     bool take_tracer();
     void fit_trees();
     Restir* restir_for(const RestirSettings& settings, uint32_t width, uint32_t height);
@@ -173,6 +173,7 @@ private:
     std::optional<LightChange> light_change_;
     std::optional<Camera> camera_of_light_; // of the frame before, where light_change_ holds its scene
     uint32_t number_of_light_ = 0;          // that frame's
+    PathSettings path_of_light_;            // likewise
     RayCounts frame_rays_;
     bool film_is_old_ = false; // holds samples of a picture that is no more asked for
     std::unique_ptr<Integrator> integrator_;

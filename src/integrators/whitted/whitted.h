@@ -23,7 +23,8 @@ struct Whitted {
         vertex.follow_specular(kLeast);
     }
 
-    /// Without one that was asked for: the mean of the environment, right for a convex surface under an even sky.
+    /// Without one that was asked for: the mean of the environment, right for a bare diffuse surface, convex,
+    /// under an even sky.
     static Rgb ambient(const EnvironmentView* environment) {
         return environment != nullptr ? environment->mean : Rgb{0, 0, 0};
     }
