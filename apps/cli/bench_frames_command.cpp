@@ -134,8 +134,9 @@ int bench_frames(const FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
-    const bool asks_for_more =
-        flags.restir != name_of(RestirLight::Off) || flags.resolution_scale != 1 || flags.sample_order;
+    const ReconstructionFlags& asked = flags.reconstruction;
+    const bool asks_for_more = asked.restir != name_of(RestirLight::Off) || asked.settings.resolution_scale != 1 ||
+                               asked.settings.orders_samples;
     if (!makes_frames(settings.integrator) && asks_for_more) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
