@@ -46,10 +46,8 @@ Camera meter_camera(const Scene& scene, const MeterPlace& place) {
     camera.projection = Projection::Cosine;
     // The camera looks along -z, so that its x and y change places with the frame's.
     const Vec3 x = frame.bitangent, y = frame.tangent, z = -frame.normal;
-    camera.world_from_camera = {{x.x, y.x, z.x},
-                                {x.y, y.y, z.y},
-                                {x.z, y.z, z.z},
-                                place.point + 0x1p-19f * largest * frame.normal};
+    camera.world_from_camera = {
+        {x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, place.point + 0x1p-19f * largest * frame.normal};
     return camera;
 }
 
