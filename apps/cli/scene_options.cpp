@@ -43,11 +43,15 @@ CameraChoice camera_choice(const SceneOptions& options) {
 
 void check_scene_options(const SceneOptions& options) { check_camera_choice(camera_choice(options)); }
 
-void add_view_options(CLI::App& verb, SceneOptions& options) {
+void add_scene_name(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
         ->type_name("")
         ->check(file_name())
         ->required();
+}
+
+void add_view_options(CLI::App& verb, SceneOptions& options) {
+    add_scene_name(verb, options);
     const char* group = "Camera";
     verb.add_option("--camera", options.camera, "the scene's camera of this name or number, from 0")
         ->type_name("NAME|N")
@@ -91,9 +95,7 @@ void add_lens_options(CLI::App& verb, SceneOptions& options) {
 
 } // namespace
 
-void add_scene_options(CLI::App& verb, SceneOptions& options) {
-    add_view_options(verb, options);
-    add_lens_options(verb, options);
+void add_light_options(CLI::App& verb, SceneOptions& options) {
     const char* group = "Environment";
     verb.add_option("--environment", options.environment, "an .hdr or .exr panorama, or R,G,B: light from far away")
         ->type_name("FILE|R,G,B")
@@ -106,12 +108,17 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("X")
         ->check(number_between(0, 1e12f))
         ->group(group);
-    group = "Faces";
     verb.add_flag("--two-sided-lights", options.two_sided_lights, "lamps shine from both faces, whatever the file says")
-        ->group(group);
+        ->group("Faces");
+}
+
+void add_scene_options(CLI::App& verb, SceneOptions& options) {
+    add_view_options(verb, options);
+    add_lens_options(verb, options);
+    add_light_options(verb, options);
     verb.add_flag("--show-back-faces", options.show_back_faces,
                   "let the camera see backs that a glTF file hides\n(doubleSided: false)")
-        ->group(group);
+        ->group("Faces");
 }
 
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders) {

@@ -36,6 +36,10 @@ struct SceneOptions {
 void add_scene_options(CLI::App& verb, SceneOptions& options);
 /// The same without the environment, the faces and the lens, for verbs that look at geometry alone, through its middle.
 void add_view_options(CLI::App& verb, SceneOptions& options);
+/// SCENE alone.
+void add_scene_name(CLI::App& verb, SceneOptions& options);
+/// The environment and --two-sided-lights alone.
+void add_light_options(CLI::App& verb, SceneOptions& options);
 /// --allow-path alone.
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);
 

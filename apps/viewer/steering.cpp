@@ -49,6 +49,8 @@ std::string lens_flags(const Camera& camera) {
     case Projection::Orthographic:
         flags += fmt::format(" --projection orthographic --view-height {}", camera.ortho_height);
         break;
+    case Projection::Cosine: // no view
+        break;
     }
     if (camera.aperture_radius > 0) {
         flags += fmt::format(" --aperture {} --focus {}", camera.aperture_radius, camera.focus_distance);

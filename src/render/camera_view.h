@@ -34,6 +34,9 @@ HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
     if (camera.projection == Projection::Orthographic) {
         origin = {x, y, 0};
         direction = {0, 0, -1};
+    } else if (camera.projection == Projection::Cosine) {
+        const Vec3 about_z = sample_cosine_hemisphere({pixel.x * camera.inv_width, pixel.y * camera.inv_height});
+        direction = {about_z.x, about_z.y, -about_z.z};
     }
     if (camera.aperture_radius > 0) {
         const Vec2 on_lens = camera.aperture_radius * sample_uniform_disk_concentric(lens);

@@ -10,7 +10,9 @@
 
 namespace pertev {
 
-enum class Projection : uint8_t { Perspective, Orthographic };
+/// Cosine is no view but a light meter (integrators/path/meter_light.h): rays from the origin over the hemisphere about
+/// -z, their density the cosine over pi, over the picture from (0, 0) to (1, 1) as math/sampling.h has them.
+enum class Projection : uint8_t { Perspective, Orthographic, Cosine };
 
 struct Camera {
     std::string name, origin;

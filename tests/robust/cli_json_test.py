@@ -23,7 +23,7 @@ class Errors(CliTest):
         return last
 
     def test_an_error_of_the_line_is_an_object_for_every_verb_and_without_one(self):
-        for verb in ["", "render", "info", "compare", "bench", "bench rays", "bench build", "bench render", "lab",
+        for verb in ["", "render", "measure", "info", "compare", "bench", "bench rays", "bench build", "bench render", "lab",
                      "lab --thesis"]:
             for rest, says in [("--foo --json", "--foo"), ("--json --foo", "--foo"), ("--json --threads", "--threads")]:
                 with self.subTest(verb=verb, rest=rest):

@@ -21,6 +21,8 @@ FLAGS = {
               "--integrator --max-depth --ambient --seed --sampler --filter --filter-radius --clamp --device --threads "
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue",
+    "measure": "--at --normal --spp --max-depth --seed --efficacy --time --allow-path --environment --environment-rotation "
+               "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --quiet -q --json",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",

@@ -16,6 +16,9 @@ HD inline PathState generate_path(const CameraRays& camera, const PathSettings& 
     path.direction = ray.direction;
     path.pixel = pixel;
     path.sample = sample;
+    if (camera.view.projection == Projection::Cosine) {
+        path.bsdf_pdf = pdf_cosine_hemisphere(dot(ray.direction, camera.axis)); // as if a white surface stood there
+    }
     return path;
 }
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "device/launch.h"
+#include "integrators/path/meter_light.h"
 #include "integrators/path/path_loop.h"
 #include "integrators/path/path_stages.h"
 
@@ -104,6 +105,9 @@ void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film
         render_loop(first, count, film, *trees);
     } else {
         render_wavefront(first, count, film);
+    }
+    if (picture_.camera.view.projection == Projection::Cosine) {
+        rays_.shadow += add_meter_lights(queue_, *tracer_, picture_, settings_, first, count, film);
     }
 }
 

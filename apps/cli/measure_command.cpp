@@ -1,0 +1,162 @@
+// pertev measure SCENE --at X,Y,Z --normal X,Y,Z: the light that arrives at a point, in numbers.
+
+#include <filesystem>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "accel/bvh/bvh_cache.h"
+#include "apps/cli/choose_device.h"
+#include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/parse_values.h"
+#include "apps/cli/reporter.h"
+#include "apps/cli/scene_options.h"
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "session/measure_irradiance.h"
+#include "session/moving_scene.h"
+
+namespace pertev {
+namespace {
+
+/// Of a watt at the peak of the eye's response, lm/W; by it watts of luminance count as lumens.
+constexpr double kLumensPerWatt = 683;
+
+struct MeasureFlags {
+    SceneOptions scene;
+    std::string at, normal;
+    uint32_t samples = 64, max_depth = PathSettings{}.max_depth, seed = 0;
+    float efficacy = 0; // lm/W; 0: by the kind of file
+    std::optional<double> time_s;
+    MachineFlags machine;
+    bool no_cache = false;
+    ReportFlags report;
+};
+
+/// glTF states lamps in candela, lux and nits, which are read as watts one for one (docs/formats.md).
+bool states_lumens(const std::string& scene) {
+    std::string extension = std::filesystem::path(scene).extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension == ".gltf" || extension == ".glb";
+}
+
+double efficacy_of(const MeasureFlags& flags) {
+    if (flags.efficacy > 0) return static_cast<double>(flags.efficacy);
+    return states_lumens(flags.scene.scene) ? 1 : kLumensPerWatt;
+}
+
+MeterPlace place_of(const MeasureFlags& flags) {
+    const MeterPlace place = {parse_position("--at", flags.at), parse_vec3("--normal", flags.normal)};
+    const float squared = length_squared(place.normal);
+    if (!(squared > 0) || !is_finite(normalize(place.normal))) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--normal {}: no direction; it has a length above 0", flags.normal));
+    }
+    return place;
+}
+
+std::string in_json(const Measured& m, double scale = 1) {
+    return fmt::format(R"({{"value":{},"standard_error":{}}})", json_number(scale * m.value),
+                       json_number(scale * m.standard_error));
+}
+
+/// Both as far as the error leaves digits to tell.
+std::string in_words(const Measured& m, double scale = 1) {
+    return fmt::format("{:.6g} ± {:.2g}", scale * m.value, scale * m.standard_error);
+}
+
+void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, double seconds, Reporter& reporter) {
+    const double efficacy = efficacy_of(flags);
+    if (reporter.json()) {
+        reporter.event(fmt::format(
+            R"({{"event":"measure","scene":{},"at":{},"normal":{},"device":{},"irradiance_rgb":[{},{},{}],"irradiance":{},"illuminance":{},"lumens_per_watt":{},"paths":{},"invalid_paths":{},"rays":{},"max_depth":{},"seed":{},"seconds":{:.3f}}})",
+            json_string(flags.scene.scene), json_string(flags.at), json_string(flags.normal),
+            json_string(queue.device_name()), in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]),
+            in_json(e.luminance), in_json(e.luminance, efficacy), json_number(efficacy), e.paths, e.invalid_paths,
+            e.rays.total(), flags.max_depth, flags.seed, seconds));
+        return;
+    }
+    reporter.answer(fmt::format("irradiance   {} W/m2 (red {}, green {}, blue {})\n"
+                                "illuminance  {} lx ({:.6g} lm/W)\n",
+                                in_words(e.luminance), in_words(e.rgb[0]), in_words(e.rgb[1]), in_words(e.rgb[2]),
+                                in_words(e.luminance, efficacy), efficacy));
+    reporter.say(fmt::format("{} paths of at most {} scatterings on {} in {:.2f} s{}", e.paths, flags.max_depth,
+                             queue.device_name(), seconds,
+                             e.invalid_paths > 0 ? fmt::format("; {} were not finite", e.invalid_paths) : ""));
+}
+
+int measure(const MeasureFlags& flags) {
+    Reporter reporter(flags.report);
+    Messages& messages = reporter.messages();
+    const MeterPlace place = place_of(flags); // before anything is read
+    ComingMachine machine(flags.machine, messages);
+    reporter.say_messages();
+    reporter.set_work(fmt::format("loading {}", flags.scene.scene));
+    RenderSettings settings;
+    settings.samples = flags.samples;
+    settings.path.max_depth = flags.max_depth;
+    settings.path.seed = flags.seed;
+    Scene scene = load_scene(flags.scene, messages);
+    for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
+    PrepareOptions prepare = prepare_options(settings, machine.is_cuda());
+    prepare.may_be_better = true;
+    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
+    reporter.set_work("building trees");
+    const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
+    const std::unique_ptr<Queue> queue = machine.take();
+    reporter.say_messages();
+    listen_for_interrupt();
+    reporter.set_work("measuring");
+    const Stopwatch watch;
+    const auto keep_going = [&](double share) {
+        reporter.progress(share, "measuring");
+        return !interrupted();
+    };
+    const Irradiance irradiance = measure_irradiance(*queue, moving.prepared(), place, settings, keep_going);
+    reporter.end_progress();
+    print(flags, irradiance, *queue, watch.seconds(), reporter);
+    return 0;
+}
+
+} // namespace
+
+void add_measure_command(CLI::App& app, int& status) {
+    CLI::App& verb = *app.add_subcommand("measure", "Say how much light arrives at a point: W/m2 and lux");
+    const auto flags = std::make_shared<MeasureFlags>();
+    add_scene_name(verb, flags->scene);
+    verb.add_option("--at", flags->at, "the point, metres")->type_name("X,Y,Z")->required();
+    verb.add_option("--normal", flags->normal, "the way that a surface there faces, of any length")
+        ->type_name("X,Y,Z")
+        ->required();
+    verb.add_option("--spp", flags->samples,
+                    fmt::format("times {}, paths from the point", kMeterRepeats * kMeterSide * kMeterSide))
+        ->type_name("N")
+        ->check(whole_between(1, kMaxSamplesPerPixel))
+        ->capture_default_str();
+    verb.add_option("--max-depth", flags->max_depth, "most scatterings on the way to the point: 0 direct light")
+        ->type_name("N")
+        ->check(whole_between(0, kMaxPathDepth - 1))
+        ->capture_default_str();
+    verb.add_option("--seed", flags->seed, "of the random numbers")
+        ->type_name("N")
+        ->check(whole_between(0, kMostMeterSeed))
+        ->capture_default_str();
+    verb.add_option("--efficacy", flags->efficacy,
+                    "lumens of a watt (683; 1 for glTF, whose candela, lux and nits\nare read as watts)")
+        ->type_name("LM_PER_W")
+        ->check(number_above_zero(1e6f));
+    verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
+        ->type_name("SECONDS")
+        ->check(number_between(-1e9f, 1e9f));
+    add_allow_path(verb, flags->scene.allowed_paths);
+    add_light_options(verb, flags->scene);
+    add_machine_flags(verb, flags->machine, "Machine");
+    verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");
+    add_report_flags(verb, flags->report);
+    verb.callback([flags, &status] { status = measure(*flags); });
+}
+
+} // namespace pertev

@@ -1,0 +1,89 @@
+#include "session/measure_irradiance.h"
+
+#include <cmath>
+#include <span>
+
+#include "base/error.h"
+#include "math/frame.h"
+#include "session/session.h"
+
+namespace pertev {
+namespace {
+
+RenderSettings meter_settings(const RenderSettings& asked) {
+    RenderSettings settings;
+    settings.integrator = IntegratorKind::Path;
+    settings.path = asked.path;
+    settings.body = asked.body;
+    settings.batch = asked.batch;
+    settings.tracers = asked.tracers;
+    settings.samples = asked.samples;
+    settings.width = settings.height = kMeterSide;
+    settings.filter = PixelFilter::Box;
+    return settings;
+}
+
+double luminance_of(const double (&rgb)[3]) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
+
+Measured mean_of(std::span<const double> estimates) {
+    const double n = static_cast<double>(estimates.size());
+    double sum = 0, squares = 0;
+    for (const double estimate : estimates) sum += estimate;
+    const double mean = sum / n;
+    for (const double estimate : estimates) squares += (estimate - mean) * (estimate - mean);
+    return {mean, std::sqrt(squares / (n * (n - 1)))};
+}
+
+} // namespace
+
+Camera meter_camera(const Scene& scene, const MeterPlace& place) {
+    PERTEV_CHECK(length_squared(place.normal) > 0);
+    const Bounds3 bounds = bounds_of(scene);
+    float largest = max_component(abs(place.point));
+    if (!bounds.is_empty()) largest = max(largest, max_component(max(abs(bounds.lo), abs(bounds.hi))));
+    const Frame frame = make_frame(normalize(place.normal));
+    Camera camera;
+    camera.projection = Projection::Cosine;
+    // The camera looks along -z, so that its x and y change places with the frame's.
+    const Vec3 x = frame.bitangent, y = frame.tangent, z = -frame.normal;
+    camera.world_from_camera = {
+        {x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, place.point + 0x1p-19f * largest * frame.normal};
+    return camera;
+}
+
+Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPlace& place,
+                              const RenderSettings& asked, const std::function<bool(double)>& keep_going) {
+    PERTEV_CHECK(asked.path.seed <= kMostMeterSeed);
+    RenderSettings settings = meter_settings(asked);
+    Session session(queue, scene, meter_camera(*scene.scene, place), settings);
+    Irradiance result;
+    double estimates[4][kMeterRepeats];
+    for (uint32_t repeat = 0; repeat < kMeterRepeats; ++repeat) {
+        settings.path.seed = asked.path.seed * kMeterRepeats + repeat;
+        session.set_settings(settings);
+        session.cut();
+        session.render(settings.samples, [&](const RenderProgress& now) {
+            const double share = static_cast<double>(now.samples_done) / now.samples;
+            if (keep_going && !keep_going((repeat + share) / kMeterRepeats)) {
+                throw Error(ErrorCode::Interrupted, "interrupted");
+            }
+            return true;
+        });
+        const Image picture = session.picture();
+        double sums[3] = {};
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) sums[i % 3] += static_cast<double>(picture.pixels[i]);
+        constexpr double kPixels = kMeterSide * kMeterSide;
+        for (double& sum : sums) sum *= 3.14159265358979323846 / kPixels; // radiance of a white surface
+        for (int k = 0; k < 3; ++k) estimates[k][repeat] = sums[k];
+        estimates[3][repeat] = luminance_of(sums);
+        const RenderStats stats = session.stats();
+        result.paths += uint64_t(kMeterSide) * kMeterSide * stats.samples;
+        result.invalid_paths += stats.invalid_samples;
+        result.rays = result.rays + stats.rays;
+    }
+    for (int k = 0; k < 3; ++k) result.rgb[k] = mean_of(estimates[k]);
+    result.luminance = mean_of(estimates[3]);
+    return result;
+}
+
+} // namespace pertev

@@ -1,0 +1,177 @@
+// A light meter against closed forms: lamps with and without extent, an environment, a room that glows. Its error is
+// held to the truth, too.
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "session/measure_irradiance.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr double kPiExact = 3.14159265358979323846;
+constexpr MeterPlace kUpwards = {{0, 0, 0}, {0, 1, 0}};
+
+RenderSettings samples_of(uint32_t samples, uint32_t seed = 0) {
+    RenderSettings settings;
+    settings.samples = samples;
+    settings.path.seed = seed;
+    return settings;
+}
+
+struct Room {
+    Scene scene;
+    PreparedScene prepared;
+
+    explicit Room(Scene made) : scene(std::move(made)) {
+        Messages messages;
+        prepared = prepare_scene(scene, {}, messages);
+    }
+    Room(const Room&) = delete;
+    Room& operator=(const Room&) = delete;
+
+    Irradiance measure(const MeterPlace& place, const RenderSettings& settings) const {
+        Queue queue = test::queue_asked_for();
+        return measure_irradiance(queue, prepared, place, settings);
+    }
+};
+
+/// Five standard errors, and for what rounding does a 50000th.
+void check_measured(const Measured& measured, double wanted, double error_share) {
+    CAPTURE(measured.value);
+    CAPTURE(measured.standard_error);
+    CAPTURE(wanted);
+    CHECK(std::abs(measured.value - wanted) <= 5 * measured.standard_error + 2e-5 * wanted);
+    CHECK(measured.standard_error <= error_share * wanted);
+}
+
+Material black_lamp(float radiance) { return {.name = "lamp", .base_color = {0, 0, 0}, .emission = grey(radiance)}; }
+
+/// Faces down, about (0, height, 0); its corners lie a little farther out than on the circle, so that its area is the
+/// circle's.
+Mesh disc(float radius, float height) {
+    constexpr uint32_t kCorners = 256;
+    const double step = 2 * kPiExact / kCorners, out = static_cast<double>(radius) * std::sqrt(step / std::sin(step));
+    Mesh mesh;
+    mesh.positions.push_back({0, height, 0});
+    for (uint32_t i = 0; i < kCorners; ++i) {
+        mesh.positions.push_back(
+            {static_cast<float>(out * std::cos(i * step)), height, static_cast<float>(out * std::sin(i * step))});
+        mesh.indices.insert(mesh.indices.end(), {0, 1 + i, 1 + (i + 1) % kCorners});
+    }
+    return mesh;
+}
+
+/// Over a floor on which the meter lies.
+Scene disc_over_floor() {
+    Scene scene;
+    test::add(scene, disc(0.5f, 2), black_lamp(10));
+    test::add(scene, test::floor_at(0, 5), test::white(0.8f));
+    return scene;
+}
+constexpr double kUnderDisc = kPiExact * 10 * 0.25 / (0.25 + 4); // pi L R^2 / (R^2 + h^2)
+
+} // namespace
+
+TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), and the floor that it lies on does not shade it") {
+    const Room room(disc_over_floor());
+    const Irradiance irradiance = room.measure(kUpwards, samples_of(4));
+    check_measured(irradiance.luminance, kUnderDisc, 2e-3);
+    CHECK(irradiance.invalid_paths == 0);
+    CHECK(irradiance.paths == 4 * kMeterRepeats * kMeterSide * kMeterSide);
+    CHECK(room.measure({{0, 0, 0}, {0, -2, 0}}, samples_of(1)).luminance.value == 0); // turned away
+}
+
+TEST_CASE("under a rectangle a meter reads what the closed form says, by each colour") {
+    Scene scene;
+    Material lamp = black_lamp(1);
+    lamp.emission = {1, 2, 3};
+    test::add(scene, test::sheet({0, 2, 0}, {0.5f, 0, 0}, {0, 0, 1}), lamp);
+    const Room room(std::move(scene));
+    const auto part = [](double a, double b) {
+        const double c = std::sqrt(a * a + 4);
+        return a / c * std::atan(b / c);
+    };
+    const double wanted = 2 * (part(0.5, 1) + part(1, 0.5));
+    const Irradiance irradiance = room.measure(kUpwards, samples_of(4));
+    for (int k = 0; k < 3; ++k) check_measured(irradiance.rgb[k], (k + 1) * wanted, 2e-3);
+    check_measured(irradiance.luminance, (0.2126 + 2 * 0.7152 + 3 * 0.0722) * wanted, 2e-3);
+}
+
+TEST_CASE("a point light gives I cos / r^2 without an error, a directional one its irradiance times the cosine") {
+    Scene point;
+    point.lights.push_back(test::point_light({1, 2, 0.5f}, {5, 5, 5}));
+    const Room under_point(std::move(point));
+    check_measured(under_point.measure(kUpwards, samples_of(1)).luminance, 5 * 2 / std::pow(5.25, 1.5), 1e-7);
+
+    Scene sun;
+    Light light;
+    light.kind = LightKind::Directional;
+    light.direction = normalize(Vec3{0, -4, 3});
+    light.intensity = {100, 100, 100};
+    sun.lights.push_back(light);
+    const Room under_sun(std::move(sun));
+    check_measured(under_sun.measure(kUpwards, samples_of(1)).luminance, 80, 1e-7);
+}
+
+TEST_CASE("under an environment of radiance 1 a meter reads pi, whichever way it looks") {
+    Scene scene;
+    scene.environment.emplace();
+    const Room room(std::move(scene));
+    for (const Vec3 normal : {Vec3{0, 1, 0}, Vec3{0, 0, -1}, Vec3{3, -2, 1}}) {
+        check_measured(room.measure({{1, 2, 3}, normal}, samples_of(1)).luminance, kPiExact, 4e-3);
+    }
+}
+
+TEST_CASE("in a room that glows a meter reads all scattered light, and no more of it than the depth allows") {
+    const test::TriangleMesh sphere = test::make_sphere(2, {0, 0, 0}, 2.0f);
+    Mesh mesh;
+    mesh.positions = sphere.positions;
+    mesh.indices = sphere.indices;
+    Scene scene;
+    test::add(scene, mesh,
+              {.name = "wall", .base_color = grey(0.5f), .emission = {1, 1, 1}, .two_sided_emission = true});
+    const Room room(std::move(scene));
+    const MeterPlace place = {{0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}};
+    RenderSettings settings = samples_of(2);
+    for (const auto& [depth, wanted] : {std::pair(0u, 1.0), {1u, 1.5}, {60u, 2.0}}) {
+        settings.path.max_depth = depth;
+        check_measured(room.measure(place, settings).luminance, wanted * kPiExact, 5e-3);
+    }
+}
+
+TEST_CASE("the error of a measurement is what measurements with other seeds differ from the truth by") {
+    const Room room(disc_over_floor());
+    constexpr uint32_t kSeeds = 24;
+    double squares = 0;
+    for (uint32_t seed = 0; seed < kSeeds; ++seed) {
+        const Measured measured = room.measure(kUpwards, samples_of(1, seed)).luminance;
+        squares += std::pow((measured.value - kUnderDisc) / measured.standard_error, 2);
+    }
+    // A mean of kSeeds squares, of expectation 31 / 29 and standard error 0.33.
+    CHECK(squares / kSeeds > 0.3);
+    CHECK(squares / kSeeds < 2.4);
+}
+
+TEST_CASE("a meter reads the very same by both bodies of the path tracer, and on both devices") {
+    const Room room(test::make_mixed_scene());
+    const MeterPlace place = {{0.1f, 0.02f, 0.2f}, {0.2f, 1, 0}};
+    RenderSettings settings = samples_of(1);
+    settings.body = PathBody::Loop;
+    Queue cpu = Queue::make_cpu();
+    const Irradiance one = measure_irradiance(cpu, room.prepared, place, settings);
+    settings.body = PathBody::Wavefront;
+    const Irradiance other = room.measure(place, settings);
+    CHECK(one.luminance.value > 0);
+    CHECK(one.rays.shadow == other.rays.shadow);
+    for (int k = 0; k < 3; ++k) {
+        CHECK(one.rgb[k].value == other.rgb[k].value);
+        CHECK(one.rgb[k].standard_error == other.rgb[k].standard_error);
+    }
+}
