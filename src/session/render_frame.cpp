@@ -50,7 +50,6 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     of_light.height = scaled_side(settings_.height, settings);
     if (settings.orders_samples && restir.light == RestirLight::Off && of_light.path.sampler == SamplerKind::Sobol) {
         of_light.path.sampler = SamplerKind::SpaceTime;
-        of_light.path.frame_width = of_light.width;
     }
     const bool split_light = noisy_frame_ && noisy_frame_->splits_light();
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
@@ -67,11 +66,8 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     Restir* const shared = restir_for(restir, of_light.width, of_light.height);
     frame_rays_ = {};
     const LightChangeView change = look_for_change(of_light, settings);
-    begin(camera_, of_light, 1);
-    frame.begin();
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
-    integrator_->render(number, 1, frame.film_view());
-    frame_rays_ = frame_rays_ + integrator_->rays();
+    take_sample(number, camera_, of_light, frame);
     const PictureView light = view_of(camera_, of_light);
     const PreviousScene before = has_moved_ ? PreviousScene{places_before_.data(), scene_->meshes_before()}
                                             : PreviousScene{light.scene.instances, light.scene.meshes};
@@ -81,13 +77,11 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     }
     if (settings.resolution_scale < 1) {
         RenderSettings of_features = of_light;
-        of_features.width = of_features.path.frame_width = settings_.width;
+        of_features.width = settings_.width;
         of_features.height = settings_.height;
         of_features.path.max_depth = 0;
         NoisyFrame& features = fit(features_, settings_.width, settings_.height);
-        begin(camera_, of_features, 1);
-        integrator_->render(number, 1, features.film_view());
-        frame_rays_ = frame_rays_ + integrator_->rays();
+        take_sample(number, camera_, of_features, features);
         const CameraView camera = view_of(camera_, of_features).camera.view;
         reconstruction_->add_enlarged(frame, light.camera.view, features, camera, light.scene, before, change,
                                       settings);
@@ -100,11 +94,11 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     keep_light(number, of_light, settings.follow_light && has_changed);
 }
 
-/// A small picture by sample `number`, as frames take it.
-void Session::take_small(uint32_t number, const Camera& camera, RenderSettings of_light, NoisyFrame& frame) {
-    of_light.width = of_light.path.frame_width = frame.width();
-    of_light.height = frame.height();
-    begin(camera, of_light, 1);
+/// Sample `number` of each pixel of `frame`, at its size.
+void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame) {
+    settings.width = settings.path.frame_width = frame.width();
+    settings.height = frame.height();
+    begin(camera, settings, 1);
     frame.begin();
     integrator_->render(number, 1, frame.film_view());
     frame_rays_ = frame_rays_ + integrator_->rays();
@@ -116,7 +110,7 @@ LightChangeView Session::look_for_change(const RenderSettings& of_light, const R
                           reconstruction_->frames() > 0 && light_change_ && light_change_->fits(*noisy_frame_) &&
                           path_of_light_ == of_light.path;
     if (!is_known) return {};
-    take_small(number_of_light_, *camera_of_light_, of_light, light_change_->after());
+    take_sample(number_of_light_, *camera_of_light_, of_light, light_change_->after());
     return light_change_->compare();
 }
 
@@ -130,7 +124,7 @@ void Session::keep_light(uint32_t number, const RenderSettings& of_light, bool g
             light_change_.reset(); // before the new one, so that both need not fit
             light_change_.emplace(queue_, noisy_frame_->width(), noisy_frame_->height(), noisy_frame_->splits_light());
         }
-        take_small(number, camera_, of_light, light_change_->before());
+        take_sample(number, camera_, of_light, light_change_->before());
     } catch (const Error& error) {
         if (error.code() != ErrorCode::OutOfMemory) throw;
         light_change_.reset();

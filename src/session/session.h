@@ -131,7 +131,7 @@ private:
     void begin_film();
     void keep_places();
     void copy_places();
-    void take_small(uint32_t number, const Camera& camera, RenderSettings of_light, NoisyFrame& frame);
+    void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame);
     LightChangeView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
     void keep_light(uint32_t number, const RenderSettings& of_light, bool goes_on);
     bool take_tracer();
