@@ -37,9 +37,9 @@ struct Score {
     uint32_t frames = 0;
     std::vector<float> error; // of the frame before, as a display shows it
 
-    /// `shown` and `shown_reference`: both as a display shows them.
-    void add(const Image& picture, const Image& reference, const Rgba8Image& shown, const Rgba8Image& shown_reference) {
-        flip_of_last = hdr_flip(picture, reference).mean;
+    /// `shown` and `shown_reference`: both as a display shows them. `hdr_flip`: of the picture.
+    void add(double hdr_flip, const Rgba8Image& shown, const Rgba8Image& shown_reference) {
+        flip_of_last = hdr_flip;
         if (frames == 0) flip_of_first = flip_of_last;
         flip += flip_of_last;
         std::vector<float> now(shown.pixels.size());
@@ -61,6 +61,9 @@ struct Scores {
     Score ours, sample;
     std::optional<Score> peer;
     double noise = 0; // HDR-FLIP of one half of the first reference's samples against the other
+    // Of a half of each reference's samples against all of them, which differ as much as all of them do from the truth:
+    // its flicker is what the references' own noise adds to the others'.
+    Score half;
 };
 
 std::filesystem::path file_of(const std::string& folder, uint32_t frame, const char* kind) {
@@ -140,9 +143,13 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         std::vector<Rgba8Image> strip = {shown(sample.picture), shown(ours)};
         if (peer) strip.push_back(shown(*peer));
         strip.push_back(shown(reference));
-        scores.sample.add(sample.picture, reference, strip[0], strip.back());
-        scores.ours.add(ours, reference, strip[1], strip.back());
-        if (peer) scores.peer->add(*peer, reference, strip[2], strip.back());
+        std::vector<const Image*> pictures = {&sample.picture, &ours};
+        if (peer) pictures.push_back(&*peer);
+        const std::vector<FlipResult> flips = hdr_flips(pictures, reference);
+        scores.sample.add(flips[0].mean, strip[0], strip.back());
+        scores.ours.add(flips[1].mean, strip[1], strip.back());
+        if (peer) scores.peer->add(flips[2].mean, strip[2], strip.back());
+        scores.half.add(0, shown(first), strip.back());
         if (number == 0) scores.noise = hdr_flip(first, second).mean;
         if (!flags.strips.empty() && number % 15 == 14) {
             write_png(std::filesystem::path(flags.strips) / fmt::format("strip-{:04}.png", number), strip_of(strip));
@@ -184,19 +191,20 @@ int bench_sequence(const SequenceFlags& flags) {
     reporter.end_progress();
     if (reporter.json()) {
         reporter.event(fmt::format(
-            R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"reference_spp":{},"reference_noise":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
+            R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"reference_spp":{},"reference_noise":{},"reference_flicker":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
             json_string(flags.render.scene.scene), json_string(ready->queue->device_name()), ready->settings.width,
             ready->settings.height, ready->sequence.count(), flags.reference, json_number(scores.noise),
-            json_of(scores.ours), json_of(scores.sample), scores.peer ? json_of(*scores.peer) : "null",
-            picture_hash(session.frame().picture()).hex()));
+            json_number(scores.half.mean_flicker()), json_of(scores.ours), json_of(scores.sample),
+            scores.peer ? json_of(*scores.peer) : "null", picture_hash(session.frame().picture()).hex()));
         return 0;
     }
     reporter.answer(fmt::format("{} on {}: {}x{}, {} frames; last frame {}\n", flags.render.scene.scene,
                                 ready->queue->device_name(), ready->settings.width, ready->settings.height,
                                 ready->sequence.count(), picture_hash(session.frame().picture()).hex()));
     if (flags.reference == 0) return 0;
-    reporter.answer(fmt::format("against {} spp, one half of which differs from the other by {:.4f}:\n",
-                                flags.reference, scores.noise));
+    reporter.answer(fmt::format("against {} spp, one half of which differs from the other by {:.4f}; their own noise "
+                                "flickers by {:.5f}:\n",
+                                flags.reference, scores.noise, scores.half.mean_flicker()));
     reporter.answer(text_of("frames", scores.ours));
     if (scores.peer) reporter.answer(text_of("peer", *scores.peer));
     reporter.answer(text_of("samples", scores.sample));

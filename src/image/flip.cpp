@@ -86,11 +86,14 @@ Plane convolve(const Plane& from, Size size, const std::vector<float>& across, c
     Plane middle(size.count()), to(size.count());
     parallel_for(rows, 4, [&](uint64_t y) {
         const float* row = from.data() + y * static_cast<std::size_t>(size.width);
-        for (int x = 0; x < size.width; ++x) {
-            float sum = 0;
-            for (int k = 0; k <= 2 * radius; ++k)
-                sum += across[static_cast<std::size_t>(k)] * row[clamp(x + k - radius, 0, size.width - 1)];
-            middle[y * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)] = sum;
+        std::vector<float> wide(static_cast<std::size_t>(size.width + 2 * radius)); // the row and what repeats its ends
+        for (int x = 0; x < size.width + 2 * radius; ++x)
+            wide[static_cast<std::size_t>(x)] = row[clamp(x - radius, 0, size.width - 1)];
+        float* result = middle.data() + y * static_cast<std::size_t>(size.width);
+        for (int k = 0; k <= 2 * radius; ++k) {
+            const float* shifted = wide.data() + k;
+            const float weight = across[static_cast<std::size_t>(k)];
+            for (int x = 0; x < size.width; ++x) result[x] += weight * shifted[x];
         }
     });
     parallel_for(rows, 4, [&](uint64_t y) {
@@ -225,11 +228,9 @@ float redistribute(float difference, float largest) {
     return kColourKneeValue + (error - knee) / (largest - knee) * (1.0f - kColourKneeValue);
 }
 
-Plane error_map(const std::vector<Vec3>& picture, const std::vector<Vec3>& reference, Size size,
-                float pixels_per_degree) {
-    const Perceived a = perceive(picture, size, pixels_per_degree), b = perceive(reference, size, pixels_per_degree);
+Plane error_map(const Perceived& a, const Perceived& b) {
     const float largest = largest_colour_difference();
-    Plane result(size.count());
+    Plane result(a.colour.size());
     parallel_for(result.size(), kPixels, [&](uint64_t i) {
         const float colour = redistribute(hyab(a.colour[i], b.colour[i]), largest);
         const float edge = abs(a.features.edges[i] - b.features.edges[i]);
@@ -289,32 +290,46 @@ ExposureRange exposures_for(const std::vector<Vec3>& reference) {
 FlipResult flip(const Image& picture, const Image& reference, float pixels_per_degree) {
     check_comparable(picture, reference);
     PERTEV_CHECK(pixels_per_degree > 0);
-    return result_of(error_map(colours_of(picture), colours_of(reference), size_of(picture), pixels_per_degree),
-                     picture);
+    const auto perceived = [&](const Image& image) {
+        return perceive(colours_of(image), size_of(image), pixels_per_degree);
+    };
+    return result_of(error_map(perceived(picture), perceived(reference)), picture);
 }
 
 FlipResult hdr_flip(const Image& picture, const Image& reference, float pixels_per_degree) {
-    check_comparable(picture, reference);
+    return std::move(hdr_flips({&picture}, reference, pixels_per_degree)[0]);
+}
+
+std::vector<FlipResult> hdr_flips(const std::vector<const Image*>& pictures, const Image& reference,
+                                  float pixels_per_degree) {
+    for (const Image* picture : pictures) check_comparable(*picture, reference);
     PERTEV_CHECK(pixels_per_degree > 0);
-    const std::vector<Vec3> a = colours_of(picture), b = colours_of(reference);
-    const ExposureRange range = exposures_for(b);
+    const std::vector<Vec3> colours_of_reference = colours_of(reference);
+    std::vector<std::vector<Vec3>> colours;
+    for (const Image* picture : pictures) colours.push_back(colours_of(*picture));
+    const ExposureRange range = exposures_for(colours_of_reference);
     const int count = max(2, to_int(range.last - range.first + 0.999999f, 0, 64));
-    Plane largest(a.size());
+    std::vector<Plane> largest(pictures.size(), Plane(colours_of_reference.size()));
     for (int k = 0; k < count; ++k) {
         const float stops =
             range.first + (range.last - range.first) * static_cast<float>(k) / static_cast<float>(count - 1);
-        const auto shown = [&, scale = exp2(stops)](const std::vector<Vec3>& from) {
+        const auto perceived = [&, scale = exp2(stops)](const std::vector<Vec3>& from) {
             std::vector<Vec3> to(from.size());
             parallel_for(from.size(), kPixels, [&](uint64_t i) {
                 const Vec3 s = min(scale * from[i], Vec3{0x1p40f, 0x1p40f, 0x1p40f}); // its square is still finite
                 to[i] = {curve(s.x), curve(s.y), curve(s.z)};
             });
-            return to;
+            return perceive(to, size_of(reference), pixels_per_degree);
         };
-        const Plane map = error_map(shown(a), shown(b), size_of(picture), pixels_per_degree);
-        for (std::size_t i = 0; i < map.size(); ++i) largest[i] = max(largest[i], map[i]);
+        const Perceived wanted = perceived(colours_of_reference);
+        for (std::size_t which = 0; which < pictures.size(); ++which) {
+            const Plane map = error_map(perceived(colours[which]), wanted);
+            for (std::size_t i = 0; i < map.size(); ++i) largest[which][i] = max(largest[which][i], map[i]);
+        }
     }
-    return result_of(std::move(largest), picture);
+    std::vector<FlipResult> results;
+    for (Plane& map : largest) results.push_back(result_of(std::move(map), reference));
+    return results;
 }
 
 } // namespace pertev

@@ -6,6 +6,8 @@
 // "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021 Short Papers. Where paper and the
 // authors' program differ, the program counts (filter radii, edges of the picture repeated outwards).
 
+#include <vector>
+
 #include "image/image.h"
 
 namespace pertev {
@@ -25,5 +27,9 @@ FlipResult flip(const Image& picture, const Image& reference, float pixels_per_d
 /// HDR-FLIP: the largest LDR-FLIP of each pixel over a range of exposures that follows from the reference's luminance,
 /// each through the ACES curve of the source. The number of exposures grows with the reference's contrast.
 FlipResult hdr_flip(const Image& picture, const Image& reference, float pixels_per_degree = kDefaultPixelsPerDegree);
+
+/// The same of each of `pictures`; the reference is looked at once for all of them.
+std::vector<FlipResult> hdr_flips(const std::vector<const Image*>& pictures, const Image& reference,
+                                  float pixels_per_degree = kDefaultPixelsPerDegree);
 
 } // namespace pertev
