@@ -18,6 +18,7 @@ from viewer_client import Client, Tunnel, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
 STEERING_S = 600 if LONG else 20
+SIZE = "96x72"
 
 if find_chromium() is None:
     print("skipped: no Chromium is here")
@@ -38,7 +39,7 @@ def tearDownModule():  # pylint: disable=invalid-name
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.viewer = Viewer(size="160x120", spp=2)
+        cls.viewer = Viewer(size=SIZE, spp=2)
         cls.viewer.__enter__()
         cls.browser = BROWSER
         cls.browser.errors.clear()
@@ -84,20 +85,25 @@ class Page(unittest.TestCase):
                    "const floor = at(640, 690), wall = at(360, 300); "
                    "return floor[0] + floor[1] + floor[2] > 150 && wall[0] > 2 * wall[1]; })()")
         self.assertIn("film hash", page.value("document.querySelector('#readings').innerText"))
+        rate = page.until("/screen of who steers\\s+(\\d+) a second/.exec(document.querySelector('#readings').innerText)?.[1]")
+        self.assertTrue(10 <= int(rate) <= 300, rate)
         rendered = self.eye.done()["hash"]
         self.assertEqual(page.value("document.body.dataset.hash"), rendered)
 
     def test_keys_of_movement_go_by_their_place(self):
-        for code, sign in [("KeyW", 1), ("KeyS", -1)]:
-            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
-            self.assertGreater(sign * (after["eye"][2] - before["eye"][2]), 0.002, code)
-        # The scene's camera looks along +z with +y up: its right is -x.
-        for code, sign in [("KeyD", -1), ("KeyA", 1)]:
-            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
-            self.assertGreater(sign * (after["eye"][0] - before["eye"][0]), 0.002, code)
-        for code, sign in [("KeyE", 1), ("KeyQ", -1)]:
-            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
-            self.assertGreater(sign * (after["eye"][1] - before["eye"][1]), 0.002, code)
+        # The scene's camera looks along +z with +y up: its right is -x. Three keys at once, one for each axis.
+        for signs in [{"KeyD": -1, "KeyE": 1, "KeyW": 1}, {"KeyA": 1, "KeyQ": -1, "KeyS": -1}]:
+
+            def press(codes=tuple(signs)):
+                for code in codes:
+                    self.browser.key(code, "x", up=False)
+                time.sleep(0.2)
+                for code in codes:
+                    self.browser.key(code, "x", down=False)
+
+            before, after = self.moved(press)
+            for (code, sign), was, at in zip(signs.items(), before["eye"], after["eye"]):
+                self.assertGreater(sign * (at - was), 0.002, code)
 
     def test_what_is_held_with_ctrl_is_the_browser_s(self):
         page = self.browser
@@ -298,7 +304,7 @@ class Page(unittest.TestCase):
         page.until("document.body.dataset.plays == 'false' && document.body.dataset.phase == 'done'")
         done = self.eye.done(lambda s: not s["clock"]["on"] and s["clock"]["end"] > 0)
         rendered = render("cornell-box", "--camera-path", file, "--time", done["clock"]["at"], "--max-depth",
-                          done["values"]["max_depth"], size="160x120", spp=2)
+                          done["values"]["max_depth"], size=SIZE, spp=2)
         self.assertEqual(done["hash"], rendered)
         page.drag("left", 60, 20)  # one's own
         page.until("document.querySelector('#time').hidden")
@@ -330,7 +336,7 @@ class Page(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             made = {kind: os.path.join(folder, f"x.{kind}") for kind in ("png", "exr")}
             rendered = render("cornell-box", "-o", made["exr"], "--max-depth", state["values"]["max_depth"], output=made["png"],
-                              size="160x120", spp=2)
+                              size=SIZE, spp=2)
             self.assertEqual(rendered, state["hash"])
             with open(os.path.join(page.downloads, "pertev.png"), "rb") as saved, open(made["png"], "rb") as file:
                 self.assertEqual(saved.read(), file.read())
@@ -349,7 +355,9 @@ class Page(unittest.TestCase):
         page.key("KeyA", "a", down=False)
         if not SANITIZED:  # which keeps freed memory
             self.assertLess(self.viewer.resident_bytes() - resident, 32 << 20)
-        print(f"input to picture: median {sorted(waits)[len(waits) // 2]} ms of {len(waits)}", file=sys.stderr)
+        median = sorted(waits)[len(waits) // 2]
+        self.assertLess(median, 10_000 if SANITIZED else 1000)  # some 50 ms; but the machine may be busy
+        print(f"input to picture: median {median} ms of {len(waits)}", file=sys.stderr)
 
 
 class Moving(unittest.TestCase):
@@ -357,18 +365,18 @@ class Moving(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(folder, "m.gltf")
             write(scene, moving_gltf())
-            with Viewer(scene=scene, size="160x120", spp=2) as viewer, BROWSER.visit(viewer.address) as page:
+            with Viewer(scene=scene, size=SIZE, spp=2) as viewer, BROWSER.visit(viewer.address) as page:
                 page.until("document.body.dataset.plays == 'true' && !document.querySelector('#time').hidden")
                 page.until("document.querySelector('#time-text').innerText.endsWith('of 2.00')")
                 page.key("Space", " ")
                 page.until("document.body.dataset.plays == 'false' && document.body.dataset.phase == 'done'")
                 at = page.value("document.body.dataset.time")
-                self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--time", at, size="160x120", spp=2))
+                self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--time", at, size=SIZE, spp=2))
                 page.value("const t = document.querySelector('#time-at'); t.focus(); t.value = '0.5';"
                            "t.dispatchEvent(new Event('input')); t.dispatchEvent(new Event('change'))")
                 scrubbed = page.until("document.body.dataset.flags.endsWith('--time 0.5')"
                                       "&& document.body.dataset.phase == 'done' && document.body.dataset.hash")
-                self.assertEqual(scrubbed, render(scene, "--time", "0.5", size="160x120", spp=2))
+                self.assertEqual(scrubbed, render(scene, "--time", "0.5", size=SIZE, spp=2))
                 page.key("KeyW", "w", 0.2)
                 page.until(f"document.body.dataset.phase == 'done' && document.body.dataset.hash != '{scrubbed}'")
                 page.key("KeyR", "r")
