@@ -236,6 +236,11 @@ class Pictures(CliTest):
                 self.assertEqual(state["hash"], self.rendered(*kept, *arguments, spp=state["spp"])[0], name)
             client.set("spp", -1)
             self.assertIn("whole number", client.text("notice")["text"])
+            for tone_map in ["srgb", "aces"]:
+                last = client.set("tone_map", tone_map)
+                header, png = client.picture(lambda h, n=last: h["input"] == n and h["kind"] == 2)
+                self.assertEqual(header["total"], len(png))
+                self.assertEqual(png, self.rendered("--max-depth", "1", "--integrator", "direct", "--tone-map", tone_map, spp=7)[1])
 
     def test_each_layer_shows_and_the_picture_comes_back(self):
         with Viewer() as viewer, Client(viewer) as client:
