@@ -112,15 +112,19 @@ class SlowLink(WithViewer):
         with Client(Tunnel(self.viewer, 32 << 10), key="far") as far:
             far.set("moving_scale", "1")
 
+            def goes_on():  # a machine under load takes longer
+                now = time.monotonic()
+                return now < end or (len(delays) < 16 and now < end + 60)
+
             def steer():
-                while time.monotonic() < end:
+                while goes_on():
                     sent[far.input + 1] = time.monotonic()
                     far.steer(type="orbit", dx=0.003, dy=0)
                     time.sleep(0.03)
 
             hand = threading.Thread(target=steer)
             hand.start()
-            while time.monotonic() < end:
+            while goes_on():
                 header, data = far.picture()
                 if header["kind"] == 1 and header["input"] in sent:
                     delays.append(time.monotonic() - sent[header["input"]])
