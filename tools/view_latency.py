@@ -155,7 +155,7 @@ def main():
     given = parser.parse_args(own[: len(own) - len(more) - 1] if "--" in own else own)
     jpeg, is_good = Jpeg(os.path.abspath(given.pertev)), True
     for encoder in ["auto", "cpu"] if given.device != "cpu" else ["cpu"]:
-        flags = ["--jpeg", encoder, "--max-depth", "4", *more]
+        flags = ["--jpeg", encoder, *more]
         with Viewer("--jpeg", encoder, size="320x180", spp=64, device=given.device) as viewer:
             mean, shift = off_by(viewer, jpeg)
         with Viewer(*flags, scene=given.scene, size=given.size, spp=100000, device=given.device) as viewer:

@@ -22,6 +22,7 @@
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
 #include "session/check_integrator.h"
@@ -41,6 +42,8 @@ struct ViewFlags {
     std::string host = "127.0.0.1";
     uint32_t port = 8080;
     bool no_browser = false;
+    std::optional<uint32_t> moving_depth;
+    bool has_depth = false; // --max-depth was given
     std::string jpeg = "auto";
 };
 
@@ -196,6 +199,7 @@ int view(const ViewFlags& flags) {
     asked.none = false; // so that the panel's denoiser brings them back
     start.view.reconstruction = reconstruction_settings(asked);
     start.view.restir = restir_settings(asked);
+    start.view.moving_depth = flags.moving_depth.value_or(flags.has_depth ? flags.render.max_depth : kMovingDepth);
     if (start.view.finds_exposure) {
         source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
         start.view.display.exposure_stops = 0;
@@ -239,10 +243,19 @@ void add_view_command(CLI::App& app, int& status) {
         ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
     add_shown_picture_flags(verb, flags->render);
-    add_reconstruction_flags(verb, flags->reconstruction, "While the view moves");
+    const char* moving = "While the view moves";
+    verb.add_option("--moving-depth", flags->moving_depth,
+                    fmt::format("most scatterings of a path ({}, or --max-depth where that is given)", kMovingDepth))
+        ->type_name("N")
+        ->check(whole_between(0, kMaxPathDepth - 1))
+        ->group(moving);
+    add_reconstruction_flags(verb, flags->reconstruction, moving);
     add_time_flags(verb, flags->render, true);
     add_report_flags(verb, flags->render.report);
-    verb.callback([flags, &status] { status = view(*flags); });
+    verb.callback([flags, &verb, &status] {
+        flags->has_depth = verb.count("--max-depth") > 0;
+        status = view(*flags);
+    });
 }
 
 } // namespace pertev

@@ -77,6 +77,7 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
     case MessageKind::Key:
     case MessageKind::Unkey:
     case MessageKind::Follow:
+    case MessageKind::Rate:
         break;
     }
     // Whoever has just lost the wheel may not know it yet: no reason to drop it. Looking at a place is free.

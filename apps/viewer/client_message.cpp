@@ -121,6 +121,7 @@ constexpr Key kPlayKeys[] = {kInput,
 constexpr Key kSetKeys[] = {kInput, {"name", read_string<&ClientMessage::name, 32>}, {"value", read_value}};
 constexpr Key kAckKeys[] = {{"frame", read_whole<&ClientMessage::frame>},
                             {"ms", read_float<&ClientMessage::milliseconds, 0, 1000000>}};
+constexpr Key kRateKeys[] = {{"hz", read_float<&ClientMessage::hertz, 1, 1000>}};
 constexpr Key kHandKeys[] = {{"to", read_whole<&ClientMessage::client>}};
 
 struct Form {
@@ -130,25 +131,16 @@ struct Form {
 };
 
 constexpr Form kForms[] = {
-    {"hello", MessageKind::Hello, kHelloKeys},
-    {"move", MessageKind::Move, kMoveKeys},
-    {"orbit", MessageKind::Orbit, kDragKeys},
-    {"look", MessageKind::Look, kDragKeys},
-    {"pan", MessageKind::Pan, kDragKeys},
-    {"zoom", MessageKind::Zoom, kStepKeys},
-    {"speed", MessageKind::Speed, kStepKeys},
-    {"pick", MessageKind::Pick, kPickKeys},
-    {"home", MessageKind::Home, kPlainKeys},
-    {"camera", MessageKind::Camera, kCameraKeys},
-    {"set", MessageKind::Set, kSetKeys},
-    {"meter", MessageKind::Meter, kPlainKeys},
-    {"play", MessageKind::Play, kPlayKeys},
-    {"time", MessageKind::Time, kTimeKeys},
-    {"key", MessageKind::Key, kTimeKeys},
-    {"unkey", MessageKind::Unkey, kCameraKeys},
-    {"follow", MessageKind::Follow, kPlainKeys},
-    {"ack", MessageKind::Ack, kAckKeys},
-    {"ask", MessageKind::Ask, {}},
+    {"hello", MessageKind::Hello, kHelloKeys},   {"move", MessageKind::Move, kMoveKeys},
+    {"orbit", MessageKind::Orbit, kDragKeys},    {"look", MessageKind::Look, kDragKeys},
+    {"pan", MessageKind::Pan, kDragKeys},        {"zoom", MessageKind::Zoom, kStepKeys},
+    {"speed", MessageKind::Speed, kStepKeys},    {"pick", MessageKind::Pick, kPickKeys},
+    {"home", MessageKind::Home, kPlainKeys},     {"camera", MessageKind::Camera, kCameraKeys},
+    {"set", MessageKind::Set, kSetKeys},         {"meter", MessageKind::Meter, kPlainKeys},
+    {"play", MessageKind::Play, kPlayKeys},      {"time", MessageKind::Time, kTimeKeys},
+    {"key", MessageKind::Key, kTimeKeys},        {"unkey", MessageKind::Unkey, kCameraKeys},
+    {"follow", MessageKind::Follow, kPlainKeys}, {"rate", MessageKind::Rate, kRateKeys},
+    {"ack", MessageKind::Ack, kAckKeys},         {"ask", MessageKind::Ask, {}},
     {"hand", MessageKind::Hand, kHandKeys},
 };
 
@@ -212,6 +204,7 @@ bool moves_the_picture(MessageKind kind) {
     case MessageKind::Play:
     case MessageKind::Key:
     case MessageKind::Unkey:
+    case MessageKind::Rate:
     case MessageKind::Ack:
     case MessageKind::Ask:
     case MessageKind::Hand:

@@ -32,6 +32,7 @@ enum class MessageKind : uint8_t {
     Key,    // the present view becomes a key of the camera's path
     Unkey,  // a key goes
     Follow, // the camera goes its path, from its beginning
+    Rate,   // of the page's screen
     Ack,    // a picture was drawn
     Ask,    // for the wheel
     Hand,   // the wheel, to another client
@@ -54,6 +55,7 @@ struct ClientMessage {
     bool on = false, loops = false;          // Play
     float speed = 1;                         // Play: of time, [0, 64]
     float at = 0;                            // Time, Key: seconds, [0, 1e9]
+    float hertz = 0;                         // Rate: pictures a second, [1, 1000]
     uint32_t frame = 0;                      // Ack
     float milliseconds = 0;                  // Ack: of decoding and drawing, [0, 1e6]
     uint32_t client = 0;                     // Hand

@@ -74,6 +74,10 @@ constexpr NumberRow kRows[] = {
      [](const ViewState&, const ViewNumbers& n) {
          return n.frames_per_second > 0 ? fmt::format("{:.1f} a second", n.frames_per_second) : "";
      }},
+    {"Frames", "screen of who steers",
+     [](const ViewState& v, const ViewNumbers&) {
+         return v.screen_rate > 0 ? fmt::format("{:.0f} a second", v.screen_rate) : "";
+     }},
     {"Frames", "size chosen for",
      [](const ViewState&, const ViewNumbers& n) {
          if (n.frame->kept_rate == 0) return std::string();

@@ -79,6 +79,10 @@ void RenderLoop::steer(const Steer& asked) {
         input_ = message.input;
         steerer_ = asked.client;
     }
+    if (message.kind == MessageKind::Rate) {
+        view_.screen_rate = shown_.screen_rate = message.hertz;
+        return;
+    }
     is_done_ = is_done_ && message.kind == MessageKind::Pick; // to look at a place changes nothing
     switch (message.kind) {
     case MessageKind::Move:
@@ -116,6 +120,7 @@ void RenderLoop::steer(const Steer& asked) {
     case MessageKind::Meter:
         view_.display.exposure_stops = view_.finds_exposure ? 0 : source_.meter(request());
         break;
+    case MessageKind::Rate: // above
     case MessageKind::Hello:
     case MessageKind::Ack:
     case MessageKind::Ask:

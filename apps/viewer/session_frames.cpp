@@ -18,8 +18,9 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kFramesOfLayer = 32; // at rest, after which a layer of the reconstruction stays as it is
-constexpr double kPass = 0.03;          // seconds after which a render looks whether it is still wanted
+constexpr uint32_t kFramesOfLayer = 32;            // at rest, after which a layer of the reconstruction stays as it is
+constexpr double kPass = 0.03;                     // seconds after which a render looks whether it is still wanted
+constexpr double kLeastRate = 30, kMostRate = 240; // of screens that a GPU's frames keep up with, a second
 
 /// What the film must hold beside the picture for this layer.
 uint32_t aovs_of(ShownLayer layer) {
@@ -92,12 +93,29 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.width = scaled_side(settings.width, scale);
     settings.height = scaled_side(settings.height, scale);
     settings.aovs |= aovs_of(request.view.layer);
+    settings.frame_depth = request.view.moving_depth;
     // Layers and heat maps need no light.
     if (!is_beauty(request.view.layer) && !is_of_frames(request.view.layer)) settings.path.max_depth = 0;
     settings.pass_samples = 1;
     if (sample_s_ > 0 && scale == 1)
         settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
     return settings;
+}
+
+/// Of a picture of the movement that is none of a sequence.
+RenderSettings SessionFrames::small_settings_for(const FrameRequest& request, float scale) {
+    RenderSettings settings = settings_for(request, scale);
+    settings.path.max_depth = std::min(settings.path.max_depth, request.view.moving_depth);
+    return settings;
+}
+
+/// Of the movement's pictures: what was asked for, or what keeps up with the screen; a CPU cannot.
+float SessionFrames::scale_for(const FrameRequest& request) {
+    const ViewState& view = request.view;
+    if (view.on_cuda && view.screen_rate > 0) {
+        pace_.keep(1 / std::clamp(static_cast<double>(view.screen_rate), kLeastRate, kMostRate));
+    }
+    return view.moving_scale > 0 ? view.moving_scale : pace_.scale();
 }
 
 /// Tracers that the device has no room for are given up, for those before.
@@ -173,19 +191,22 @@ void SessionFrames::expose(const FrameRequest& request, ShownFrame& frame) {
     if (request.view.finds_exposure) frame.exposure_stops += frame.found_stops;
 }
 
-/// A picture at rest has the exposure that pertev render meters for it.
-void SessionFrames::meter_still(const FrameRequest& request) {
+/// A picture at rest has the exposure that pertev render meters for it. A small one, whose size follows the machine's
+/// speed, keeps that of another size.
+void SessionFrames::meter_still(const FrameRequest& request, bool is_small) {
     if (!request.view.finds_exposure) return;
     const Metered& last = metered_;
-    if (last.is_there && same_metering(last.picture, request.view.picture) && last.camera == request.camera &&
-        last.tone_map == request.view.display.tone_map && last.scene_changes == scene_changes_) {
+    const RenderSettings& now = session_.settings();
+    const bool is_alike = is_small ? same_light(last.picture, now) : same_metering(last.picture, now);
+    if (last.is_there && is_alike && last.camera == request.camera && last.tone_map == request.view.display.tone_map &&
+        last.scene_changes == scene_changes_) {
         return;
     }
     begin_exposed(request, session_.meter(request.view.display.tone_map));
 }
 
 void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
-    metered_ = {request.view.picture, request.camera, request.view.display.tone_map, scene_changes_, true};
+    metered_ = {session_.settings(), request.camera, request.view.display.tone_map, scene_changes_, true};
     exposure_.set(stops);
 }
 
@@ -194,6 +215,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     const double update_s = std::exchange(update_s_, 0);
     const bool goes_on = std::exchange(shows_reconstruction_, false);
     const uint32_t width_before = session_.settings().width;
+    const std::optional<uint32_t> depth_before = session_.settings().frame_depth;
     use(settings_for(request, scale));
     const bool shows_layer = is_of_frames(request.view.layer);
     const ViewState& view = request.view;
@@ -202,7 +224,8 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     settings.keep_layers = shows_layer;
     const bool is_alike = settings == reconstruction_settings_ && view.restir == restir_settings_;
     const bool is_still = session_.camera() == request.camera && goes_on && update_s == 0 &&
-                          session_.settings().width == width_before && is_alike;
+                          session_.settings().width == width_before &&
+                          session_.settings().frame_depth == depth_before && is_alike;
     reconstruction_settings_ = settings;
     restir_settings_ = view.restir;
     still_frames_ = is_still ? still_frames_ + 1 : 1;
@@ -217,7 +240,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     reconstruction_.pixels.clear();
     ShownFrame frame;
     frame.rays = session_.frame_rays();
-    const double reconstruction_s = session_.frame().seconds();
+    const double reconstruction_s = session_.frame().seconds(), sharing_s = session_.sharing_seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
     if (request.view.finds_exposure && !shows_layer) {
@@ -228,9 +251,10 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     frame.image = shows_layer ? show_layer(request, frame)
                               : shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
     if (update_s > 0) frame.stages.emplace_back("scene", 1e3 * update_s);
-    frame.stages.insert(frame.stages.end(), {{"render", 1e3 * frame.render_s},
-                                             {"reconstruction", 1e3 * reconstruction_s},
-                                             {"tone map", 1e3 * display.seconds()}});
+    frame.stages.emplace_back("render", 1e3 * std::max(frame.render_s - sharing_s, 0.0));
+    if (sharing_s > 0) frame.stages.emplace_back("ReSTIR", 1e3 * sharing_s);
+    frame.stages.emplace_back("reconstruction", 1e3 * reconstruction_s);
+    frame.stages.emplace_back("tone map", 1e3 * display.seconds());
     frame.full_width = request.view.picture.width;
     frame.full_height = request.view.picture.height;
     frame.scale = scale;
@@ -275,7 +299,7 @@ bool SessionFrames::beats_reconstruction(const FrameRequest& request) {
 std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     const Stopwatch whole;
     const bool is_small = request.is_moving || request.view.is_real_time;
-    const float scale = !is_small ? 1 : (request.view.moving_scale > 0 ? request.view.moving_scale : pace_.scale());
+    const float scale = is_small ? scale_for(request) : 1;
     if (is_of_frames(request.view.layer)) return reconstruct(request, scale);
     if (is_small && is_beauty(request.view.layer) && is_of_sequence(request.view)) return reconstruct(request, scale);
     const double update_s = std::exchange(update_s_, 0);
@@ -287,7 +311,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
         expose(request, frame);
         reconstruction_ = shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
     }
-    use(settings_for(request, scale));
+    use(is_small ? small_settings_for(request, scale) : settings_for(request, scale));
     session_.set_camera(request.camera);
     const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
     const uint32_t before = session_.history().samples;
@@ -312,7 +336,8 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (frame.samples == 0) return std::nullopt;
     if (competes && frame.samples < wanted && !beats_reconstruction(request)) return std::nullopt;
     shows_reconstruction_ = false;
-    if (!is_small && is_beauty(request.view.layer)) meter_still(request);
+    // A frame that moves and is none of a sequence keeps the exposure of the one before.
+    if (!request.is_moving && is_beauty(request.view.layer)) meter_still(request, is_small);
     expose(request, frame);
     const Stopwatch display;
     frame.image = show(request, frame);

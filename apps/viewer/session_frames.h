@@ -14,8 +14,8 @@ namespace pertev {
 
 class SessionFrames final : public FrameSource {
 public:
-    /// `frame_s`: seconds that a frame may take while the view moves. `session` has the scene of `scene`; both outlive
-    /// it.
+    /// `frame_s`: seconds that a frame may take while the view moves; on a GPU until the screen's rate is known.
+    /// `session` has the scene of `scene`; both outlive it.
     SessionFrames(Session& session, MovingScene& scene, double frame_s);
 
     void set_time(double time_s) override;
@@ -30,13 +30,15 @@ public:
 private:
     ShownFrame reconstruct(const FrameRequest& request, float scale);
     RenderSettings settings_for(const FrameRequest& request, float scale);
+    RenderSettings small_settings_for(const FrameRequest& request, float scale);
+    float scale_for(const FrameRequest& request);
     void tell_pace(const FrameRequest& request, ShownFrame& frame) const;
     void use(const RenderSettings& settings);
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
     Rgba8Image show_layer(const FrameRequest& request, ShownFrame& frame);
     void expose(const FrameRequest& request, ShownFrame& frame);
     bool beats_reconstruction(const FrameRequest& request);
-    void meter_still(const FrameRequest& request);
+    void meter_still(const FrameRequest& request, bool is_small);
 
     Session& session_;
     MovingScene& scene_;

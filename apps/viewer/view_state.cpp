@@ -185,10 +185,12 @@ std::vector<ViewSetting> make_settings() {
             return too_deep;
         });
     numeric(
-        "max_depth", "Scatterings, at most", "Light", "How often light is scattered at most on its way to the camera",
-        Kind::Whole, 0, kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
+        "max_depth", "Scatterings, at most", "Light",
+        "How often light is scattered at most on its way to the camera, at rest and while moving", Kind::Whole, 0,
+        kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
         [](ViewState& s, float v) {
             s.picture.path.max_depth = std::min(static_cast<uint32_t>(v), most_depth(s.picture.integrator));
+            s.moving_depth = s.picture.path.max_depth;
         });
     numeric(
         "spp", "Samples a pixel", "Light",
@@ -203,6 +205,11 @@ std::vector<ViewSetting> make_settings() {
             s.is_real_time = name == "real time";
             return std::string();
         });
+    numeric(
+        "moving_depth", "Scatterings while moving", "Frames",
+        "Fewer are faster, and darker where light comes by many surfaces. At rest the picture has all of them",
+        Kind::Whole, 0, kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.moving_depth; },
+        [](ViewState& s, float v) { s.moving_depth = static_cast<uint32_t>(v); });
     choice(
         "denoiser", "Denoiser while moving", "Frames",
         "svgf: frames are filtered and keep what those before have seen; off: they are their samples", {"svgf", "off"},

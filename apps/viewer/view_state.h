@@ -32,6 +32,9 @@ enum class ShownLayer : uint8_t {
     Deviation,
 };
 
+/// Scatterings at most of pictures of the movement, unless somebody has chosen a depth.
+inline constexpr uint32_t kMovingDepth = 4;
+
 struct ViewState {
     RenderSettings picture; // at rest: size, light, number of samples, tracers
     Display display;        // where the exposure is found by itself, its stops are added to that
@@ -44,7 +47,9 @@ struct ViewState {
     bool is_reconstructed = true; // by what frames before have seen (denoise/); else they are their samples
     ReconstructionSettings reconstruction;
     RestirSettings restir;
-    float moving_scale = 0; // of the size; 0: whatever keeps the frame rate
+    float moving_scale = 0;               // of the size; 0: whatever keeps the frame rate
+    uint32_t moving_depth = kMovingDepth; // scatterings at most, where that is fewer than the picture's
+    float screen_rate = 0;                // pictures a second of the screen of who steers; 0: not known
     bool on_cuda = false;
     std::vector<std::pair<IntegratorKind, std::string>> dark; // those that would show the scene as black, and why
 };

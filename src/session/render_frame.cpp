@@ -11,8 +11,9 @@
 namespace pertev {
 
 /// The reservoirs of frames with these settings; none: samples keep all light. Others than the last frame's begin anew.
-Restir* Session::restir_for(const RestirSettings& settings, uint32_t width, uint32_t height) {
-    const PathSettings& path = settings_.path;
+Restir* Session::restir_for(const RestirSettings& settings, const RenderSettings& of_light) {
+    const PathSettings& path = of_light.path;
+    const uint32_t width = of_light.width, height = of_light.height;
     const bool has_light = path.light != PathLight::Indirect && path.strategy == LightStrategy::Mis;
     if (settings.light == RestirLight::Off || !has_light || path.max_depth == 0) {
         restir_.reset();
@@ -63,7 +64,7 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
         camera_before_.reset();
         has_moved_ = false;
     }
-    Restir* const shared = restir_for(restir, of_light.width, of_light.height);
+    Restir* const shared = restir_for(restir, of_light);
     frame_rays_ = {};
     const LightChangeView change = look_for_change(of_light, settings);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
@@ -73,7 +74,9 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
                                             : PreviousScene{light.scene.instances, light.scene.meshes};
     if (shared != nullptr) {
         const PathSettings& path = settings_.path;
+        sharing_timer_.start();
         shared->add(frame, light, {path.sampler, number, path.seed}, *tracer_, before, restir);
+        sharing_timer_.stop();
     }
     if (settings.resolution_scale < 1) {
         RenderSettings of_features = of_light;

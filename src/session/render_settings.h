@@ -30,6 +30,9 @@ struct RenderSettings : IntegratorSettings {
     uint32_t aovs = 0;               // AovBits
     bool transparent = false;        // RGBA: the background is left out, alpha says how much of the pixel is covered
     Denoise denoise = Denoise::None; // the film stays as it is
+    /// Scatterings at most of frames in real time, where that is fewer than path.max_depth; none: as many. The film
+    /// stays as it is.
+    std::optional<uint32_t> frame_depth;
 
     // How many, and until when.
     uint32_t samples = 64;     // a pixel, of render_picture
@@ -58,7 +61,8 @@ PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda);
 void set_default_size(RenderSettings& settings, const Camera* own);
 
 /// `settings` as frames in real time are rendered with them: paths may end from their second vertex on, where those of
-/// pictures may from the third. The mean light is the same, by fewer rays.
+/// pictures may from the third. That takes fewer rays for the same mean light; and there are `frame_depth` scatterings
+/// at most, which is less light.
 RenderSettings settings_of_frames(RenderSettings settings);
 
 /// Whether both ask for the same picture of the same scene, camera and number of samples.

@@ -57,7 +57,7 @@ std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice&
 } // namespace
 
 Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings)
-    : queue_(queue), camera_(camera), settings_(settings), filter_(queue) {
+    : queue_(queue), camera_(camera), settings_(settings), filter_(queue), sharing_timer_(queue) {
     check_integrator(settings);
     set_scene(scene);
     history_.cuts = 0;
@@ -127,22 +127,28 @@ void Session::set_camera(const Camera& camera) {
 void Session::set_settings(const RenderSettings& settings) {
     check_integrator(settings);
     check_choice(tracers_of(settings, queue_.is_cuda()), queue_.is_cuda());
-    const bool same = same_picture(settings_, settings);
+    const bool same = same_picture(settings_, settings), same_frames = settings_.frame_depth == settings.frame_depth;
     if (settings.width != settings_.width || settings.height != settings_.height) hidden_back_share_.reset();
     settings_ = settings;
     if (film_ && !same_film(*film_, settings_)) film_.reset();
     if (!same) cut();
+    if (!same_frames) cut_frames();
     if (scene_) take_tracer();
 }
 
 void Session::cut() {
     history_.previous_camera.reset();
     ++history_.cuts;
+    cut_frames();
+    begin_film();
+}
+
+/// What earlier frames have seen is forgotten.
+void Session::cut_frames() {
     if (reconstruction_) reconstruction_->cut();
     if (restir_) restir_->cut();
     has_moved_ = scene_has_changed_ = false;
     camera_before_.reset();
-    begin_film();
 }
 
 void Session::keep_as_before() {

@@ -12,7 +12,7 @@
 //   set_camera    where the camera is another. Uploads and takes nothing.
 //   set_settings  where the picture is another (same_picture). Another size or other layers take a new film at the next
 //                 render, and larger queues where they must be larger; another tracer takes its structure. All else
-//                 takes nothing.
+//                 takes nothing. Another frame_depth is a cut of the frames alone, and the film stays.
 //   cut           always.
 // Whatever came before, the picture of n samples is what a fresh session gives, to the byte; so is one of a samples
 // with b added. One thread at a time.
@@ -26,6 +26,7 @@
 #include "denoise/light_change.h"
 #include "denoise/picture_denoiser.h"
 #include "denoise/reconstruction.h"
+#include "device/device_timer.h"
 #include "image/tone_map_image.h"
 #include "render/filter_table.h"
 #include "render/picture_view.h"
@@ -111,6 +112,8 @@ public:
     Reconstruction& frame();
     /// Rays of the last render_frame.
     RayCounts frame_rays() const;
+    /// Seconds that sharing light (ReSTIR) took of the last render_frame; 0 without.
+    double sharing_seconds() const { return restir_ ? sharing_timer_.seconds() : 0; }
     /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this
     /// depth, and `settings.samples` samples. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
     RenderResult look_aside(const Camera& camera, const RenderSettings& settings);
@@ -129,6 +132,7 @@ private:
     Film& fit(std::optional<Film>& film, const RenderSettings& settings);
     Film& current_film();
     void begin_film();
+    void cut_frames();
     void keep_places();
     void copy_places();
     void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame);
@@ -136,7 +140,7 @@ private:
     void keep_light(uint32_t number, const RenderSettings& of_light, bool goes_on);
     bool take_tracer();
     void fit_trees();
-    Restir* restir_for(const RestirSettings& settings, uint32_t width, uint32_t height);
+    Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);
     void upload(const PreparedScene& scene, uint32_t parts);
     NoisyFrame& fit(std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
     void begin_signals();
@@ -164,6 +168,7 @@ private:
     std::optional<PictureDenoiser> denoiser_; // of the film's samples
     std::optional<Restir> restir_;            // of frames that ask for it
     RestirSettings restir_settings_;          // of the last frame
+    DeviceTimer sharing_timer_;               // its reservoirs, in the last frame
     Buffer<InstanceView> places_before_;      // of instances, in the frame before
     uint32_t instance_count_ = 0;
     bool has_poses_ = false;              // PreparedScene's

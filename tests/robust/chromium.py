@@ -1,6 +1,7 @@
 """A real headless Chromium, driven over its DevTools protocol with the standard library alone."""
 
 import base64
+import contextlib
 import json
 import os
 import shutil
@@ -11,6 +12,7 @@ import time
 
 from viewer_client import PATIENCE_S, WebSocket
 
+CONTROL = 2  # a modifier
 NAMES = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"]
 
 
@@ -45,6 +47,7 @@ class Chromium:
             self.call(f"{domain}.enable")
         self.call("Emulation.setDeviceMetricsOverride", width=self.size[0], height=self.size[1], deviceScaleFactor=1,
                   mobile=False)
+        self.call("Emulation.setFocusEmulationEnabled", enabled=True)
         self.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=self.downloads)
         return self
 
@@ -96,6 +99,17 @@ class Chromium:
     def go(self, address):
         self.call("Page.navigate", url=address)
 
+    @contextlib.contextmanager
+    def visit(self, address):
+        """There for the block; errors before it do not count."""
+        self.errors.clear()
+        self.go(address)
+        yield self
+        self.leave()
+
+    def leave(self):
+        self.go("about:blank")
+
     def value(self, script):
         """Of a script in the page, waited for where it is a promise."""
         result = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
@@ -106,8 +120,8 @@ class Chromium:
     def until(self, script, patience=PATIENCE_S):
         return self.wait(lambda: self.value(script), patience)
 
-    def key(self, code, key="", held_s=0.0, down=True, up=True):
-        event = {"code": code, "key": key or code, "modifiers": 0}
+    def key(self, code, key="", held_s=0.0, down=True, up=True, modifiers=0):
+        event = {"code": code, "key": key or code, "modifiers": modifiers}
         if down:
             self.call("Input.dispatchKeyEvent", type="rawKeyDown", **event)
             time.sleep(held_s)
@@ -129,6 +143,15 @@ class Chromium:
         for number in range(1, count + 1):
             self.mouse("mousePressed", x, y, "left", clickCount=number, modifiers=modifiers)
             self.mouse("mouseReleased", x, y, "left", clickCount=number, modifiers=modifiers)
+
+    def touch(self, kind, *points):
+        self.call("Input.dispatchTouchEvent", type=kind,
+                  touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
+
+    def clipboard(self):
+        """The text in it."""
+        self.call("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
+        return self.value("navigator.clipboard.readText()")
 
     def screenshot(self, path):
         with open(path, "wb") as file:

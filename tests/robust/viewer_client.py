@@ -23,10 +23,12 @@ HEADER = struct.Struct("<BBHIIIHHHHII")
 class Viewer:
     """A viewer of a small picture, on a port of its own; ends with the block."""
 
-    def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4, device="cpu"):
-        self.device = device
-        self.arguments = ["view", scene, "--size", size, "--spp", str(spp), "--port", "0", "--no-browser", "--device",
-                          device, *arguments]
+    def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4, device="cpu", desktop=""):
+        """`desktop`: a folder with a desktop's programs; it may then open a browser."""
+        self.device, self.desktop = device, desktop
+        self.arguments = ["view", scene, "--size", size, "--spp", str(spp), "--port", "0", "--device", device, *arguments]
+        if not desktop:
+            self.arguments.append("--no-browser")
 
     def __enter__(self):
         self.scratch = tempfile.TemporaryDirectory()
@@ -34,6 +36,9 @@ class Viewer:
         if self.device == "cpu":
             environment["CUDA_VISIBLE_DEVICES"] = ""
         environment.pop("DISPLAY", None)
+        environment.pop("WAYLAND_DISPLAY", None)
+        if self.desktop:
+            environment.update(DISPLAY=":0", PATH=f"{self.desktop}:{environment['PATH']}")
         self.process = subprocess.Popen([PROGRAM, *self.arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                         env=environment, cwd=self.scratch.name)
         self.address = ""
@@ -114,10 +119,12 @@ def read_all(made):
 
 
 class Tunnel:
-    """What stands between a page and the viewer, as ssh -L does, on a port of its own; it can be cut."""
+    """What stands between a page and the viewer, as ssh -L does, on a port of its own; it can be cut, and slow on the
+    way to the page: so many bytes a second. A Client may be given it in the viewer's place."""
 
-    def __init__(self, viewer):
-        self.viewer, self.ends, self.is_cut = viewer, [], False
+    def __init__(self, viewer, bytes_per_second=0):
+        self.viewer, self.ends, self.is_cut, self.bytes_per_second = viewer, [], False, bytes_per_second
+        self.host = "127.0.0.1"
         self.server = socket.create_server(("127.0.0.1", 0))
         self.port = self.server.getsockname()[1]
         threading.Thread(target=self.accept, daemon=True).start()
@@ -139,7 +146,10 @@ class Tunnel:
     def pass_on(self, here, there):
         try:
             here.settimeout(None)
-            while chunk := here.recv(65536):
+            is_slow = self.bytes_per_second > 0 and there in self.ends[::2]
+            while chunk := here.recv(1024 if is_slow else 65536):
+                if is_slow:
+                    time.sleep(len(chunk) / self.bytes_per_second)
                 there.sendall(chunk)
         except OSError:
             pass
@@ -148,6 +158,12 @@ class Tunnel:
                 end.shutdown(socket.SHUT_RDWR)
             except OSError:
                 pass
+
+    def connect(self):
+        return socket.create_connection((self.host, self.port), PATIENCE_S)
+
+    def own_headers(self):
+        return {"Host": f"{self.host}:{self.port}", "Cookie": self.viewer.let_in()}
 
     def cut(self):
         self.is_cut = True

@@ -11,33 +11,45 @@ import tempfile
 import time
 import unittest
 
-from chromium import Chromium, find_chromium
+from chromium import CONTROL, Chromium, find_chromium
 from cli_frames_test import moving_gltf
-from cli_run import PROGRAM, SANITIZED, main, write
+from cli_run import PROGRAM, SANITIZED, gltf_with_cameras, main, read_exr, write
 from viewer_client import Client, Tunnel, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
 STEERING_S = 600 if LONG else 20
+SIZE = "96x72"
 
 if find_chromium() is None:
     print("skipped: no Chromium is here")
     sys.exit(77)
 
 
+BROWSER = Chromium()  # one for all, as its start takes long
+
+
+def setUpModule():  # pylint: disable=invalid-name
+    BROWSER.__enter__()
+
+
+def tearDownModule():  # pylint: disable=invalid-name
+    BROWSER.__exit__()
+
+
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.viewer = Viewer(size="160x120", spp=2)
+        cls.viewer = Viewer(size=SIZE, spp=2)
         cls.viewer.__enter__()
-        cls.browser = Chromium()
-        cls.browser.__enter__()
+        cls.browser = BROWSER
+        cls.browser.errors.clear()
         cls.browser.go(cls.viewer.address)
         cls.browser.until("document.body.dataset.kind == 'png' && document.body.dataset.phase == 'done'")
         cls.home = cls.browser.value("document.body.dataset.flags")
 
     @classmethod
     def tearDownClass(cls):
-        cls.browser.__exit__()
+        cls.browser.leave()
         cls.viewer.__exit__()
 
     def setUp(self):
@@ -73,20 +85,38 @@ class Page(unittest.TestCase):
                    "const floor = at(640, 690), wall = at(360, 300); "
                    "return floor[0] + floor[1] + floor[2] > 150 && wall[0] > 2 * wall[1]; })()")
         self.assertIn("film hash", page.value("document.querySelector('#readings').innerText"))
+        rate = page.until("/screen of who steers\\s+(\\d+) a second/.exec(document.querySelector('#readings').innerText)?.[1]")
+        self.assertTrue(10 <= int(rate) <= 300, rate)
         rendered = self.eye.done()["hash"]
         self.assertEqual(page.value("document.body.dataset.hash"), rendered)
 
     def test_keys_of_movement_go_by_their_place(self):
-        for code, sign in [("KeyW", 1), ("KeyS", -1)]:
-            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
-            self.assertGreater(sign * (after["eye"][2] - before["eye"][2]), 0.002, code)
-        # The scene's camera looks along +z with +y up: its right is -x.
-        for code, sign in [("KeyD", -1), ("KeyA", 1)]:
-            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
-            self.assertGreater(sign * (after["eye"][0] - before["eye"][0]), 0.002, code)
-        for code, sign in [("KeyE", 1), ("KeyQ", -1)]:
-            before, after = self.moved(lambda c=code: self.browser.key(c, "x", 0.2))
-            self.assertGreater(sign * (after["eye"][1] - before["eye"][1]), 0.002, code)
+        # The scene's camera looks along +z with +y up: its right is -x. Three keys at once, one for each axis.
+        for signs in [{"KeyD": -1, "KeyE": 1, "KeyW": 1}, {"KeyA": 1, "KeyQ": -1, "KeyS": -1}]:
+
+            def press(codes=tuple(signs)):
+                for code in codes:
+                    self.browser.key(code, "x", up=False)
+                time.sleep(0.2)
+                for code in codes:
+                    self.browser.key(code, "x", down=False)
+
+            before, after = self.moved(press)
+            for (code, sign), was, at in zip(signs.items(), before["eye"], after["eye"]):
+                self.assertGreater(sign * (at - was), 0.002, code)
+
+    def test_what_is_held_with_ctrl_is_the_browser_s(self):
+        page = self.browser
+        depth = page.value("document.querySelector('#setting-max_depth').value")
+        for code in ["KeyS", "KeyD", "KeyT", "KeyH", "Digit7"]:
+            page.key(code, "x", 0.05, modifiers=CONTROL)
+        page.key("BracketRight", "]")  # what comes after them is heard, so they were
+        self.eye.done(lambda s: s["values"]["exposure"] == 0.25)
+        page.key("BracketLeft", "[")
+        state = self.eye.done(lambda s: s["values"]["exposure"] == 0)
+        self.assertEqual((state["flags"], state["values"]["mode"]), (self.flags, "reference"))
+        self.assertEqual(str(state["values"]["max_depth"]), depth)
+        self.assertFalse(page.value("document.querySelector('#help').open"))
 
     def test_shift_is_fast_and_z_is_slow(self):
         ways = {}
@@ -113,10 +143,29 @@ class Page(unittest.TestCase):
         before, after = self.moved(lambda: self.browser.mouse("mouseWheel", 500, 300, deltaX=0, deltaY=-200))
         self.assertLess(far_from(before, after), far(before))
 
+    def test_the_wheel_under_a_right_drag_changes_the_speed_and_moves_nothing(self):
+        page, ways, speeds = self.browser, [], []
+        for turn in (-1000, 1000):
+            page.mouse("mousePressed", 400, 300, "right", clickCount=1)
+            page.mouse("mouseWheel", 400, 300, "right", deltaX=0, deltaY=turn)
+            text = page.until("(() => { const text = document.querySelector('#notice').innerText; "
+                              f"return text.startsWith('speed') && text != '{speeds[-1] if speeds else ''}' && text; }})()")
+            speeds.append(text)
+            page.mouse("mouseReleased", 400, 300, "right", clickCount=1)
+            self.assertEqual(page.value("document.body.dataset.flags"), self.flags)
+            before, after = self.moved(lambda: page.key("KeyE", "e", 0.2))
+            ways.append(after["eye"][1] - before["eye"][1])
+        fast, normal = (float(text.split()[1]) for text in speeds)
+        self.assertAlmostEqual(fast / normal, 1.25 ** 10, 1)  # but for the digits that are told
+        self.assertGreater(ways[0], 2 * ways[1])
+
     def test_clicks_pick_turn_about_and_focus(self):
         page = self.browser
         page.click(640, 690)
         page.until("document.querySelector('#picked').innerText.includes('floor')")
+        picked = page.value("document.querySelector('#picked').innerText")
+        for row in ["instance", "mesh", "material", "triangle", "distance", "position", "normal", "light", "albedo"]:
+            self.assertIn(row, picked)
         page.click(640, 690, count=2)
         page.until("document.querySelector('#notice').innerText.includes('turns about')")
         page.click(640, 690, modifiers=1)
@@ -130,9 +179,7 @@ class Page(unittest.TestCase):
         page.click(5, 5)
 
     def test_fingers_turn_and_zoom(self):
-        def touch(kind, *points):
-            self.browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y)
-                                                                                   in enumerate(points)])
+        touch = self.browser.touch
 
         def swipe():
             touch("touchStart", (400, 300))
@@ -148,10 +195,24 @@ class Page(unittest.TestCase):
                 time.sleep(0.03)
             touch("touchEnd")
 
+        def slide():
+            touch("touchStart", (400, 300), (500, 300))
+            for step in range(1, 6):
+                touch("touchMove", (400, 300 + 20 * step), (500, 300 + 20 * step))
+                time.sleep(0.03)
+            touch("touchEnd")
+
         before, after = self.moved(swipe)
         self.assertAlmostEqual(far(before), far(after), 3)
         before, after = self.moved(spread)
         self.assertLess(far_from(before, after), far(before))
+        before, after = self.moved(slide)
+        step = [b - a for a, b in zip(before["eye"], after["eye"])]
+        self.assertGreater(step[1], 0.02)  # what is looked at goes down with the fingers
+        self.assertGreater(abs(step[1]), 3 * max(abs(step[0]), abs(step[2])))
+        touch("touchStart", (640, 690))
+        touch("touchEnd")
+        self.browser.until("document.querySelector('#picked').innerText.includes('floor')")
 
     def test_keys_of_settings(self):
         page = self.browser
@@ -160,12 +221,16 @@ class Page(unittest.TestCase):
         page.until(f"Math.abs(document.querySelector('#setting-exposure').value - {exposure} - 0.25) < 1e-6")
         page.key("BracketLeft", "[")
         page.until(f"Math.abs(document.querySelector('#setting-exposure').value - {exposure}) < 1e-6")
-        page.key("Digit3", "3")
-        self.set_to("max_depth", 3)
+        for depth in (9, 8, 7, 6, 5, 4, 0, 1, 2, 3):
+            page.key(f"Digit{depth}", str(depth))
+            self.set_to("max_depth", depth)
+        rendered = self.eye.done()["hash"]
         page.key("KeyT", "t")
         self.set_to("mode", "real time")
+        page.until("document.body.dataset.kind == 'jpeg' && document.body.dataset.hash == '' && document.body.dataset.phase == 'done'")
         page.key("KeyT", "t")
         self.set_to("mode", "reference")
+        page.until(f"document.body.dataset.kind == 'png' && document.body.dataset.hash == '{rendered}'")
         # However soon the next comes: what the page says is older than what was pressed does not count.
         before = page.value("Number(document.querySelector('#setting-exposure').value)")
         for _ in range(3):
@@ -180,6 +245,17 @@ class Page(unittest.TestCase):
         page.value("const f = document.querySelector('#setting-walk'); f.value = 'while-while';"
                    "f.dispatchEvent(new Event('change'))")
         self.set_to("walk", "while-while")
+
+    def test_a_number_is_typed_and_taken_by_enter_and_keys_then_steer(self):
+        page = self.browser
+        for name, typed, enter in [("max_depth", "5", "Enter"), ("max_depth", "6", "NumpadEnter")]:
+            page.value(f"(() => {{ const f = document.querySelector('#setting-{name}'); f.focus(); f.select(); }})()")
+            page.call("Input.insertText", text=typed)
+            page.key("KeyW", "w", 0.1)  # goes to the field, which takes no letters
+            page.key(enter, "Enter")
+            self.set_to(name, int(typed))
+            self.assertEqual(self.eye.done()["flags"], self.flags)
+            self.moved(lambda: page.key("KeyW", "w", 0.1))
 
     def choose(self, name, value):
         self.browser.value(f"(() => {{ const f = document.querySelector('#setting-{name}'); f.value = '{value}';"
@@ -200,9 +276,10 @@ class Page(unittest.TestCase):
             self.moved(lambda: page.drag("left", 40, 0))
         for layer, says in [("motion", "pixels a frame"), ("deviation", "deviation of the signals")]:
             self.choose("layer", layer)
-            page.until(f"document.querySelector('#readings').innerText.includes('{says}') && document.body.dataset.phase == 'done'")
-            self.moved(lambda: page.drag("left", 40, 0))
+            page.drag("left", 40, 0)
+            page.until(f"document.querySelector('#readings').innerText.includes('{says}') && document.body.dataset.samples > 1")
         self.choose("layer", "picture")
+        self.flags = self.eye.done()["flags"]
 
     def test_where_nothing_moves_there_is_no_time_line_until_a_path_is_played(self):
         page = self.browser
@@ -228,7 +305,7 @@ class Page(unittest.TestCase):
         page.until("document.body.dataset.plays == 'false' && document.body.dataset.phase == 'done'")
         done = self.eye.done(lambda s: not s["clock"]["on"] and s["clock"]["end"] > 0)
         rendered = render("cornell-box", "--camera-path", file, "--time", done["clock"]["at"], "--max-depth",
-                          done["values"]["max_depth"], size="160x120", spp=2)
+                          done["values"]["max_depth"], size=SIZE, spp=2)
         self.assertEqual(done["hash"], rendered)
         page.drag("left", 60, 20)  # one's own
         page.until("document.querySelector('#time').hidden")
@@ -247,15 +324,24 @@ class Page(unittest.TestCase):
         page.until("document.querySelector('#help').open && document.querySelector('#help').innerText.includes('exposure')")
         page.key("KeyH", "h")
         page.until("!document.querySelector('#help').open")
+        page.clipboard()
         page.key("KeyC", "c")
-        page.until("document.querySelector('#notice').innerText.includes('--eye')")
+        page.until("document.querySelector('#notice').innerText.startsWith('copied: --')")
+        self.assertEqual(page.clipboard(), self.flags)
 
-    def test_f12_saves_two_pictures(self):
+    def test_f12_saves_the_picture_that_render_writes_as_png_and_exr(self):
         page = self.browser
+        state = self.eye.done()
         page.key("F12", "F12")
         page.wait(lambda: {"pertev.png", "pertev.exr"} <= set(os.listdir(page.downloads)))
-        with open(os.path.join(page.downloads, "pertev.png"), "rb") as file:
-            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        with tempfile.TemporaryDirectory() as folder:
+            made = {kind: os.path.join(folder, f"x.{kind}") for kind in ("png", "exr")}
+            rendered = render("cornell-box", "-o", made["exr"], "--max-depth", state["values"]["max_depth"], output=made["png"],
+                              size=SIZE, spp=2)
+            self.assertEqual(rendered, state["hash"])
+            with open(os.path.join(page.downloads, "pertev.png"), "rb") as saved, open(made["png"], "rb") as file:
+                self.assertEqual(saved.read(), file.read())
+            self.assertEqual(read_exr(os.path.join(page.downloads, "pertev.exr")), read_exr(made["exr"]))
 
     def test_steering_for_long_grows_nothing_and_answers_soon(self):
         page = self.browser
@@ -270,7 +356,9 @@ class Page(unittest.TestCase):
         page.key("KeyA", "a", down=False)
         if not SANITIZED:  # which keeps freed memory
             self.assertLess(self.viewer.resident_bytes() - resident, 32 << 20)
-        print(f"input to picture: median {sorted(waits)[len(waits) // 2]} ms of {len(waits)}", file=sys.stderr)
+        median = sorted(waits)[len(waits) // 2]
+        self.assertLess(median, 10_000 if SANITIZED else 1000)  # some 50 ms; but the machine may be busy
+        print(f"input to picture: median {median} ms of {len(waits)}", file=sys.stderr)
 
 
 class Moving(unittest.TestCase):
@@ -278,19 +366,18 @@ class Moving(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(folder, "m.gltf")
             write(scene, moving_gltf())
-            with Viewer(scene=scene, size="160x120", spp=2) as viewer, Chromium() as page:
-                page.go(viewer.address)
+            with Viewer(scene=scene, size=SIZE, spp=2) as viewer, BROWSER.visit(viewer.address) as page:
                 page.until("document.body.dataset.plays == 'true' && !document.querySelector('#time').hidden")
                 page.until("document.querySelector('#time-text').innerText.endsWith('of 2.00')")
                 page.key("Space", " ")
                 page.until("document.body.dataset.plays == 'false' && document.body.dataset.phase == 'done'")
                 at = page.value("document.body.dataset.time")
-                self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--time", at, size="160x120", spp=2))
+                self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--time", at, size=SIZE, spp=2))
                 page.value("const t = document.querySelector('#time-at'); t.focus(); t.value = '0.5';"
                            "t.dispatchEvent(new Event('input')); t.dispatchEvent(new Event('change'))")
                 scrubbed = page.until("document.body.dataset.flags.endsWith('--time 0.5')"
                                       "&& document.body.dataset.phase == 'done' && document.body.dataset.hash")
-                self.assertEqual(scrubbed, render(scene, "--time", "0.5", size="160x120", spp=2))
+                self.assertEqual(scrubbed, render(scene, "--time", "0.5", size=SIZE, spp=2))
                 page.key("KeyW", "w", 0.2)
                 page.until(f"document.body.dataset.phase == 'done' && document.body.dataset.hash != '{scrubbed}'")
                 page.key("KeyR", "r")
@@ -308,13 +395,27 @@ class Moving(unittest.TestCase):
                 self.assertEqual(page.errors, [])
 
 
+class Cameras(unittest.TestCase):
+    def test_the_list_takes_a_camera_of_the_scene_by_its_name(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "c.gltf")
+            write(scene, gltf_with_cameras())
+            with Viewer(scene=scene, size="64x48", spp=2) as viewer, BROWSER.visit(viewer.address) as page:
+                page.until("document.body.dataset.kind == 'png' && document.querySelector('#cameras')")
+                names = page.value("[...document.querySelectorAll('#cameras option')].map((o) => o.innerText)")
+                self.assertEqual(names[1:], ["wide", "tall"])
+                for number in ("1", "0"):
+                    page.value(f"(() => {{ const c = document.querySelector('#cameras'); c.value = '{number}';"
+                               "c.dispatchEvent(new Event('change')); })()")
+                    page.until(f"document.body.dataset.flags.startsWith(\"--camera '{number}'\") && document.body.dataset.phase == 'done'")
+                    self.assertEqual(page.value("document.body.dataset.hash"), render(scene, "--camera", number, size="64x48", spp=2))
+
+
 class Comings(unittest.TestCase):
     def test_a_wrong_token_is_refused_and_the_page_comes_back_after_the_connection_was_lost(self):
-        with Viewer(size="64x48", spp=2) as viewer, Chromium() as page:
-            page.go(viewer.address[:-1] + ("0" if viewer.address[-1] != "0" else "1"))
+        with Viewer(size="64x48", spp=2) as viewer, \
+                BROWSER.visit(viewer.address[:-1] + ("0" if viewer.address[-1] != "0" else "1")) as page:
             page.until("document.body && document.body.innerText.includes('pertev view printed')")
-            page.go(viewer.address)
-            page.until("document.body.dataset.kind == 'png'")
             self.assertEqual([error for error in page.errors if "403 (Forbidden)" not in error], [])
             tunnel = Tunnel(viewer)  # on a port of its own, as ssh -L may have it
             page.go(viewer.address.replace(f":{viewer.port}/", f":{tunnel.port}/"))
@@ -332,8 +433,7 @@ class Comings(unittest.TestCase):
             self.assertIn("pertev view has ended", page.value("document.querySelector('#gone').innerText"))
 
     def test_of_two_windows_one_steers(self):
-        with Viewer(size="64x48", spp=2) as viewer, Chromium() as first, Chromium() as second:
-            first.go(viewer.address)
+        with Viewer(size="64x48", spp=2) as viewer, BROWSER.visit(viewer.address) as first, Chromium() as second:
             first.until("document.body.dataset.steers == 'true'")
             second.go(viewer.address)
             second.until("document.body.dataset.steers == 'false' && document.body.dataset.samples")
@@ -346,10 +446,10 @@ class Comings(unittest.TestCase):
             self.assertEqual(first.errors + second.errors, [])
 
 
-def render(scene, *arguments, size, spp):
+def render(scene, *arguments, size, spp, output=""):
     """The film's hash of a picture by pertev render."""
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([PROGRAM, "render", scene, "-o", os.path.join(folder, "x.png"), "--size", size, "--spp", str(spp),
+        done = subprocess.run([PROGRAM, "render", scene, "-o", output or os.path.join(folder, "x.png"), "--size", size, "--spp", str(spp),
                                "--device", "cpu", "--json", *map(str, arguments)], check=True, stdout=subprocess.PIPE)
     return next(event["hash"] for event in map(json.loads, done.stdout.splitlines()) if event["event"] == "done")
 

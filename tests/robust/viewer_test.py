@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""`pertev view` as a program sees it: who is let in, what pictures come, and that no client harms another."""
+"""`pertev view` as a program sees it: who is let in, and what pictures come."""
 
+import json
 import os
 import random
+import re
 import signal
 import socket
 import time
 import unittest
 
-from cli_run import SANITIZED, CliTest, main, read_exr
-from viewer_client import Client, Closed, Viewer
+from cli_run import SANITIZED, CliTest, main, read_exr, write
+from viewer_client import Client, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
+SOURCES = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 FUZZED = 1_000_000 if LONG else 10_000
 
 
@@ -50,7 +53,8 @@ class Access(WithViewer):
 
     def test_all_files_of_the_page_come_with_the_cookie_and_their_type(self):
         for path, kind in [("/", "text/html"), ("/main.js", "text/javascript"), ("/link.js", "text/javascript"),
-                           ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/time.js", "text/javascript"), ("/style.css", "text/css"),
+                           ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/time.js", "text/javascript"),
+                           ("/screen.js", "text/javascript"), ("/style.css", "text/css"),
                            ("/icon.svg", "image/svg+xml")]:
             status, headers, body = self.get(path)
             self.assertEqual((status, headers["content-type"].split(";")[0]), (200, kind), path)
@@ -149,7 +153,14 @@ class Fuzzed(WithViewer):
                     '{"type":"play","n":4,"on":true,"loops":false,"speed":2}', '{"type":"time","n":5,"at":1}',
                     '{"type":"key","n":6,"at":2}', '{"type":"unkey","n":7,"index":0}', '{"type":"follow","n":8}',
                     '{"type":"ack","frame":1,"ms":1}',
-                    '{"type":"set","n":2,"name":"walk","value":"packet"}', '{"type":"hand","to":1}', '{"type":"meter","n":3}']
+                    '{"type":"set","n":2,"name":"walk","value":"packet"}', '{"type":"hand","to":1}', '{"type":"meter","n":3}',
+                    '{"type":"look","n":9,"dx":0.1,"dy":-0.1}', '{"type":"pan","n":10,"dx":0.1,"dy":0.1}',
+                    '{"type":"zoom","n":11,"steps":1}', '{"type":"speed","n":12,"steps":-1}', '{"type":"home","n":13}',
+                    '{"type":"camera","n":14,"index":0}', '{"type":"rate","hz":60}', '{"type":"ask"}',
+                    '{"type":"hello","key":"again"}']
+        with open(os.path.join(SOURCES, "apps", "viewer", "client_message.cpp"), encoding="utf-8") as file:
+            kinds = set(re.findall(r'{"(\w+)", MessageKind::', file.read()))
+        self.assertEqual({json.loads(message)["type"] for message in messages}, kinds)  # each of them
         client, before = None, 0
         for number in range(FUZZED // 2):
             self.viewer.send_raw(spoil(chance.choice(requests)))
@@ -183,7 +194,9 @@ class Pictures(CliTest):
     def test_the_film_at_rest_is_the_one_of_a_render_and_the_still_picture_is_its_png(self):
         with Viewer() as viewer, Client(viewer) as client:
             png = client.png()
-            self.assertEqual((client.done()["hash"], png), self.rendered())
+            state = client.done()
+            self.assertEqual((state["hash"], png), self.rendered())
+            self.assertEqual((state["values"]["max_depth"], state["values"]["moving_depth"]), (16, 4))
             # After a flight too: the flags that are shown for the view give the same bytes.
             client.steer(type="look", dx=0.1, dy=-0.05)
             client.steer(type="orbit", dx=-0.2, dy=0.1)
@@ -223,6 +236,11 @@ class Pictures(CliTest):
                 self.assertEqual(state["hash"], self.rendered(*kept, *arguments, spp=state["spp"])[0], name)
             client.set("spp", -1)
             self.assertIn("whole number", client.text("notice")["text"])
+            for tone_map in ["srgb", "aces"]:
+                last = client.set("tone_map", tone_map)
+                header, png = client.picture(lambda h, n=last: h["input"] == n and h["kind"] == 2)
+                self.assertEqual(header["total"], len(png))
+                self.assertEqual(png, self.rendered("--max-depth", "1", "--integrator", "direct", "--tone-map", tone_map, spp=7)[1])
 
     def test_each_layer_shows_and_the_picture_comes_back(self):
         with Viewer() as viewer, Client(viewer) as client:
@@ -361,102 +379,28 @@ class Pictures(CliTest):
             self.assertLess(sorted(shown)[len(shown) // 2], 40)
 
 
-class Together(WithViewer):
-    arguments = ["--threads", "1"]  # it renders all the while
-    options = {"size": "160x120", "spp": 100000}
-
-    def test_one_steers_the_others_watch_and_the_wheel_is_handed_over_and_found_again(self):
-        with Client(self.viewer, key="first") as first, Client(self.viewer, key="second") as second:
-            first.say(type="ask")  # a test before this one may have left a wheel that waits
-            people = second.text("people", lambda p: len(p["people"]) == 2 and p["steers"] == p["you"] - 1)
-            first.steer(type="home")
-            first.set("exposure", 2)
-            before = second.text("state", lambda s: s["values"]["exposure"] == 2)["flags"]
-            second.steer(type="orbit", dx=1, dy=0)  # is not heard
-            number = first.steer(type="set", name="exposure", value=3)
-            state = second.text("state", lambda s: s["values"]["exposure"] == 3)
-            self.assertEqual(state["flags"], before)
-            second.say(type="ask")
-            asked = first.text("people", lambda p: any(person["asks"] for person in p["people"]))
-            self.assertEqual(asked["steers"], asked["you"])
-            first.say(type="hand", to=people["you"])
-            second.text("people", lambda p: p["steers"] == p["you"])
-            second.steer(type="orbit", dx=0.2, dy=0)
-            moved = first.text("state", lambda s: s["flags"] != before)["flags"]
-            second.socket.close()
-            with Client(self.viewer, key="second") as again:
-                mine = again.text("people")
-                self.assertEqual(mine["steers"], mine["you"])
-                self.assertEqual(again.text("state")["flags"], moved)
-                again.steer(type="home")
-                again.text("state", lambda s: s["flags"] == before)
-            self.assertGreater(number, 0)
-
-    def watch(self, client, seconds=1.0):
-        """Pictures that it is sent in this time."""
-        count, end = 0, time.monotonic() + seconds
-        while time.monotonic() < end:
-            client.steer(type="orbit", dx=0.001, dy=0)
-            client.picture()
-            count += 1
-        return count
-
-    def test_clients_that_do_not_read_do_not_acknowledge_or_flood_do_not_stop_the_others(self):
-        with Client(self.viewer, key="good") as good:
-            good.text("people", lambda p: p["steers"] in (p["you"], 0))
-            good.say(type="ask")
-            with Client(self.viewer, key="deaf") as deaf, Client(self.viewer, key="mute", acknowledges=False) as mute, \
-                    Client(self.viewer, key="flood") as flood:
-                halves = [socket.create_connection((self.viewer.host, self.viewer.port)) for _ in range(20)]
-                for half in halves:
-                    half.sendall(b"GET / HTTP/1.1\r\nHost: loc")
-                self.assertGreater(self.watch(good), 3)
-                pictures = 0
-                try:
-                    while True:
-                        pictures += isinstance(mute.receive(0.3), tuple)
-                except TimeoutError:
-                    pass
-                self.assertEqual(pictures, 2)
-                with self.assertRaises((Closed, OSError)):
-                    for _ in range(5000):
-                        flood.say(type="zoom", n=1, steps=1)
-                    flood.until(lambda m: False, 10)
-                self.assertGreater(self.watch(good), 3)
-                self.assertEqual(deaf.status, 101)
-                for half in halves:
-                    half.close()
-
-    def test_there_is_room_for_sixteen_and_the_next_is_told_so(self):
-        clients = []
-        try:
-            for number in range(16):
-                clients.append(Client(self.viewer, key=f"one of many {number}"))
-                self.assertEqual(clients[-1].status, 101)
-                clients[-1].text("welcome")
-            with Client(self.viewer) as late:
-                code, reason = late.close_reason(10)
-                self.assertEqual(code, 1013)
-                self.assertIn("too many", reason)
-        finally:
-            for client in clients:
-                client.socket.close()
-
-    def test_messages_that_are_too_large_or_none_close_their_connection_alone(self):
-        for spoil, code in [(lambda c: c.say_text("x" * 5000), 1009), (lambda c: c.say_text("{}"), 1008),
-                            (lambda c: c.send_frame(2, b"abc"), 1008)]:
-            with Client(self.viewer, key="bad") as client:
-                client.text("welcome")
-                spoil(client)
-                self.assertIn(client.close_reason(10)[0], (code, 0))  # 0: what was not read any more cuts it short
-        self.assertEqual(self.viewer.get("/")[0], 200)
-
-
 class Ends(CliTest):
+    def test_on_a_desktop_it_opens_the_browser_with_the_address_unless_it_is_told_not_to(self):
+        opened = self.path("opened")
+        write(self.path("xdg-open"), f'#!/bin/sh\nprintf "%s" "$*" > {opened}.part && mv {opened}.part {opened}\n')
+        os.chmod(self.path("xdg-open"), 0o755)
+        for told, opens in [(["--no-browser"], False), ([], True)]:
+            with Viewer(*told, size="16x16", spp=1, desktop=os.path.dirname(opened)) as viewer:
+                end = time.monotonic() + (20 if opens else 0.3)
+                while not os.path.exists(opened) and time.monotonic() < end:
+                    time.sleep(0.02)
+                self.assertEqual(os.path.exists(opened), opens)
+                if opens:
+                    with open(opened, encoding="utf-8") as file:
+                        self.assertEqual(file.read(), viewer.address)
+                self.assertEqual(viewer.end()[0], 0)
+
     def test_ctrl_c_ends_it_within_a_second_with_status_0_whatever_it_does(self):
-        for how, size in [(signal.SIGINT, "64x48"), (signal.SIGTERM, "1600x1200")]:
-            with Viewer(size=size, spp=100000) as viewer, Client(viewer) as client:
+        for how, size, flags, depth in [(signal.SIGINT, "64x48", ["--max-depth", "7"], 7),
+                                        (signal.SIGTERM, "1600x1200", ["--max-depth", "7", "--moving-depth", "3"], 3)]:
+            with Viewer(*flags, size=size, spp=100000) as viewer, Client(viewer) as client:
                 client.picture()
+                self.assertEqual(client.text("state")["values"]["moving_depth"], depth)
                 status, seconds = viewer.end(how)
                 self.assertEqual(status, 0)
                 self.assertLess(seconds, 1.5)  # a second, and what a machine under load adds
@@ -473,6 +417,14 @@ class Ends(CliTest):
         self.refuse(2, "view", "nowhere.obj", says=["nowhere.obj"])
         self.refuse(3, "view", "cornell-box", "--size", "65501x1", "--device", "cpu", says=["--size"])
         self.refuse(2, "view", "cornell-box", "-o", "x.png", says=["-o"])
+
+    def test_it_takes_all_flags_of_render_but_those_that_the_documents_name(self):
+        def flags_of(verb):
+            return set(re.findall(r"(?m)^  (?:-\w,)?(--[a-z][a-z-]+)", self.succeed(verb, "--help").stdout))
+
+        with open(os.path.join(SOURCES, "docs", "viewer.md"), encoding="utf-8") as file:
+            sentence = re.search(r"every flag of `pertev render` but(.*?);", file.read(), re.S).group(1)
+        self.assertEqual(flags_of("render") - flags_of("view") - {"--output"}, set(re.findall(r"`(--[a-z-]+)`", sentence)))
 
     def test_another_host_is_told_what_that_means(self):
         with Viewer("--host", "127.0.0.2", size="16x16", spp=1) as viewer:

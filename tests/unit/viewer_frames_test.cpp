@@ -89,6 +89,118 @@ TEST_CASE("another way to share light, or another resolution of it, begins to ga
     CHECK(gathered() == 1);
 }
 
+TEST_CASE(
+    "frames of the movement have their own depth, go on after a rest, and the picture at rest has all scatterings") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    RenderSettings& picture = request.view.picture;
+    picture.path.max_depth = 8;
+    picture.samples = 32;
+    request.view.moving_depth = 2;
+    Session plain = watched.session();
+    plain.render(picture.samples);
+    RenderSettings shallow = picture;
+    shallow.path.max_depth = 2;
+    for (const RestirLight light : {RestirLight::Off, RestirLight::Direct}) {
+        CAPTURE(static_cast<int>(light));
+        request.view.restir.light = light;
+        Session session = watched.session(), alone = watched.session();
+        alone.set_settings(shallow);
+        SessionFrames frames(session, watched.scene, 0.1);
+        const auto check_frame = [&](uint32_t number) {
+            request.is_moving = true;
+            const std::optional<ShownFrame> shown = frames.next(request);
+            alone.render_frame(number, request.view.reconstruction, request.view.restir);
+            alone.frame().display(request.view.display.tone_map, 0);
+            REQUIRE(shown.has_value());
+            CHECK(shown->image.pixels == alone.frame().displayed().pixels);
+        };
+        for (uint32_t k = 0; k < 3; ++k) check_frame(k);
+        request.is_moving = false;
+        request.budget_s = 1e-9;
+        CHECK_FALSE(
+            frames.next(request).has_value()); // the reconstruction goes on being shown: one sample is no better
+        request.budget_s = 100;
+        std::optional<ShownFrame> rests;
+        while (!rests || !rests->is_final) rests = frames.next(request);
+        CHECK(rests->hash == picture_hash(plain.picture()).hex());
+        check_frame(3); // with what those before the rest have seen
+    }
+}
+
+TEST_CASE("another depth of the movement begins its frames anew and leaves the picture at rest as it is") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    Session session = watched.session();
+    SessionFrames frames(session, watched.scene, 0.1);
+    const auto gathered = [&] { return frames.next(request).value().samples; };
+    request.is_moving = true;
+    CHECK(gathered() == 1);
+    CHECK(gathered() == 2);
+    request.view.moving_depth = 1;
+    CHECK(gathered() == 1);
+    CHECK(gathered() == 2);
+    request.is_moving = false;
+    request.budget_s = 100;
+    std::optional<ShownFrame> rests;
+    while (!rests || !rests->is_final) rests = frames.next(request);
+    CHECK(session.history().samples == 2);
+    request.view.moving_depth = 2;
+    CHECK(frames.next(request).value().hash == rests->hash);
+    CHECK(session.history().samples == 2);
+}
+
+TEST_CASE("pictures of no sequence have the movement's depth, and at rest in real time the exposure that is metered") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    request.view.picture.integrator = IntegratorKind::Distributed;
+    request.view.is_real_time = request.view.finds_exposure = true;
+    request.view.moving_depth = 2;
+    Session session = watched.session(), alone = watched.session();
+    SessionFrames frames(session, watched.scene, 0.1);
+    RenderSettings shallow = request.view.picture;
+    shallow.path.max_depth = 2;
+    alone.set_settings(shallow);
+    const auto check_metered = [&] {
+        const ShownFrame shown = frames.next(request).value();
+        CHECK(shown.found_stops == alone.meter(request.view.display.tone_map));
+        return shown;
+    };
+    const ShownFrame first = check_metered();
+    CHECK(first.found_stops != 0);
+    alone.render(1);
+    CHECK(first.image.pixels == alone.display(first.exposure_stops, request.view.display.tone_map).pixels);
+    request.camera.world_from_camera.translation = request.camera.world_from_camera.translation + Vec3{0, 0.5f, 0};
+    alone.set_camera(request.camera);
+    request.is_moving = true;
+    CHECK(frames.next(request).value().found_stops == first.found_stops); // while it moves, that of before
+    request.is_moving = false;
+    CHECK(check_metered().found_stops != first.found_stops);
+    request.view.is_real_time = false; // and the picture at rest has its own
+    alone.set_settings(request.view.picture);
+    request.budget_s = 100;
+    check_metered();
+}
+
+TEST_CASE("on a GPU the size keeps the rate of the screen, within bounds, and a CPU's its own") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    request.view.moving_scale = 0;
+    request.is_moving = true;
+    Session session = watched.session();
+    SessionFrames frames(session, watched.scene, 0.1);
+    const auto kept = [&](bool on_cuda, float rate) {
+        request.view.on_cuda = on_cuda;
+        request.view.screen_rate = rate;
+        return frames.next(request).value().kept_rate;
+    };
+    CHECK(kept(false, 144) == doctest::Approx(10));
+    CHECK(kept(true, 0) == doctest::Approx(10));
+    CHECK(kept(true, 144) == doctest::Approx(144));
+    CHECK(kept(true, 1) == doctest::Approx(30));
+    CHECK(kept(true, 1000) == doctest::Approx(240));
+}
+
 TEST_CASE("what the exposure goes by is the frame as it is shown, whatever its light was found at") {
     Watched watched;
     RenderSettings& picture = watched.request.view.picture;

@@ -36,6 +36,7 @@ constexpr const char* kGood[] = {
     R"({"type":"key","n":21,"at":0})",
     R"({"type":"unkey","n":22,"index":1})",
     R"({"type":"follow","n":23})",
+    R"({"type":"rate","hz":59.94})",
 };
 
 } // namespace
@@ -135,6 +136,7 @@ TEST_CASE("spoiled messages and random bytes are read or refused, and values tha
         REQUIRE(std::abs(message->dx) <= 4);
         REQUIRE(std::abs(message->steps) <= 20);
         REQUIRE(message->key.size() <= 64);
+        REQUIRE(message->hertz <= 1000);
     }
     CHECK(read > rounds / 8); // the unspoiled ones at least
 }

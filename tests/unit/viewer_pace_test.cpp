@@ -89,6 +89,20 @@ TEST_CASE("a scene that takes its time to move leaves less for the picture, and 
     CHECK(moves_slowly.scale() > 0.15f); // a speck would be no faster
 }
 
+TEST_CASE("another rate to keep is another size, up and down again") {
+    FramePace pace(1.0 / 60);
+    const auto settled = [&] {
+        for (int i = 0; i < 20; ++i) pace.took(pace.scale(), frame_time(0.012, pace.scale()));
+        return pace.scale();
+    };
+    CHECK(settled() == 1);
+    pace.keep(1.0 / 144);
+    CHECK(settled() == 0.75f);
+    CHECK(pace.frame_s() == 1.0 / 144);
+    pace.keep(1.0 / 60);
+    CHECK(settled() == 1);
+}
+
 TEST_CASE("a view that becomes dear makes pictures smaller within a few frames") {
     FramePace pace(0.1);
     for (int i = 0; i < 40; ++i) pace.took(pace.scale(), frame_time(0.07, pace.scale()));

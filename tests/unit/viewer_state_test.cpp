@@ -84,6 +84,18 @@ TEST_CASE("an exposure that is fixed stays where it was found, and one that is f
     CHECK(state.display.exposure_stops == 0);
 }
 
+TEST_CASE("pictures of the movement scatter less, until somebody chooses a depth; then both have that") {
+    ViewState state;
+    CHECK(state.moving_depth == kMovingDepth);
+    CHECK(state.picture.path.max_depth > kMovingDepth);
+    CHECK(set_view_setting(state, "moving_depth", 2.0) == "");
+    CHECK(state.moving_depth == 2);
+    CHECK(state.picture.path.max_depth == ViewState{}.picture.path.max_depth); // the picture at rest stays
+    CHECK(set_view_setting(state, "max_depth", 9.0) == "");
+    CHECK(state.moving_depth == 9);
+    CHECK(state.picture.path.max_depth == 9);
+}
+
 TEST_CASE("structures and walks that go together are chosen together, for all kinds of ray") {
     ViewState state;
     CHECK(set_view_setting(state, "structure", "octree") == "");

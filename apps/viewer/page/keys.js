@@ -20,10 +20,11 @@ export const kKeys = [
   { keys: ["Space"], text: "time runs, or stands" },
   { keys: ["T"], text: "at rest: the reference, or real time" },
   { keys: ["[", "]"], text: "exposure down, up" },
-  { keys: ["0", "…", "9"], text: "scatterings, at most" },
+  { keys: ["0", "…", "9"], text: "scatterings, at most, at rest and moving" },
   { keys: ["C"], text: "copy the camera as flags of pertev render" },
   { keys: ["F12"], text: "save PNG and EXR" },
   { keys: ["Tab"], text: "panel" },
+  { keys: ["Enter"], text: "takes the number that was typed; keys steer again" },
   { keys: ["H"], text: "this help" },
   { keys: ["one finger, two"], text: "turn; pan and zoom" },
 ];
@@ -32,6 +33,7 @@ const kAxes = /** @type {Record<string, [string, number]>} */ ({
   KeyW: ["forward", 1], KeyS: ["forward", -1], KeyD: ["right", 1], KeyA: ["right", -1], KeyE: ["up", 1], KeyQ: ["up", -1],
 });
 
+const kLeaving = ["Enter", "NumpadEnter", "Escape"]; // a field that a number is typed into
 const kClickPixels = 4; // a drag is longer
 
 export class Controls {
@@ -69,7 +71,8 @@ export class Controls {
     if (event.ctrlKey || event.metaKey) return;
     const target = event.target;
     const types = target instanceof HTMLInputElement && target.type === "number";
-    if (types && event.code !== "Tab" && event.code !== "F12" && event.code !== "Escape") return;
+    if (types && kLeaving.includes(event.code)) return target.blur(); // what was typed is taken, and keys steer again
+    if (types && event.code !== "Tab" && event.code !== "F12") return;
     if (event.code === "Escape" && target instanceof HTMLElement) target.blur();
     if (event.code in kAxes || event.code.startsWith("Shift") || event.code === "KeyZ") {
       if (target instanceof HTMLSelectElement) target.blur();

@@ -3,6 +3,7 @@
 import { Controls, kKeys } from "./keys.js";
 import { Link } from "./link.js";
 import { Settings, element, make, showRows } from "./panel.js";
+import { watchRate } from "./screen.js";
 import { Recorder, TimeLine } from "./time.js";
 
 // The key is in a cookie now: it need not stand in the address, where others may read it.
@@ -70,6 +71,7 @@ function receivePicture(header, next) {
   if (header.input > shown.lastInput || header.input < shown.lastInput - 1000) shown.lastInput = header.input;
   const latency = link.latencyOf(header.input);
   if (latency !== undefined) shown.latency = latency;
+  document.body.dataset.latency = latency === undefined ? "" : String(latency);
   document.body.dataset.frame = String(header.frame);
   document.body.dataset.samples = String(header.samples);
   document.body.dataset.kind = header.kind === 2 ? "png" : "jpeg";
@@ -95,6 +97,7 @@ function receive(message) {
     case "people":
       people = message;
       showPeople();
+      tellRate();
       break;
     case "state":
       state = message;
@@ -199,6 +202,13 @@ function buildButtons(cameras) {
   }
 }
 
+let screenRate = 0; // pictures a second; 0: not known yet
+
+/** The viewer follows the screen of who steers. */
+function tellRate() {
+  if (screenRate > 0 && people.steers === people.you) link.send({ type: "rate", hz: Math.min(Math.max(screenRate, 1), 1000) });
+}
+
 let noticeTimer = 0;
 /** @param {string} text @param {string} [kind] */
 function notify(text, kind = "note") {
@@ -285,4 +295,8 @@ const controls = new Controls(canvas, link, place, actions);
 buildHelp();
 addEventListener("resize", draw);
 setInterval(showReadings, 500);
+watchRate((rate) => {
+  screenRate = rate;
+  tellRate();
+});
 canvas.focus();

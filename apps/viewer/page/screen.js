@@ -1,0 +1,25 @@
+// How often the screen shows a new picture: the browser calls back once for each.
+
+const kPictures = 60; // that a rate is told from
+
+/** @param {(rate: number) => void} tell pictures a second, once that is known, and again when it is another: a window may
+ * be moved to another screen */
+export function watchRate(tell) {
+  let last = 0, told = 0;
+  /** @type {number[]} */
+  let steps = [];
+  /** @param {number} now */
+  const step = (now) => {
+    requestAnimationFrame(step);
+    const ms = now - last;
+    last = now;
+    if (ms > 0 && ms < 100) steps.push(ms); // longer: the page was hidden
+    if (steps.length < kPictures) return;
+    const rate = 1000 / steps.sort((a, b) => a - b)[kPictures / 4]; // a page that is busy misses some
+    steps = [];
+    if (Math.abs(rate - told) < 0.1 * told) return;
+    told = rate;
+    tell(rate);
+  };
+  requestAnimationFrame(step);
+}

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""Clients of `pertev view` together, and what their links do: who steers, and that no client harms another."""
+
+import socket
+import threading
+import time
+
+from cli_run import main
+from viewer_client import Client, Closed, Tunnel
+from viewer_test import WithViewer
+
+
+class Together(WithViewer):
+    arguments = ["--threads", "1"]  # it renders all the while
+    options = {"size": "160x120", "spp": 100000}
+
+    def test_one_steers_the_others_watch_and_the_wheel_is_handed_over_and_found_again(self):
+        with Client(self.viewer, key="first") as first, Client(self.viewer, key="second") as second:
+            first.say(type="ask")  # a test before this one may have left a wheel that waits
+            people = second.text("people", lambda p: len(p["people"]) == 2 and p["steers"] == p["you"] - 1)
+            first.steer(type="home")
+            first.set("exposure", 2)
+            before = second.text("state", lambda s: s["values"]["exposure"] == 2)["flags"]
+            second.steer(type="orbit", dx=1, dy=0)  # is not heard
+            number = first.steer(type="set", name="exposure", value=3)
+            state = second.text("state", lambda s: s["values"]["exposure"] == 3)
+            self.assertEqual(state["flags"], before)
+            second.say(type="ask")
+            asked = first.text("people", lambda p: any(person["asks"] for person in p["people"]))
+            self.assertEqual(asked["steers"], asked["you"])
+            first.say(type="hand", to=people["you"])
+            second.text("people", lambda p: p["steers"] == p["you"])
+            second.steer(type="orbit", dx=0.2, dy=0)
+            moved = first.text("state", lambda s: s["flags"] != before)["flags"]
+            second.socket.close()
+            with Client(self.viewer, key="second") as again:
+                mine = again.text("people")
+                self.assertEqual(mine["steers"], mine["you"])
+                self.assertEqual(again.text("state")["flags"], moved)
+                again.steer(type="home")
+                again.text("state", lambda s: s["flags"] == before)
+            self.assertGreater(number, 0)
+
+    def watch(self, client, seconds=1.0):
+        """Pictures that it is sent in this time."""
+        count, end = 0, time.monotonic() + seconds
+        while time.monotonic() < end:
+            client.steer(type="orbit", dx=0.001, dy=0)
+            client.picture()
+            count += 1
+        return count
+
+    def test_clients_that_do_not_read_do_not_acknowledge_or_flood_do_not_stop_the_others(self):
+        with Client(self.viewer, key="good") as good:
+            good.text("people", lambda p: p["steers"] in (p["you"], 0))
+            good.say(type="ask")
+            with Client(self.viewer, key="deaf") as deaf, Client(self.viewer, key="mute", acknowledges=False) as mute, \
+                    Client(self.viewer, key="flood") as flood:
+                halves = [socket.create_connection((self.viewer.host, self.viewer.port)) for _ in range(20)]
+                for half in halves:
+                    half.sendall(b"GET / HTTP/1.1\r\nHost: loc")
+                self.assertGreater(self.watch(good), 3)
+                pictures = 0
+                try:
+                    while True:
+                        pictures += isinstance(mute.receive(0.3), tuple)
+                except TimeoutError:
+                    pass
+                self.assertEqual(pictures, 2)
+                with self.assertRaises((Closed, OSError)):
+                    for _ in range(5000):
+                        flood.say(type="zoom", n=1, steps=1)
+                    flood.until(lambda m: False, 10)
+                self.assertGreater(self.watch(good), 3)
+                self.assertEqual(deaf.status, 101)
+                for half in halves:
+                    half.close()
+
+    def test_there_is_room_for_sixteen_and_the_next_is_told_so(self):
+        clients = []
+        try:
+            for number in range(16):
+                clients.append(Client(self.viewer, key=f"one of many {number}"))
+                self.assertEqual(clients[-1].status, 101)
+                clients[-1].text("welcome")
+            with Client(self.viewer) as late:
+                code, reason = late.close_reason(10)
+                self.assertEqual(code, 1013)
+                self.assertIn("too many", reason)
+        finally:
+            for client in clients:
+                client.socket.close()
+
+    def test_messages_that_are_too_large_or_none_close_their_connection_alone(self):
+        for spoil, code in [(lambda c: c.say_text("x" * 5000), 1009), (lambda c: c.say_text("{}"), 1008),
+                            (lambda c: c.send_frame(2, b"abc"), 1008)]:
+            with Client(self.viewer, key="bad") as client:
+                client.text("welcome")
+                spoil(client)
+                self.assertIn(client.close_reason(10)[0], (code, 0))  # 0: what was not read any more cuts it short
+        self.assertEqual(self.viewer.get("/")[0], 200)
+
+
+class SlowLink(WithViewer):
+    """Pictures of some 8 KiB at first, and a link that takes 32 KiB a second."""
+
+    options = {"size": "320x240", "spp": 64}
+    arguments = ("--max-depth", "1")
+
+    def test_a_slow_link_gets_pictures_of_a_lower_quality_and_its_delay_does_not_grow(self):
+        sent, delays, sizes, coarse, end = {}, [], [], [], time.monotonic() + 4
+        with Client(Tunnel(self.viewer, 32 << 10), key="far") as far:
+            far.set("moving_scale", "1")
+
+            def goes_on():  # a machine under load takes longer
+                now = time.monotonic()
+                return now < end or (len(delays) < 16 and now < end + 60)
+
+            def steer():
+                while goes_on():
+                    sent[far.input + 1] = time.monotonic()
+                    far.steer(type="orbit", dx=0.003, dy=0)
+                    time.sleep(0.03)
+
+            hand = threading.Thread(target=steer)
+            hand.start()
+            while goes_on():
+                header, data = far.picture()
+                if header["kind"] == 1 and header["input"] in sent:
+                    delays.append(time.monotonic() - sent[header["input"]])
+                    sizes.append(header["width"])
+                    coarse.append(coarseness(data))
+            hand.join()
+        third = len(delays) // 3
+        self.assertGreater(third, 3)
+        self.assertTrue(max(coarse[-third:]) > 1.5 * coarse[0] or min(sizes[-third:]) < sizes[0], (coarse, sizes))
+        self.assertLess(max(delays[-third:]), max(1.0, 1.5 * max(delays[:third])), delays)
+
+
+def coarseness(jpeg):
+    """The sum of its first table of steps: the larger, the lower is the quality."""
+    at = jpeg.index(b"\xff\xdb")
+    return sum(jpeg[at + 5 : at + 5 + 64])
+
+
+if __name__ == "__main__":
+    main()
