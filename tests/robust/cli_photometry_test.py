@@ -19,11 +19,15 @@ class Photometry(CliTest):
         self.assertAlmostEqual(2 * measured[0], measured[1], delta=1e-4 * measured[1])
 
     def test_false_colours_stand_over_their_scale(self):
-        self.render("--false-color", "luminance", "--false-color-range", "1,1000", output="x.png", size="64x16")
+        def shown(what, output, size, *flags):
+            return self.succeed("render", "cornell-box", "-o", output, "--size", size, "--spp", "1", "--json",
+                                "--false-color", what, *flags).events("done")[0]["hash"]
+
+        shown("luminance", "x.png", "64x16", "--false-color-range", "1,1000")
         self.assertEqual(len(read_png(self.path("x.png"))), 64 * (16 + 32))
         plain = self.render(output="plain.exr")["hash"]
-        self.assertEqual(self.render("--false-color", "luminance", output="y.png")["hash"], plain)
-        self.assertNotEqual(self.render("--false-color", "illuminance", output="z.exr")["hash"], plain)
+        self.assertEqual(shown("luminance", "y.png", "16x16"), plain)
+        self.assertNotEqual(shown("illuminance", "z.exr", "16x16"), plain)
         self.assertEqual(self.info("z.exr")["pertev.quantity"], "irradiance")
 
     def test_a_camera_s_exposure_counts_in_stops(self):
