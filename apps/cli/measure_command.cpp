@@ -1,6 +1,5 @@
 // pertev measure SCENE --at X,Y,Z --normal X,Y,Z: the light that arrives at a point, in numbers.
 
-#include <filesystem>
 #include <optional>
 
 #include <CLI/CLI.hpp>
@@ -22,31 +21,15 @@
 namespace pertev {
 namespace {
 
-/// Of a watt at the peak of the eye's response, lm/W; by it watts of luminance count as lumens.
-constexpr double kLumensPerWatt = 683;
-
 struct MeasureFlags {
     SceneOptions scene;
     std::string at, normal;
     uint32_t samples = 64, max_depth = PathSettings{}.max_depth, seed = 0;
-    float efficacy = 0; // lm/W; 0: by the kind of file
     std::optional<double> time_s;
     MachineFlags machine;
     bool no_cache = false;
     ReportFlags report;
 };
-
-/// glTF states lamps in candela, lux and nits, which are read as watts one for one (docs/formats.md).
-bool states_lumens(const std::string& scene) {
-    std::string extension = std::filesystem::path(scene).extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return extension == ".gltf" || extension == ".glb";
-}
-
-double efficacy_of(const MeasureFlags& flags) {
-    if (flags.efficacy > 0) return static_cast<double>(flags.efficacy);
-    return states_lumens(flags.scene.scene) ? 1 : kLumensPerWatt;
-}
 
 MeterPlace place_of(const MeasureFlags& flags) {
     const MeterPlace place = {parse_position("--at", flags.at), parse_vec3("--normal", flags.normal)};
@@ -69,7 +52,7 @@ std::string in_words(const Measured& m, double scale = 1) {
 }
 
 void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, double seconds, Reporter& reporter) {
-    const double efficacy = efficacy_of(flags);
+    const double efficacy = efficacy_of(flags.scene);
     if (reporter.json()) {
         reporter.event(fmt::format(
             R"({{"event":"measure","scene":{},"at":{},"normal":{},"device":{},"irradiance_rgb":[{},{},{}],"irradiance":{},"illuminance":{},"lumens_per_watt":{},"paths":{},"invalid_paths":{},"rays":{},"max_depth":{},"seed":{},"seconds":{:.3f}}})",
@@ -144,10 +127,6 @@ void add_measure_command(CLI::App& app, int& status) {
         ->type_name("N")
         ->check(whole_between(0, kMostMeterSeed))
         ->capture_default_str();
-    verb.add_option("--efficacy", flags->efficacy,
-                    "lumens of a watt (683; 1 for glTF, whose candela, lux and nits\nare read as watts)")
-        ->type_name("LM_PER_W")
-        ->check(number_above_zero(1e6f));
     verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
         ->type_name("SECONDS")
         ->check(number_between(-1e9f, 1e9f));

@@ -56,6 +56,12 @@ void refuse(bool is_wrong, const std::string& text) {
     if (is_wrong) throw Error(ErrorCode::BadInput, text);
 }
 
+/// Names that the picture's own channels and other layers have in files.
+bool is_layer_of_files(const std::string& name) {
+    return name == "noisy" ||
+           std::ranges::any_of(kAovTable, [&](const AovGroup& group) { return name == group.layer; });
+}
+
 /// One thing leads the camera.
 void check_camera_path(const RenderFlags& flags) {
     if (flags.camera_path.empty()) return;
@@ -65,6 +71,41 @@ void check_camera_path(const RenderFlags& flags) {
         refuse(!text->empty(), fmt::format("{}: the camera's path says it; leave out one of them", flag));
     }
     refuse(flags.turntable > 0, "--turntable: the camera goes its path; leave out one of them");
+}
+
+/// Without a scene: what can be told of them before it is read.
+LightPathLayers light_paths(const RenderFlags& flags) {
+    LightPathLayers layers;
+    for (const std::string& text : flags.light_paths) layers.expressions.push_back(parse_light_path(text));
+    check_layers(layers.expressions);
+    for (const LightPathExpression& expression : layers.expressions) {
+        refuse(is_layer_of_files(expression.name),
+               fmt::format("--lpe {}: files have another layer of this name", expression.name));
+    }
+    return layers;
+}
+
+/// The ends of a scale. Throws Error(BadInput).
+std::pair<float, float> parse_range(const std::string& text) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const float least = number_in(text.substr(0, comma)).value_or(0.0f);
+    const float most = number_in(text.substr(std::min(comma + 1, text.size()))).value_or(0.0f);
+    refuse(!(least > 0 && least < most),
+           fmt::format("--false-color-range {}: expected A,B with 0 < A < B, as 1,1000", text));
+    return {least, most};
+}
+
+/// What can be told of exposure and false colours.
+void check_display_flags(const RenderFlags& flags) {
+    physical_exposure(flags);
+    if (!flags.false_color_range.empty()) parse_range(flags.false_color_range);
+    refuse(!flags.false_color_range.empty() && flags.false_color.empty(),
+           "--false-color-range: of --false-color luminance or illuminance");
+    const bool shows_tones = !flags.exposure.empty() || !flags.tone_map.empty() || flags.f_number > 0;
+    refuse(!flags.false_color.empty() && shows_tones,
+           "--false-color: numbers have a scale, --false-color-range, and no exposure or tones; leave out one of them");
+    refuse(!flags.false_color.empty() && flags.transparent, "--false-color: its picture has no alpha; leave out "
+                                                            "--transparent");
 }
 
 /// All settings but the size. Throws Error where they do not go together.
@@ -77,6 +118,8 @@ RenderSettings light_settings(const RenderFlags& flags) {
     settings.denoise = *denoise_named(flags.denoise);
     settings.time_limit_s = flags.time_limit_s;
     for (const std::string& name : flags.aovs) settings.aovs |= *aov_named(name);
+    settings.irradiance = flags.false_color == "illuminance";
+    if (!flags.light_paths.empty()) settings.light_paths = std::make_shared<const LightPathLayers>(light_paths(flags));
     settings.path = {.max_depth = flags.max_depth,
                      .clamp = flags.clamp,
                      .sampler = *sampler_named(flags.sampler),
@@ -94,6 +137,28 @@ RenderSettings light_settings(const RenderFlags& flags) {
 }
 
 } // namespace
+
+std::optional<PhysicalExposure> physical_exposure(const RenderFlags& flags) {
+    if (!(flags.iso > 0 || flags.f_number > 0 || flags.shutter_s > 0)) return std::nullopt;
+    refuse(!(flags.f_number > 0 && flags.shutter_s > 0),
+           "--iso, --f-number, --shutter-time: an exposure takes --f-number and --shutter-time; --iso is 100 without");
+    refuse(!flags.exposure.empty(), "--exposure: --f-number and --shutter-time say it; leave out one of them");
+    PhysicalExposure exposure;
+    if (flags.iso > 0) exposure.iso = static_cast<double>(flags.iso);
+    exposure.f_number = static_cast<double>(flags.f_number);
+    exposure.shutter_s = static_cast<double>(flags.shutter_s);
+    return exposure;
+}
+
+std::optional<FalseColors> false_colors(const RenderFlags& flags) {
+    if (flags.false_color.empty()) return std::nullopt;
+    FalseColors colors;
+    colors.quantity = flags.false_color;
+    colors.unit = flags.false_color == "illuminance" ? "lx" : "cd/m2";
+    colors.factor = static_cast<float>(efficacy_of(flags.scene));
+    if (!flags.false_color_range.empty()) std::tie(colors.least, colors.most) = parse_range(flags.false_color_range);
+    return colors;
+}
 
 void add_motion_flags(CLI::App& verb, RenderFlags& flags) {
     const char* group = "Motion";
@@ -223,6 +288,21 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags) {
                     "of PNG and JPEG: stops, or auto, which looks at a small\npicture of its own (auto)")
         ->type_name("STOPS|auto")
         ->group(group);
+    verb.add_option(
+            "--f-number", flags.f_number,
+            "physical exposure of PNG and JPEG: N of the lens, with\n--shutter-time and --iso (depth of field is "
+            "--aperture's)")
+        ->type_name("N")
+        ->check(number_above_zero(1e4f))
+        ->group(group);
+    verb.add_option("--shutter-time", flags.shutter_s, "of --f-number: how long the shutter is open")
+        ->type_name("SECONDS")
+        ->check(number_above_zero(1e6f))
+        ->group(group);
+    verb.add_option("--iso", flags.iso, "of --f-number: the film's speed (100)")
+        ->type_name("S")
+        ->check(number_above_zero(1e8f))
+        ->group(group);
     group = "Quality";
     add_light_path_flags(verb, flags, group);
     verb.add_option("--sampler", flags.sampler, "sobol or independent")
@@ -256,6 +336,22 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->allow_extra_args(false)
         ->check(one_of(aov_names()))
         ->group("Picture");
+    verb.add_option(
+            "--false-color", flags.false_color,
+            "PNG and JPEG show numbers, and their scale beneath: luminance in\ncd/m2, or illuminance of what the "
+            "camera sees in lx, of which\nEXR and HDR then hold the irradiance, W/m2")
+        ->type_name("NAME")
+        ->check(one_of({"luminance", "illuminance"}))
+        ->group("Picture");
+    verb.add_option("--false-color-range", flags.false_color_range, "ends of that scale (as fits the picture)")
+        ->type_name("A,B")
+        ->group("Picture");
+    verb.add_option("--lpe", flags.light_paths,
+                    "a layer of an EXR with the light of some paths alone, from the\nlight to the eye: LD+E, or "
+                    "caustics LS+DE, or L<'lamp'>.*E;\nmay be given again (docs/transport.md)")
+        ->type_name("NAME=EXPRESSION")
+        ->allow_extra_args(false)
+        ->group("Picture");
     verb.add_option("--time-limit", flags.time_limit_s, "stop after this time, at a whole sample")
         ->type_name("SECONDS")
         ->check(number_above_zero())
@@ -285,6 +381,7 @@ void check_shown_picture_flags(const RenderFlags& flags) {
                     fmt::format("--exposure {}: expected auto, or stops: a number of size {} at most", flags.exposure,
                                 std::numeric_limits<float>::max()));
     }
+    check_display_flags(flags);
     if (!flags.size.empty()) parse_size("--size", flags.size);
     light_settings(flags);
     check_scene_options(flags.scene);
@@ -306,6 +403,9 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
     if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }
+    if (!flags.light_paths.empty() && !writes_any(flags, {ImageFormat::Exr})) {
+        throw Error(ErrorCode::BadInput, "--lpe: layers are kept in EXR files alone; add -o NAME.exr");
+    }
     if (flags.transparent && std::ranges::none_of(flags.outputs, keeps_alpha)) {
         throw Error(ErrorCode::BadInput, "--transparent: alpha is kept in EXR and PNG alone; add -o NAME.exr or .png");
     }
@@ -314,6 +414,12 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
             messages.warn(output + ": --transparent: this format has no alpha; the background becomes black");
         }
     }
+    refuse(flags.false_color == "luminance" && !writes_tone_mapped(flags),
+           "--false-color luminance: numbers are shown in PNG and JPEG alone; add -o NAME.png");
+    refuse(!flags.false_color.empty() && flags.false_color_range.empty() && frames && writes_tone_mapped(flags),
+           "--false-color: frames of a sequence need one scale for all; say --false-color-range");
+    refuse(flags.f_number > 0 && !writes_tone_mapped(flags),
+           "--f-number: light is exposed in PNG and JPEG alone; add -o NAME.png or .jpg");
     if ((!flags.exposure.empty() || !flags.tone_map.empty()) && !writes_tone_mapped(flags)) {
         throw Error(ErrorCode::BadInput, fmt::format("--{}: light is mapped to tones in PNG and JPEG alone; add -o "
                                                      "NAME.png or .jpg",
@@ -323,6 +429,10 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
 
 RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
     RenderSettings settings = light_settings(flags);
+    if (settings.light_paths) {
+        settings.light_paths =
+            std::make_shared<const LightPathLayers>(put_to_scene(settings.light_paths->expressions, scene));
+    }
     if (!flags.size.empty()) {
         std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
     } else {

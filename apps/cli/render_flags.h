@@ -11,6 +11,8 @@
 #include "apps/cli/scene_options.h"
 #include "apps/cli/tracer_flags.h"
 #include "session/frame_sequence.h"
+#include "session/photometry.h"
+#include "session/picture_metadata.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -22,6 +24,9 @@ struct RenderFlags {
     std::string tone_map, exposure; // empty: agx, and auto
     bool transparent = false;
     std::vector<std::string> aovs;
+    std::vector<std::string> light_paths; // --lpe
+    std::string false_color, false_color_range;
+    float iso = 0, f_number = 0, shutter_s = 0; // 0: not given
     uint32_t samples = RenderSettings{}.samples;
     double time_limit_s = 0;
     std::optional<double> time_s;
@@ -53,6 +58,12 @@ void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
 /// --ambient, --seed, --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
+
+/// Of --iso, --f-number and --shutter-time; none: they are not given.
+std::optional<PhysicalExposure> physical_exposure(const RenderFlags& flags);
+
+/// Of --false-color; none: it is not given. A scale without a range fits the picture.
+std::optional<FalseColors> false_colors(const RenderFlags& flags);
 
 /// Whether a picture is asked for that light is mapped to tones for: PNG or JPEG.
 bool writes_tone_mapped(const RenderFlags& flags);

@@ -32,6 +32,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
     }
     std::string layers;
     for (const std::string& layer : flags.aovs) layers += layer + " ";
+    for (const std::string& layer : flags.light_paths) layers += layer + " ";
     const RenderSettings& picture = record.settings;
     settings.insert(settings.end(), {{"first frame", fmt::format("{}", sequence.first)},
                                      {"--fps", sequence.fps ? fmt::format("{}", *sequence.fps) : ""},

@@ -7,6 +7,7 @@
 #include "apps/cli/parse_values.h"
 #include "base/limits.h"
 #include "session/open_scene.h"
+#include "session/photometry.h"
 
 namespace pertev {
 
@@ -21,9 +22,15 @@ OpenOptions open_options(const SceneOptions& options) {
     }
     open.environment_rotation_deg = options.environment_rotation_deg;
     open.environment_scale = options.environment_scale;
+    for (const std::string& lamp : options.lamps) open.lamps.push_back(parse_lamp(lamp));
+    open.efficacy = static_cast<double>(options.efficacy);
     open.two_sided_lights = options.two_sided_lights;
     open.show_back_faces = options.show_back_faces;
     return open;
+}
+
+double efficacy_of(const SceneOptions& options) {
+    return lumens_per_watt(options.scene, static_cast<double>(options.efficacy));
 }
 
 CameraChoice camera_choice(const SceneOptions& options) {
@@ -41,7 +48,10 @@ CameraChoice camera_choice(const SceneOptions& options) {
     return choice;
 }
 
-void check_scene_options(const SceneOptions& options) { check_camera_choice(camera_choice(options)); }
+void check_scene_options(const SceneOptions& options) {
+    check_camera_choice(camera_choice(options));
+    open_options(options);
+}
 
 void add_scene_name(CLI::App& verb, SceneOptions& options) {
     verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
@@ -107,6 +117,19 @@ void add_light_options(CLI::App& verb, SceneOptions& options) {
     verb.add_option("--environment-scale", options.environment_scale, "times its radiance; of a made-up sky too")
         ->type_name("X")
         ->check(number_between(0, 1e12f))
+        ->group(group);
+    group = "Lamps";
+    verb.add_option(
+            "--lamp", options.lamps,
+            "set every lamp of this name (* and ? stand for letters) to so\nmuch light: W, lm, cd, lx or nits, as "
+            "bulb=800lm; may be given again")
+        ->type_name("NAME=AMOUNT")
+        ->allow_extra_args(false)
+        ->group(group);
+    verb.add_option("--efficacy", options.efficacy,
+                    "lumens of a watt (683; 1 for glTF, whose candela, lux and nits\nare read as watts)")
+        ->type_name("LM_PER_W")
+        ->check(number_above_zero(1e6f))
         ->group(group);
     verb.add_flag("--two-sided-lights", options.two_sided_lights, "lamps shine from both faces, whatever the file says")
         ->group("Faces");

@@ -29,6 +29,8 @@ struct SceneOptions {
     float view_height_m = 0;
     std::string environment; // file or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;
+    std::vector<std::string> lamps; // --lamp
+    float efficacy = 0;             // lm/W; 0: by the kind of file
     bool two_sided_lights = false, show_back_faces = false;
 };
 
@@ -38,7 +40,7 @@ void add_scene_options(CLI::App& verb, SceneOptions& options);
 void add_view_options(CLI::App& verb, SceneOptions& options);
 /// SCENE alone.
 void add_scene_name(CLI::App& verb, SceneOptions& options);
-/// The environment and --two-sided-lights alone.
+/// The environment, lamps and --two-sided-lights alone.
 void add_light_options(CLI::App& verb, SceneOptions& options);
 /// --allow-path alone.
 void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);
@@ -53,6 +55,8 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
 // The rest is session/open_scene.h and session/choose_camera.h for flags as they stand on the command line. Each throws
 // Error(BadInput) also for text that is no value.
 
+/// Lumens that a watt of the scene counts as: --efficacy, or by the kind of file.
+double efficacy_of(const SceneOptions& options);
 OpenOptions open_options(const SceneOptions& options);
 Scene load_scene(const SceneOptions& options, Messages& messages);
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene);

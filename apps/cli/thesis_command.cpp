@@ -80,6 +80,22 @@ void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& set
     thesis.global.push_back({caption("global", global), tone_map_image(global.picture, ToneMap::Srgb, stops)});
 }
 
+/// Those of chapter 3, as far as nothing interrupts.
+void add_chapter_3(Queue& queue, const LabSettings& settings, Reporter& reporter, ThesisReport& thesis) {
+    RenderSettings picture;
+    picture.width = settings.width, picture.height = settings.height;
+    picture.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
+    for (const char* number : kThesisPictures) {
+        if (interrupted()) return;
+        reporter.set_work(fmt::format("rendering figure {}", number));
+        thesis.pictures.push_back(render_thesis_picture(queue, number, picture, [&](const RenderProgress& now) {
+            reporter.progress(static_cast<double>(now.samples_done) / now.samples, fmt::format("figure {}", number));
+            return !interrupted();
+        }));
+        reporter.end_progress();
+    }
+}
+
 /// Files of an earlier run that this one does not have are removed.
 void write_files(const std::filesystem::path& folder, const ThesisReport& thesis) {
     std::set<std::string> stale;
@@ -100,6 +116,14 @@ void write_files(const std::filesystem::path& folder, const ThesisReport& thesis
     text_file("thesis.html", html_of(thesis));
     for (const ThesisFigure& figure : figures_of(thesis)) {
         text_file(fmt::format("figure-{}.svg", figure.number), figure.svg);
+    }
+    for (std::size_t i = 0; i < std::size(kThesisPictures); ++i) {
+        const std::string name = fmt::format("figure-{}.png", kThesisPictures[i]);
+        if (i < thesis.pictures.size()) {
+            write_png(folder / name, thesis.pictures[i].image);
+        } else {
+            stale.insert(name);
+        }
     }
     for (std::size_t i = 0; i < kThesisScenes; ++i) {
         picture_file(fmt::format("figure-6.{}-local.png", 7 + i), thesis.local, i);
@@ -144,6 +168,10 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
             }
         }
         if (interrupted()) break;
+    }
+    if (!interrupted() && !output.empty()) {
+        add_chapter_3(queue, settings, reporter, thesis);
+        write_files(output, thesis);
     }
     const bool cut_short = interrupted();
     reporter.event(

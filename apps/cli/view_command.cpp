@@ -190,7 +190,8 @@ int view(const ViewFlags& flags) {
     start.record = record;
     start.view.picture = ready->settings;
     start.view.display = choose_shown_display(flags.render, session, reporter);
-    start.view.finds_exposure = flags.render.exposure.empty() || flags.render.exposure == "auto";
+    start.view.finds_exposure =
+        (flags.render.exposure.empty() || flags.render.exposure == "auto") && !physical_exposure(flags.render);
     start.view.dark = dark_integrators(ready->settings, ready->scene());
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;

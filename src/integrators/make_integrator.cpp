@@ -32,6 +32,8 @@ bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path; }
 
 bool finds_all_light(IntegratorKind kind) { return kind == IntegratorKind::Path; }
 
+bool has_light_path_layers(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+
 uint32_t most_depth(IntegratorKind kind) { return kind == IntegratorKind::Path ? kMaxPathDepth - 1 : kMaxTreeDepth; }
 
 bool needs_punctual_lights(IntegratorKind kind) {
@@ -39,7 +41,8 @@ bool needs_punctual_lights(IntegratorKind kind) {
 }
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
-    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient;
+    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient &&
+           a.light_paths == b.light_paths && a.irradiance == b.irradiance;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
@@ -53,7 +56,10 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
     case IntegratorKind::Distributed:
         return make_ray_tree<Distributed>(queue, settings);
     }
-    return std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
+    auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
+    path->set_layers(settings.light_paths);
+    path->set_meter(settings.irradiance);
+    return path;
 }
 
 bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to) {
@@ -61,6 +67,8 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     switch (to.integrator) {
     case IntegratorKind::Path:
         static_cast<PathIntegrator&>(integrator).set_settings(to.path);
+        static_cast<PathIntegrator&>(integrator).set_layers(to.light_paths);
+        static_cast<PathIntegrator&>(integrator).set_meter(to.irradiance);
         break;
     case IntegratorKind::Cast:
         set_tree_settings<Cast>(integrator, to);
@@ -77,7 +85,8 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
 
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
                             bool walks_itself) {
-    if (walks_itself && settings.body == PathBody::Loop) return 0;
+    const std::size_t tables = settings.light_paths ? LightPathsOnDevice::predicted_bytes(*settings.light_paths) : 0;
+    if (walks_itself && settings.body == PathBody::Loop) return tables;
     const uint64_t all = pixels * samples;
     switch (settings.integrator) {
     case IntegratorKind::Path:
@@ -89,7 +98,7 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     case IntegratorKind::Distributed:
         return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch);
     }
-    return PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda);
+    return tables + PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.light_paths != nullptr);
 }
 
 } // namespace pertev

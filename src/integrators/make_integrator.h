@@ -9,6 +9,7 @@
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
 #include "math/rgb.h"
+#include "render/light_paths/light_path_layers.h"
 
 namespace pertev {
 
@@ -27,6 +28,11 @@ struct IntegratorSettings {
     // mean of the environment.
     std::optional<Rgb> ambient;
 
+    // Of Path: layers of the film beside the picture, each of some light paths alone. Null: none.
+    std::shared_ptr<const LightPathLayers> light_paths;
+    bool irradiance =
+        false; // of Path: in place of radiance, W/m2 on the side that the camera sees; 0 where it sees none
+
     // How the device does it: the light stays the same.
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront
     uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes each; or trees of rays
@@ -37,6 +43,8 @@ struct IntegratorSettings {
 bool makes_frames(IntegratorKind kind);
 /// Whether its mean is all light that there is, so that another one of these has the same.
 bool finds_all_light(IntegratorKind kind);
+/// Whether it tells light paths apart and can show irradiance: IntegratorSettings::light_paths and irradiance.
+bool has_light_path_layers(IntegratorKind kind);
 /// The largest PathSettings::max_depth.
 uint32_t most_depth(IntegratorKind kind);
 /// Whether point, spot and directional lights alone light surfaces.

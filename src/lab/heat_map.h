@@ -6,15 +6,10 @@
 #include <cstdint>
 #include <span>
 
+#include "image/false_color.h"
 #include "image/image.h"
 
 namespace pertev {
-
-/// `t` in [0, 1], clamped: 8-bit sRGB from dark violet over red to pale yellow, of rising lightness throughout.
-struct FalseColor {
-    uint8_t r, g, b;
-};
-FalseColor false_color(float t);
 
 /// A picture of `counts` ([height * width], row 0 on top); pale yellow at `most` and above. 16 rows of scale stand
 /// below.

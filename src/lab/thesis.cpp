@@ -102,6 +102,21 @@ Table peer_table(const ThesisReport& thesis) {
     return table;
 }
 
+/// How the pictures of chapter 3 were made, and in which time.
+Table picture_table(const ThesisReport& thesis) {
+    const Rgba8Image& first = thesis.pictures.front().image;
+    Table table = {fmt::format("Figures 3.3 to 3.8: pictures of the Cornell box at {}x{}", first.width, first.height),
+                   {{"figure", "shows", "integrator", "samples", "seconds", "frames/s of one sample", "Mrays/s"}}};
+    for (const ThesisPicture& picture : thesis.pictures) {
+        const double seconds = std::max(picture.stats.render_seconds, 1e-9);
+        table.rows.push_back({picture.number, picture.title, picture.integrator,
+                              fmt::format("{}{}", picture.stats.samples, picture.interrupted ? " (interrupted)" : ""),
+                              fixed_text(seconds, 3), fixed_text(picture.stats.samples / seconds, 2),
+                              fixed_text(static_cast<double>(picture.stats.rays.total()) / seconds * 1e-6, 2)});
+    }
+    return table;
+}
+
 /// As the thesis's captions number them, and then what its figures draw and no table has.
 std::vector<Table> tables_of(const ThesisReport& thesis) {
     const bool is_cuda = on_cuda(thesis);
@@ -129,6 +144,7 @@ std::vector<Table> tables_of(const ThesisReport& thesis) {
     }
     if (!thesis.scenes.empty()) tables.push_back(peer_table(thesis));
     tables.insert(tables.end(), beside.begin(), beside.end());
+    if (!thesis.pictures.empty()) tables.push_back(picture_table(thesis));
     return tables;
 }
 
@@ -209,6 +225,13 @@ std::string html_of(const Table& table) {
 
 std::string pictures_of(const ThesisReport& thesis) {
     std::string html;
+    for (const ThesisPicture& picture : thesis.pictures) {
+        html += fmt::format("<h2>Figure {}: {}</h2>\n", picture.number, html_text(picture.title));
+        html += html_image(picture.image,
+                           fmt::format("--integrator {}, {} samples a pixel in {} s", picture.integrator,
+                                       picture.stats.samples, fixed_text(picture.stats.render_seconds, 3)),
+                           512);
+    }
     for (std::size_t i = 0; i < std::max(thesis.local.size(), thesis.global.size()); ++i) {
         html += fmt::format("<h2>Figure 6.{}: local and global illumination</h2>\n", 7 + i);
         for (const auto* pictures : {&thesis.local, &thesis.global}) {
@@ -297,7 +320,7 @@ std::string html_of(const ThesisReport& thesis) {
             figure.svg.empty() ? fmt::format("<p>{}: {}.</p>\n", html_text(figure.title), figure.missing) : figure.svg;
     }
     for (const LabReport& report : thesis.scenes) body += "<p>" + html_text(about(report)) + "</p>\n";
-    return html_page("Realtime photo-realistic rendering using modern GPU systems, chapter 6, measured anew", body);
+    return html_page("Realtime photo-realistic rendering using modern GPU systems, chapters 3 and 6, made anew", body);
 }
 
 } // namespace pertev

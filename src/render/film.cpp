@@ -36,8 +36,9 @@ void visit_in(Queue& queue, Queue& theirs, const Buffer<T>& values, const Add& a
 
 } // namespace
 
-Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs)
-    : queue_(&queue), width_(width), height_(height), aovs_(aovs), channels_(film_channel_count(aovs)),
+Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers)
+    : queue_(&queue), width_(width), height_(height), aovs_(aovs), light_layers_(light_layers),
+      channels_(film_channel_count(aovs) + 3 * light_layers),
       sums_(queue, std::size_t(width) * height * channels_, "film"),
       ids_(queue, (aovs & kAovIds) != 0 ? std::size_t(width) * height : 0, "film ids"),
       invalid_(queue, 1, "invalid samples"),
@@ -45,8 +46,8 @@ Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs)
     clear();
 }
 
-std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs) {
-    const std::size_t of_pixel = film_channel_count(aovs) * sizeof(FixedSum) +
+std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers) {
+    const std::size_t of_pixel = (film_channel_count(aovs) + 3 * light_layers) * sizeof(FixedSum) +
                                  ((aovs & kAovIds) != 0 ? sizeof(PixelIds) : 0) + kFilmColorChannels * sizeof(float);
     return std::size_t(width) * height * of_pixel + sizeof(uint64_t);
 }
@@ -57,10 +58,13 @@ void Film::clear() {
     invalid_.zero();
 }
 
-FilmView Film::view() const { return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_, {}}; }
+FilmView Film::view() const {
+    return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_, {}};
+}
 
 void Film::add(const Film& other) {
-    PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_);
+    PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_ &&
+                 other.light_layers_ == light_layers_);
     visit_in(*queue_, *other.queue_, other.sums_, [&](std::size_t first, const FixedSum* from, uint32_t count) {
         launch(*queue_, "add_films", count, AddSums{from, sums_.data() + first});
     });
@@ -78,6 +82,11 @@ Image Film::resolve(uint32_t first, uint32_t channels, bool over_hits, uint64_t 
     image.pixels.resize(std::size_t(pixel_count()) * channels);
     queue_->copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size() * sizeof(float));
     return image;
+}
+
+Image Film::light_layer(uint32_t layer, uint64_t samples) const {
+    PERTEV_CHECK(layer < light_layers_);
+    return resolve(film_channel_count(aovs_) + 3 * layer, 3, false, samples);
 }
 
 Image Film::picture(uint64_t samples, bool transparent) const {

@@ -24,14 +24,15 @@ struct FilmLayer {
 
 class Film {
 public:
-    /// `aovs`: AovBits. Starts at zero.
-    Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs);
+    /// `aovs`: AovBits. `light_layers`: layers of three channels behind these (LightPathView). Starts at zero.
+    Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers = 0);
 
-    static std::size_t predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs);
+    static std::size_t predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers = 0);
 
     FilmView view() const;
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
+    uint32_t light_layers() const { return light_layers_; }
     void clear();
 
     /// Adds the samples of a film of the same size and layers, from any queue: then this one is as if it had taken them
@@ -44,6 +45,8 @@ public:
     Rgba8Image display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) const;
     /// The auxiliary layers asked for. Normals, depths and positions are means over the samples that hit something.
     std::vector<FilmLayer> layers(uint64_t samples) const;
+    /// Light layer `layer`: RGB.
+    Image light_layer(uint32_t layer, uint64_t samples) const;
     /// Ids of sample 0, row by row; empty without kAovIds.
     std::vector<PixelIds> ids() const { return ids_.download(); }
     uint64_t invalid_samples() const { return invalid_.download()[0]; }
@@ -53,7 +56,7 @@ private:
     Image resolve(uint32_t first, uint32_t channels, bool over_hits, uint64_t samples) const;
 
     Queue* queue_;
-    uint32_t width_, height_, aovs_, channels_;
+    uint32_t width_, height_, aovs_, light_layers_, channels_;
     Buffer<FixedSum> sums_;
     Buffer<PixelIds> ids_;
     Buffer<uint64_t> invalid_;

@@ -24,6 +24,10 @@ bool is_all_unlit(const Scene& scene) {
     });
 }
 
+void refuse_layers(bool is_wrong, const std::string& why) {
+    if (is_wrong) throw Error(ErrorCode::BadInput, "--lpe: " + why);
+}
+
 /// Surfaces are to be lit, by lights that are not there.
 bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
     const bool wants_lights = needs_punctual_lights(settings.integrator) && !settings.ambient;
@@ -49,6 +53,21 @@ void check_integrator(const RenderSettings& settings) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--denoise {}: reconstructs pictures of --integrator path, not of {}",
                                 name_of(settings.denoise), name));
+    }
+    if (settings.light_paths) {
+        refuse_layers(
+            !has_light_path_layers(settings.integrator),
+            fmt::format("light paths are told apart by --integrator path, direct and indirect, not by {}", name));
+        refuse_layers(settings.denoise != Denoise::None,
+                      fmt::format("layers are means of samples, and --denoise {} makes one picture of them; leave out "
+                                  "one of them",
+                                  name_of(settings.denoise)));
+    }
+    if (settings.irradiance && (!has_light_path_layers(settings.integrator) || settings.denoise != Denoise::None)) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--false-color illuminance: is found by --integrator path, direct and indirect, "
+                                "undenoised; not by {}{}",
+                                name, settings.denoise != Denoise::None ? ", denoised" : ""));
     }
     if (settings.path.max_depth > most_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, fmt::format("--max-depth {}: with --integrator {} at most {}",

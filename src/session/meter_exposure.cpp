@@ -22,6 +22,7 @@ RenderSettings meter_settings(const RenderSettings& picture) {
     meter.filter = PixelFilter::Box;
     meter.filter_radius = 0;
     meter.aovs = 0;
+    meter.light_paths = nullptr;
     meter.time_kinds = false;
     if (finds_all_light(meter.integrator)) meter.integrator = IntegratorKind::Path; // the light is the same
     meter.path.sampler = SamplerKind::Sobol;

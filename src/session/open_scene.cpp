@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "formats/read_environment.h"
 #include "math/scalar.h"
+#include "session/photometry.h"
 #include "session/survey/default_light.h"
 #include "session/survey/lamp_fronts.h"
 
@@ -83,6 +84,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
     add_default_light(scene, messages);
     turn_and_scale(options, scene, messages);
+    set_lamps(scene, options.lamps, lumens_per_watt(options.scene, options.efficacy));
     return scene;
 }
 

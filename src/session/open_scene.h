@@ -12,6 +12,7 @@
 #include "base/messages.h"
 #include "formats/read_scene.h"
 #include "scene/scene.h"
+#include "session/set_lamps.h"
 
 namespace pertev {
 
@@ -22,8 +23,10 @@ struct OpenOptions {
     std::optional<Rgb> environment_radiance; // instead of a panorama: from everywhere, W/(sr m2), at least 0
     float environment_rotation_deg = 0;      // about +y, added to the environment's own
     float environment_scale = 1;             // times the environment's own
-    bool two_sided_lights = false;           // surfaces emit from both faces, whatever the file says
-    bool show_back_faces = false;            // the camera sees backs that a glTF file hides
+    std::vector<LampStrength> lamps;         // set to amounts of light, in their order
+    double efficacy = 0;           // lumens of a watt, for lamps; 0: as the kind of file has it (photometry.h)
+    bool two_sided_lights = false; // surfaces emit from both faces, whatever the file says
+    bool show_back_faces = false;  // the camera sees backs that a glTF file hides
 };
 
 /// The environment that is asked for, in the words of --environment: a file, or a radiance R,G,B; empty: none.

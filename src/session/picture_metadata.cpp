@@ -57,10 +57,13 @@ ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids
 }
 
 SceneSource source_of(const OpenOptions& options, const Scene& scene) {
+    std::string lamps;
+    for (const LampStrength& lamp : options.lamps) lamps += (lamps.empty() ? "" : "\n") + lamp.text;
     return {.scene = options.scene,
             .environment = environment_text(options),
             .environment_scale = options.environment_scale,
             .environment_rotation_deg = options.environment_rotation_deg,
+            .lamps = lamps,
             .has_environment = scene.environment.has_value(),
             .two_sided_lights = options.two_sided_lights,
             .show_back_faces = options.show_back_faces};
@@ -115,13 +118,24 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                             {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)}};
     if (settings.ambient && needs_punctual_lights(settings.integrator))
         metadata.emplace_back("pertev.ambient", comma_separated(*settings.ambient));
+    if (settings.light_paths) {
+        std::string lines;
+        for (const LightPathExpression& layer : settings.light_paths->expressions) {
+            lines += fmt::format("{}{}={}", lines.empty() ? "" : "\n", layer.name, layer.text);
+        }
+        metadata.emplace_back("pertev.lpe", lines);
+    }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }
     if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
     append(metadata, camera_metadata(record.camera));
     append(metadata, environment_metadata(scene));
-    if (record.display) {
+    if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);
+    if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
+    if (record.display && record.display->false_colors) {
+        metadata.emplace_back("pertev.false_color", record.display->false_colors->quantity);
+    } else if (record.display) {
         append(metadata, {{"pertev.tone_map", std::string(name_of(record.display->tone_map))},
                           {"pertev.exposure", record.display->exposure_stops}});
     }

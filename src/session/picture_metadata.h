@@ -21,6 +21,7 @@ struct SceneSource {
     std::string environment;     // asked for: file or colour; empty: none was
     float environment_scale = 1; // factor
     float environment_rotation_deg = 0;
+    std::string lamps;            // set to amounts of light, a line each; empty: none
     bool has_environment = false; // the scene has one: asked for, its own or the default
     bool two_sided_lights = false, show_back_faces = false;
     std::optional<double> time_s;                  // that it is shown at; none: at rest
@@ -36,10 +37,19 @@ struct CameraSource {
     float fov_deg = 0;              // 0: none was asked for
 };
 
+/// Numbers in place of tones (image/false_color.h).
+struct FalseColors {
+    std::string quantity; // "luminance" or "illuminance"
+    std::string unit;     // of `factor` times the picture's luminance
+    float factor = 1;
+    float least = 0, most = 0; // ends of the scale, in that unit; 0: as fits the picture
+};
+
 /// How PNG and JPEG show the picture.
 struct Display {
     ToneMap tone_map = ToneMap::Agx;
     float exposure_stops = 0;
+    std::optional<FalseColors> false_colors; // then there are no tones and no exposure
 };
 
 struct PictureRecord {

@@ -30,7 +30,17 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
 }
 
 bool same_film(const Film& film, const RenderSettings& settings) {
-    return film.width() == settings.width && film.height() == settings.height && film.view().aovs == settings.aovs;
+    return film.width() == settings.width && film.height() == settings.height && film.view().aovs == settings.aovs &&
+           film.light_layers() == light_layers_of(settings);
+}
+
+/// Auxiliary layers, then those of light paths.
+std::vector<FilmLayer> layers_of(const Film& film, const RenderSettings& settings, uint64_t samples) {
+    std::vector<FilmLayer> layers = film.layers(samples);
+    for (uint32_t i = 0; i < film.light_layers(); ++i) {
+        layers.push_back({settings.light_paths->expressions[i].name, {"R", "G", "B"}, film.light_layer(i, samples)});
+    }
+    return layers;
 }
 
 /// Of trees that are kept on the device for meshes whose vertices move, and of the top level over them.
@@ -206,7 +216,7 @@ void Session::begin_film() {
 Film& Session::fit(std::optional<Film>& film, const RenderSettings& settings) {
     if (film && same_film(*film, settings)) return *film;
     film.reset(); // before the new one, so that both need not fit
-    return film.emplace(queue_, settings.width, settings.height, settings.aovs);
+    return film.emplace(queue_, settings.width, settings.height, settings.aovs, light_layers_of(settings));
 }
 
 Film& Session::current_film() {
@@ -344,6 +354,8 @@ RenderStats Session::stats() {
     return stats;
 }
 
+std::vector<FilmLayer> Session::layers() { return layers_of(current_film(), settings_, history_.samples); }
+
 RenderResult Session::result() {
     RenderResult result = {stats(), picture(), denoised(), layers(), current_film().ids()};
     if ((settings_.aovs & kAovMotion) != 0) {
@@ -364,14 +376,14 @@ float Session::meter(ToneMap tone_map) {
 }
 
 RenderResult Session::look_aside(const Camera& camera, const RenderSettings& settings) {
-    Film film(queue_, settings.width, settings.height, settings.aovs);
+    Film film(queue_, settings.width, settings.height, settings.aovs, light_layers_of(settings));
     begin(camera, settings, settings.samples);
     integrator_->render(0, settings.samples, film.view());
     RenderResult result;
     result.samples = settings.samples;
     result.rays = integrator_->rays();
     result.picture = film.picture(settings.samples, settings.transparent);
-    result.layers = film.layers(settings.samples);
+    result.layers = layers_of(film, settings, settings.samples);
     result.ids = film.ids();
     return result;
 }
@@ -382,7 +394,7 @@ std::vector<RayWork> Session::count_camera_work() {
 
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
     const TracerChoice tracers = tracers_of(settings, on_cuda, !scene.poses.empty());
-    std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs);
+    std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, light_layers_of(settings));
     const bool denoises = settings.denoise != Denoise::None;
     const bool has_loop = can_walk_on_host(tracers, on_cuda);
     if (denoises) {

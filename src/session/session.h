@@ -80,7 +80,8 @@ public:
     /// Reconstructed of the samples in the film; none where the settings do not ask for it, or there are no samples.
     /// Throws Error(DeviceFault).
     std::optional<Image> denoised();
-    std::vector<FilmLayer> layers() { return current_film().layers(history_.samples); }
+    /// Auxiliary layers, then those of light paths.
+    std::vector<FilmLayer> layers();
     /// The picture as a display shows it, times 2^exposure_stops: tone_map_image of picture().
     Rgba8Image display(float exposure_stops, ToneMap tone_map);
     /// Reads two numbers back. The share of hidden backs is counted once for each scene, camera and size that is asked

@@ -1,13 +1,30 @@
 #include "session/write_picture.h"
 
 #include "base/error.h"
+#include "image/false_color.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_image.h"
+#include "image/write_jpeg.h"
 #include "image/write_png.h"
 
 namespace pertev {
 namespace {
+
+/// Bytes of PNG and JPEG that show numbers.
+Rgba8Image draw(const Image& picture, const FalseColors& colors) {
+    FalseColorScale scale = {colors.least, colors.most, colors.unit};
+    if (!(scale.most > 0)) scale = fitting_scale(picture, colors.factor, colors.unit);
+    return draw_false_colors(picture, colors.factor, scale);
+}
+
+/// False where the format shows no colours.
+bool write_false_colors(const std::string& path, const Image& picture, const FalseColors& colors) {
+    const ImageFormat format = image_format_for(path);
+    if (format == ImageFormat::Png) write_png(path, draw(picture, colors));
+    if (format == ImageFormat::Jpeg) write_jpeg(path, draw(picture, colors));
+    return format == ImageFormat::Png || format == ImageFormat::Jpeg;
+}
 
 /// What is shown of a result: reconstructed where that was asked for.
 const Image& beauty_of(const RenderResult& result) { return result.denoised ? *result.denoised : result.picture; }
@@ -66,7 +83,9 @@ WrittenPicture write_picture(std::span<const std::string> paths, const PictureRe
     for (const std::string& path : paths) {
         WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
         try {
-            write_image(path, beauty_of(result), options);
+            const bool is_written =
+                display.false_colors && write_false_colors(path, beauty_of(result), *display.false_colors);
+            if (!is_written) write_image(path, beauty_of(result), options);
         } catch (const Error& error) {
             file.failure = error.what();
         }

@@ -247,7 +247,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     add_triangles(scene, centre, data);
     for (const Light& light : scene.lights) {
         data.punctual.push_back({light.kind, light.position - centre, light.direction, light.intensity, light.cos_inner,
-                                 light.cos_outer, light.range});
+                                 light.cos_outer, light.range, static_cast<uint32_t>(data.punctual.size())});
     }
     if (scene.environment) {
         if (environment == nullptr) {

@@ -62,6 +62,7 @@ struct PunctualLight {
     Vec3 position, direction; // metres; unit, the way the light travels
     Rgb intensity;            // W/sr; Directional: W/m2
     float cos_inner = 1, cos_outer = 0, range = 0;
+    uint32_t number = 0; // in Scene::lights: the table's order is another
 };
 
 /// What a material emits: emission times the texture.

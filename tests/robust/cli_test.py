@@ -20,8 +20,8 @@ FLAGS = {
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --seed --sampler --filter --filter-radius --clamp --device --threads "
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
-              "--turntable --continue",
-    "measure": "--at --normal --spp --max-depth --seed --efficacy --time --allow-path --environment --environment-rotation "
+              "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso",
+    "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --quiet -q --json",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",

@@ -29,6 +29,39 @@ Size size_for(uint64_t samples, uint32_t batch, bool on_cuda) {
     return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
 }
 
+/// ShadeHits with no more code than materials and film need.
+void shade_hits(Queue& queue, const WorkCount& active, const PictureView& picture, const PathSettings& settings,
+                const FilmView& film, const PathQueueView& paths, const PathQueueView& next, const HitQueueView& hits,
+                const ShadowQueueView& shadows, RoundCounts* counts, uint32_t last) {
+    const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave>() {
+        launch(queue, "shade_hits", active,
+               ShadeHits<kKnown, kMayBeFrame, kMayLeave>{picture, settings, film, paths, next, hits, shadows, counts,
+                                                         last});
+    };
+    const bool leaves_light = film.frame.first_bounce.leaves_direct_light();
+    const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
+        if constexpr (kMayBeFrame) {
+            if (leaves_light) return shade_as.operator()<kKnown, true, true>();
+        }
+        shade_as.operator()<kKnown, kMayBeFrame, false>();
+    };
+    switch (picture.scene.known) {
+    case MaterialsKnown::Nothing:
+        if (film.frame.is_there()) {
+            shade.operator()<MaterialsKnown::Nothing, true>();
+        } else {
+            shade.operator()<MaterialsKnown::Nothing, false>();
+        }
+        break;
+    case MaterialsKnown::Diffuse:
+        shade.operator()<MaterialsKnown::Diffuse, true>();
+        break;
+    case MaterialsKnown::PlainDiffuse:
+        shade.operator()<MaterialsKnown::PlainDiffuse, true>();
+        break;
+    }
+}
+
 } // namespace
 
 PathIntegrator::Wavefront::Paths::Paths(Queue& queue, uint32_t capacity)
@@ -64,9 +97,22 @@ ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light, bool tells
             tells_bounce ? shadow_sent.data() : nullptr};
 }
 
-std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda) {
-    constexpr std::size_t of_path = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
+void PathIntegrator::Wavefront::take_layers(Queue& queue) {
+    if (layer_parts.size() > 0) return;
+    for (Paths& set : sets) set.states = {queue, capacity, "paths"};
+    layer_diffuse = {queue, capacity, "shadow rays"};
+    layer_parts = {queue, capacity, "shadow rays"};
+}
+
+LayerQueueView PathIntegrator::Wavefront::layered(uint32_t of_round) const {
+    return {sets[of_round % 2].states.data(), sets[(of_round + 1) % 2].states.data(), layer_diffuse.data(),
+            layer_parts.data()};
+}
+
+std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers) {
+    constexpr std::size_t without = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
                                     sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
+    const std::size_t of_path = without + (has_layers ? LayerQueueView::kBytesOfPath : 0);
     const Size size = size_for(samples, batch, on_cuda);
     return static_cast<std::size_t>(size.wavefronts) * (of_path * size.capacity + 2 * sizeof(RoundCounts)) +
            sizeof(RenderCounts);
@@ -75,7 +121,8 @@ std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bo
 std::size_t PathIntegrator::bytes() const {
     if (wavefronts_.empty()) return 0;
     const uint64_t paths = wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
-    return wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda());
+    const bool has_layers = wavefronts_.front().layer_parts.size() > 0;
+    return wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda(), has_layers);
 }
 
 PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch)
@@ -85,8 +132,28 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     picture_ = picture;
     tracer_ = &tracer;
     rays_ = {};
+    if (layers_ && !layers_on_device_) layers_on_device_.emplace(queue_, *layers_);
     if (trees_of_loop() != nullptr) return;
-    const uint64_t all = uint64_t(picture.camera.width) * picture.camera.height * samples;
+    take_wavefronts(samples);
+    if (!layers_) return;
+    for (Wavefront& wavefront : wavefronts_) wavefront.take_layers(queue_);
+}
+
+void PathIntegrator::set_layers(std::shared_ptr<const LightPathLayers> layers) {
+    if (layers == layers_) return;
+    layers_on_device_.reset();
+    layers_ = std::move(layers);
+}
+
+/// None for a film that has no layers.
+LightPathView PathIntegrator::layers_for(const FilmView& film) const {
+    if (!layers_on_device_) return {};
+    PERTEV_CHECK(!film.frame.is_there() && film.channels == film_channel_count(film.aovs) + 3 * layers_->count());
+    return layers_on_device_->view(film.aovs);
+}
+
+void PathIntegrator::take_wavefronts(uint32_t samples) {
+    const uint64_t all = uint64_t(picture_.camera.width) * picture_.camera.height * samples;
     const Size size = size_for(all, batch_, queue_.is_cuda());
     const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts);
     if (are_enough && wavefronts_.front().capacity >= size.capacity) return;
@@ -100,7 +167,7 @@ const HostTrees* PathIntegrator::trees_of_loop() const {
 }
 
 void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(!film.frame.is_there() || count == 1);
+    PERTEV_CHECK(!film.frame.is_there() || (count == 1 && !is_meter_));
     if (const HostTrees* trees = trees_of_loop()) {
         render_loop(first, count, film, *trees);
     } else {
@@ -121,11 +188,12 @@ PathSettings PathIntegrator::settings_for(const FilmView& film) const {
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
     const PathSettings settings = settings_for(film);
+    const LightPathView layers = layers_for(film);
     std::atomic<uint64_t> bounces{0}, shadows{0};
     parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
         if (abandon_ != nullptr && *abandon_) return;
         RayCounts counts;
-        render_pixels(picture_, settings, trees, film, {begin, end, first, count}, counts);
+        render_pixels(picture_, settings, trees, film, layers, is_meter_, {begin, end, first, count}, counts);
         bounces += counts.bounce;
         shadows += counts.shadow;
     });
@@ -135,7 +203,7 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
-    const Work work = {first, uint64_t(picture_.camera.width) * picture_.camera.height * count, film,
+    const Work work = {first, uint64_t(picture_.camera.width) * picture_.camera.height * count, film, layers_for(film),
                        settings_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
@@ -187,6 +255,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const bool splits_light = work.film.frame.splits_light();
     const PathQueueView paths = w.paths(w.round, splits_light), next = w.paths(w.round + 1, splits_light);
     const ShadowQueueView shadows = w.shadows(splits_light, work.film.frame.first_bounce.tells_bounce());
+    const LayerQueueView layered = w.layered(w.round);
     const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
     RoundCounts* const counts = w.counts.data() + w.round % 2;
     // Once all paths have begun, a round has no more of them than the one before.
@@ -209,32 +278,12 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
                                {hits.places + last, hits.instances + last, -1});
         }
         const WorkCount active = {most, &counts->active};
-        const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave>() {
+        if (work.layers.is_there() || is_meter_) {
             launch(queue_, "shade_hits", active,
-                   ShadeHits<kKnown, kMayBeFrame, kMayLeave>{picture_, work.settings, work.film, paths, next, hits,
-                                                             shadows, counts, last});
-        };
-        const bool leaves_light = work.film.frame.first_bounce.leaves_direct_light();
-        const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
-            if constexpr (kMayBeFrame) {
-                if (leaves_light) return shade_as.operator()<kKnown, true, true>();
-            }
-            shade_as.operator()<kKnown, kMayBeFrame, false>();
-        };
-        switch (picture_.scene.known) {
-        case MaterialsKnown::Nothing:
-            if (work.film.frame.is_there()) {
-                shade.operator()<MaterialsKnown::Nothing, true>();
-            } else {
-                shade.operator()<MaterialsKnown::Nothing, false>();
-            }
-            break;
-        case MaterialsKnown::Diffuse:
-            shade.operator()<MaterialsKnown::Diffuse, true>();
-            break;
-        case MaterialsKnown::PlainDiffuse:
-            shade.operator()<MaterialsKnown::PlainDiffuse, true>();
-            break;
+                   ShadeHitsToLayers{picture_, work.settings, work.film, work.layers, is_meter_, paths, next, layered,
+                                     hits, shadows, counts, last});
+        } else {
+            shade_hits(queue_, active, picture_, work.settings, work.film, paths, next, hits, shadows, counts, last);
         }
     }
     queue_.let_wait(w.light_stream, w.path_stream);
@@ -242,6 +291,9 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const WorkCount asked = {most, &counts->shadows};
     tracer_->find_occlusions(shadows.query(), asked, {nullptr, shadows.keys}); // a ray's key has been used by then
     launch(queue_, "add_light", asked, AddLight{shadows, next, work.film.frame.first_bounce});
+    if (work.layers.is_there()) {
+        launch(queue_, "add_light_to_layers", asked, AddLightToLayers{shadows, work.film, work.layers, layered});
+    }
     launch(queue_, "add_to_film", {most, &counts->ended}, AddToFilm{work.film, next, last});
     ++w.round;
 }

@@ -13,13 +13,17 @@
 // of paths is refilled as they end.
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "device/buffer.h"
 #include "device/readback.h"
 #include "integrators/integrator.h"
+#include "integrators/path/layer_stages.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_settings.h"
+#include "render/light_paths/light_paths_on_device.h"
 
 namespace pertev {
 
@@ -30,7 +34,7 @@ public:
     PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch);
 
     /// Bytes that begin() takes for so many samples of all pixels together, by the wavefront.
-    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda);
+    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
@@ -41,6 +45,10 @@ public:
 
     /// Counts from the next begin().
     void set_settings(const PathSettings& settings) { settings_ = settings; }
+    /// Likewise. Light goes to these layers of the film too; null: there are none. A film of render() has as many.
+    void set_layers(std::shared_ptr<const LightPathLayers> layers);
+    /// Likewise. The picture is that of the irradiance of what the camera sees (shade_hit_to_layers).
+    void set_meter(bool is_meter) { is_meter_ = is_meter; }
 
 private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
@@ -52,10 +60,13 @@ private:
         uint32_t first_sample;
         uint64_t samples; // of pixels
         FilmView film;
+        LightPathView layers;
         PathSettings settings;
     };
     PathSettings settings_for(const FilmView& film) const;
     struct Wavefront;
+    void take_wavefronts(uint32_t samples);
+    LightPathView layers_for(const FilmView& film) const;
     void give_rounds(int going, const Work& work);
     void give_round(Wavefront& wavefront, const Work& work);
 
@@ -76,12 +87,16 @@ private:
         void split_light(Queue& queue);
         PathQueueView paths(uint32_t of_round, bool splits_light) const;
         ShadowQueueView shadows(bool splits_light, bool tells_bounce) const;
+        /// Takes what layers need; it is kept.
+        void take_layers(Queue& queue);
+        LayerQueueView layered(uint32_t of_round) const;
 
         struct Paths {
             Paths(Queue& queue, uint32_t capacity);
             Buffer<Ray> rays;
             Buffer<Float4> throughput, radiance;
             Buffer<Float4> diffuse; // where frames split light
+            Buffer<Uint2> states;   // where there are layers
         };
         uint32_t capacity;
         Paths sets[2];
@@ -91,6 +106,8 @@ private:
         Buffer<Float4> contribution, hit_places;
         Buffer<Float4> shadow_diffuse; // where frames split light
         Buffer<Float4> shadow_sent;    // where frames tell their first bounce
+        Buffer<Float4> layer_diffuse;  // where there are layers
+        Buffer<Uint4> layer_parts;     // likewise
         Buffer<uint32_t> hit_instances;
         Buffer<RoundCounts> counts; // of two rounds in turns
         Readback<RoundCounts> seen; // of the round given last, at its start
@@ -102,6 +119,9 @@ private:
     };
     std::vector<Wavefront> wavefronts_;
     Buffer<RenderCounts> render_counts_;
+    bool is_meter_ = false;
+    std::shared_ptr<const LightPathLayers> layers_;
+    std::optional<LightPathsOnDevice> layers_on_device_; // those of `layers_`, from begin() on
 };
 
 } // namespace pertev

@@ -1,7 +1,9 @@
 #include "integrators/path/path_loop.h"
 
+#include <type_traits>
+
 #include "integrators/path/generate_path.h"
-#include "integrators/path/shade_hit.h"
+#include "integrators/path/shade_to_layers.h"
 #include "render/find_hits.h"
 #include "render/tiled_pixel.h"
 
@@ -10,14 +12,31 @@ namespace {
 
 constexpr uint32_t kPaths = 128; // side by side: 30 KB, of a cache of 1 MB that the trees want too
 
+/// Of each path, where it stands in the automaton of light-path expressions; for those that ask for layers.
+struct LayersOfGroup {
+    const LightPathView& view; // may be none
+    bool is_meter;
+    LightPathState states[kPaths];
+    LayerShadow shadows[kPaths + 1];
+};
+struct NoLayers {};
+
+/// `Layers`: LayersOfGroup or NoLayers.
+template <class Layers>
 class PathGroup {
+    static constexpr bool kHasLayers = std::is_same_v<Layers, LayersOfGroup>;
+
 public:
-    PathGroup(const PictureView& picture, const PathSettings& settings, const HostTrees& trees, const FilmView& film)
-        : picture_(picture), settings_(settings), trees_(trees), film_(film) {}
+    PathGroup(const PictureView& picture, const PathSettings& settings, const HostTrees& trees, const FilmView& film,
+              const Layers& layers)
+        : picture_(picture), settings_(settings), trees_(trees), film_(film), layers_(layers) {}
 
     bool is_full() const { return count_ == kPaths; }
     bool is_empty() const { return count_ == 0; }
-    void add(const PathState& path) { paths_[count_++] = path; }
+    void add(const PathState& path) {
+        if constexpr (kHasLayers) layers_.states[count_] = layers_.view.begin();
+        paths_[count_++] = path;
+    }
 
     /// Takes each path to its next vertex. Those that have been added since the last call start at the camera.
     void advance(RayCounts& counts) {
@@ -29,14 +48,7 @@ public:
             ask_for_vertices(i + 8);
             Asked& asked = asked_[shadows];
             const uint32_t key = key_of(paths_[i], true);
-            bool wants_shadow = false;
-            LightSplit split;
-            if (splits_light_) split.take_out(paths_[i], paths_[i].depth > 0 ? diffuse_[i] : Float4{0, 0, 0, 0});
-            goes_on_[i] = shade_hit(picture_, settings_, film_, paths_[i], hits_[i], asked.ray, wants_shadow);
-            if (splits_light_) {
-                split.put_back(paths_[i]);
-                diffuse_[i] = split.diffuse;
-            }
+            const bool wants_shadow = shade(i, shadows);
             asked.start = {hits_[i].instance, hits_[i].primitive};
             asked.key = key, asked.path = i;
             shadows += wants_shadow ? 1 : 0;
@@ -53,6 +65,25 @@ private:
         TriangleId start;
         uint32_t key, path;
     };
+
+    /// Takes path i over what it met; true where it asks for the shadow ray at place `shadow`.
+    bool shade(uint32_t i, uint32_t shadow) {
+        bool wants_shadow = false;
+        if constexpr (kHasLayers) {
+            goes_on_[i] =
+                shade_hit_to_layers(picture_, settings_, film_, layers_.view, layers_.is_meter, layers_.states[i],
+                                    paths_[i], hits_[i], asked_[shadow].ray, wants_shadow, layers_.shadows[shadow]);
+            return wants_shadow;
+        }
+        LightSplit split;
+        if (splits_light_) split.take_out(paths_[i], paths_[i].depth > 0 ? diffuse_[i] : Float4{0, 0, 0, 0});
+        goes_on_[i] = shade_hit(picture_, settings_, film_, paths_[i], hits_[i], asked_[shadow].ray, wants_shadow);
+        if (splits_light_) {
+            split.put_back(paths_[i]);
+            diffuse_[i] = split.diffuse;
+        }
+        return wants_shadow;
+    }
 
     /// Of the path's ray at its depth, for the coins of blended surfaces; nothing else asks for it.
     uint32_t key_of(const PathState& path, bool is_shadow) const {
@@ -113,6 +144,11 @@ private:
             if (occluded_[i]) continue;
             const uint32_t path = asked_[i].path;
             paths_[path].radiance += asked_[i].ray.contribution;
+            if constexpr (kHasLayers) {
+                if (layers_.view.is_there())
+                    add_to_layers(layers_.view, film_, paths_[path].pixel, layers_.shadows[i],
+                                  asked_[i].ray.contribution);
+            }
             if (tells_bounce_) film_.frame.first_bounce.add_sent(paths_[path].pixel, asked_[i].ray.sent);
             if (splits_light_) {
                 const Rgb add = asked_[i].ray.diffuse;
@@ -130,6 +166,7 @@ private:
             } else if (going_on_++ != i) {
                 paths_[going_on_ - 1] = paths_[i];
                 if (splits_light_) diffuse_[going_on_ - 1] = diffuse_[i];
+                if constexpr (kHasLayers) layers_.states[going_on_ - 1] = layers_.states[i];
             }
         }
         count_ = going_on_;
@@ -157,13 +194,13 @@ private:
     bool goes_on_[kPaths];
     Asked asked_[kPaths + 1]; // one more: written before it is known whether it is wanted
     bool occluded_[kPaths];
+    [[no_unique_address]] Layers layers_;
 };
 
-} // namespace
-
-void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
-                   const FilmView& film, const PixelSamples& work, RayCounts& counts) {
-    PathGroup group(picture, settings, trees, film);
+template <class Layers>
+void render_group(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+                  const FilmView& film, const Layers& layers, const PixelSamples& work, RayCounts& counts) {
+    PathGroup<Layers> group(picture, settings, trees, film, layers);
     const uint32_t width = picture.camera.width, height = picture.camera.height;
     for (uint64_t i = work.begin; i < work.end; ++i) {
         const uint32_t pixel = tiled_pixel(static_cast<uint32_t>(i), width, height);
@@ -173,6 +210,15 @@ void render_pixels(const PictureView& picture, const PathSettings& settings, con
         }
     }
     while (!group.is_empty()) group.advance(counts);
+}
+
+} // namespace
+
+void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+                   const FilmView& film, const LightPathView& layers, bool is_meter, const PixelSamples& work,
+                   RayCounts& counts) {
+    if (!layers.is_there() && !is_meter) return render_group(picture, settings, trees, film, NoLayers{}, work, counts);
+    render_group(picture, settings, trees, film, LayersOfGroup{layers, is_meter, {}, {}}, work, counts);
 }
 
 } // namespace pertev

@@ -6,6 +6,7 @@
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
 #include "render/film_view.h"
+#include "render/light_paths/light_path_view.h"
 #include "render/picture_view.h"
 #include "trace/scene_trees.h"
 
@@ -17,8 +18,10 @@ struct PixelSamples {
     uint32_t first_sample, samples;
 };
 
-/// Adds the samples to the film. What was traced beside camera rays is added to `counts`.
+/// Adds the samples to the film, and to those layers that there are. What was traced beside camera rays is added to
+/// `counts`. `is_meter`: shade_hit_to_layers'.
 void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
-                   const FilmView& film, const PixelSamples& work, RayCounts& counts);
+                   const FilmView& film, const LightPathView& layers, bool is_meter, const PixelSamples& work,
+                   RayCounts& counts);
 
 } // namespace pertev

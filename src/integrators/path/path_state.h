@@ -63,10 +63,10 @@ struct LightSplit {
 ///   camera         place in the pixel, then the light of vertex 0
 ///   lens           place on the lens, time, one kept
 ///   scatter, of v  direction from vertex v, then the light of vertex v + 1: both decide what v gathers over one bounce
-///   choices, of v  lobe, roulette, two kept for lobes
+///   choices, of v  lobe, roulette, class of the scattering in light-path expressions, one kept for lobes
 inline constexpr uint32_t kGroupFirstVertex = kCameraGroups;
 enum VertexGroup : uint32_t { kGroupScatter, kGroupChoices, kGroupsPerVertex };
-inline constexpr uint32_t kNumberLobe = 0, kNumberRoulette = 1;
+inline constexpr uint32_t kNumberLobe = 0, kNumberRoulette = 1, kNumberLightPath = 2;
 
 HD inline uint32_t vertex_group(const PathState& path, VertexGroup group) {
     return kGroupFirstVertex + path.depth * kGroupsPerVertex + group;

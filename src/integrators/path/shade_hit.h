@@ -8,6 +8,7 @@
 
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
+#include "integrators/path/vertex_events.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
 #include "render/picture_view.h"
@@ -52,9 +53,10 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
 
 /// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
 /// `tells_bounce`: shadow.sent is, of a second vertex.
-template <MaterialsKnown kKnown>
+template <MaterialsKnown kKnown, class Events = NoEvents>
 HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
-                             const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow) {
+                             const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow,
+                             Events&& events = Events()) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = sample_key(settings, path.pixel, path.sample);
@@ -82,6 +84,7 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
         shadow.diffuse = share * shadow.contribution;
     }
     if (tells_bounce) shadow.sent = surface.diffuse_share(wo, light.wi) * shadow.contribution;
+    events.asks_for_light(surface, wo, light.wi);
     const Ray ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
     shadow.origin = ray.origin;
     shadow.direction = ray.direction;
@@ -101,7 +104,8 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
 }
 
 /// Draws where the path goes on. False when it ends here.
-HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo) {
+template <class Events>
+HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo, Events& events) {
     const SampleKey key = sample_key(settings, path.pixel, path.sample);
     const float lobe = surface.bsdf.draws_lobe()
                            ? sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe)
@@ -110,6 +114,7 @@ HD inline bool scatter(const PathSettings& settings, PathState& path, const Surf
     const BsdfSample sample = surface.sample(wo, lobe, u);
     if (!(sample.pdf > 0)) return false;
     const Vec3 wi = sample.wi;
+    events.goes_on(surface, wo, sample);
 
     if (path.depth == 0) path.is_first_diffuse = sample.lobe_class == LobeClass::Diffuse;
     path.throughput = path.throughput * sample.weight;
@@ -172,10 +177,12 @@ HD inline void store_no_hit(const NoisyFrameView& frame, uint32_t pixel) {
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
 /// Where `kMayBeFrame` is false `film` is none of a noisy frame, and where `kMayLeave` is, none that leaves light to
-/// ReSTIR: code for these would cost others registers.
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true, bool kMayLeave = true>
+/// ReSTIR: code for these would cost others registers. `events`: what is to be told of the vertex (vertex_events.h).
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true, bool kMayLeave = true,
+          class Events = NoEvents>
 HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
-                         PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow) {
+                         PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow,
+                         Events&& events = Events()) {
     const SceneView& scene = picture.scene;
     const bool is_frame = kMayBeFrame && film.frame.is_there();
     const bool splits_light = kKnown == MaterialsKnown::Nothing && is_frame && film.frame.splits_light();
@@ -204,7 +211,8 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
         if (is_frame && path.depth == 0) store_emission(film.frame, path);
         return false;
     }
-    const Surface surface = make_surface<kKnown>(scene, hit, path.direction);
+    Surface surface = make_surface<kKnown>(scene, hit, path.direction);
+    events.meets(surface, path.depth);
     if (is_frame) {
         if (path.depth == 0) store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
         if (path.depth == 1) film.frame.gloss[path.pixel].w = hit.t;
@@ -231,11 +239,11 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     const bool is_bounce = tells_bounce && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
     if (is_bounce) begin_bounce(left, path, hit, true);
     wants_shadow = !(leaves_light && path.depth == 0) &&
-                   ask_for_light<kKnown>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow);
+                   ask_for_light<kKnown>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
     if (tells_bounce && wants_shadow && !is_bounce) {
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }
-    const bool goes_on = scatter(settings, path, surface, wo);
+    const bool goes_on = scatter(settings, path, surface, wo, events);
     if (is_bounce && goes_on && path.bsdf_pdf > 0) { // by a delta lobe nothing can be shared
         const Rgb share = surface.diffuse_share(wo, path.direction);
         left.onwards[path.pixel] = {share.r, share.g, share.b, 0};

@@ -1,0 +1,7 @@
+#include "device/launch_body.h"
+#include "integrators/path/layer_stages.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const ShadeHitsToLayers&);
+template void launch(Queue&, const char*, WorkCount, const AddLightToLayers&);
+} // namespace pertev

@@ -1,0 +1,78 @@
+#pragma once
+
+// The stages of a wavefront whose light goes to layers of light-path expressions too, or whose picture is one of
+// irradiance: in place of ShadeHits, and after AddLight.
+
+#include "integrators/path/path_queues.h"
+#include "integrators/path/shade_to_layers.h"
+
+namespace pertev {
+
+/// Beside the queues of paths and shadow rays.
+struct LayerQueueView {
+    Uint2 *states, *next_states; // LightPathState, beside the arrays of paths that a round reads and writes
+    Float4* shadow_diffuse;      // LayerShadow's, bits of the pixel
+    Uint4* shadow_parts;         // its state, column and light
+
+    static constexpr std::size_t kBytesOfPath = 2 * sizeof(Uint2) + sizeof(Float4) + sizeof(Uint4);
+};
+
+struct ShadeHitsToLayers {
+    PictureView picture;
+    PathSettings settings;
+    FilmView film;
+    LightPathView layers; // may be none
+    bool is_meter;        // shade_hit_to_layers'
+    PathQueueView paths, next;
+    LayerQueueView layered;
+    HitQueueView hits;
+    ShadowQueueView shadows;
+    RoundCounts* round;
+    uint32_t last; // ShadeHits'
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
+        PathState path = paths.load(place);
+        const Hit hit = hits.load(place);
+        const uint32_t key = path_key(path, settings.seed, true);
+        LightPathState state = layers.begin();
+        if (layers.is_there() && path.depth > 0) state = {layered.states[place].x, layered.states[place].y};
+        ShadowRay shadow;
+        LayerShadow parts;
+        bool wants_shadow = false;
+        const bool goes_on = shade_hit_to_layers(picture, settings, film, layers, is_meter, state, path, hit, shadow,
+                                                 wants_shadow, parts);
+        uint32_t to = 0;
+        if (goes_on) {
+            to = atomic_add(&round->next, 1u);
+            next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
+            if (layers.is_there()) layered.next_states[to] = {state.red_green, state.blue};
+        } else {
+            to = last - atomic_add(&round->ended, 1u);
+            next.store_ended(to, path);
+        }
+        if (!wants_shadow) return;
+        const uint32_t ray = atomic_add(&round->shadows, 1u);
+        shadows.store<false>(ray, shadow, to, path.pixel, {hit.instance, hit.primitive}, key);
+        if (!layers.is_there()) return;
+        layered.shadow_diffuse[ray] = {parts.diffuse.r, parts.diffuse.g, parts.diffuse.b, float_of(path.pixel)};
+        layered.shadow_parts[ray] = {parts.state.red_green, parts.state.blue, parts.column, parts.light};
+    }
+};
+
+/// Light whose shadow ray met nothing.
+struct AddLightToLayers {
+    ShadowQueueView shadows; // AddLight's
+    FilmView film;
+    LightPathView layers;
+    LayerQueueView layered;
+
+    HD void operator()(uint32_t i) const {
+        if (shadows.keys[i] != kNoHit) return;
+        const Float4 c = shadows.contribution[i], d = layered.shadow_diffuse[i];
+        const Uint4 p = layered.shadow_parts[i];
+        add_to_layers(layers, film, bits_of(d.w), {{d.x, d.y, d.z}, {p.x, p.y}, p.z, p.w}, {c.x, c.y, c.z});
+    }
+};
+
+} // namespace pertev

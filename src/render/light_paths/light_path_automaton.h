@@ -1,0 +1,55 @@
+#pragma once
+
+// All expressions of a render as one deterministic automaton, which reads a path from the eye and says of each place
+// where light comes in which layers take it. One, and not one each: a path then has one state, whatever the number of
+// layers.
+//
+// Source: Rabin, Scott, "Finite Automata and Their Decision Problems", IBM Journal 3(2), 1959 (subsets of states);
+// Moore, "Gedanken-Experiments on Sequential Machines", 1956 (the least automaton).
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/light_paths/light_path_expression.h"
+
+namespace pertev {
+
+/// What names and filters have to do with each other in a scene. A tag stands for all things that the same filters let
+/// through: [tag][filter of all expressions, one expression's after the other's]. At least one tag each.
+struct LightPathTags {
+    std::vector<std::vector<bool>> surfaces, lights;
+};
+
+/// The column of a scattering among the six of its surface's tag.
+HD inline constexpr uint32_t scattering_column(LobeClass lobe_class, bool is_transmission) {
+    return 2 * static_cast<uint32_t>(lobe_class) + (is_transmission ? 1 : 0);
+}
+inline constexpr uint32_t kScatteringColumns = 6;
+
+struct LightPathAutomaton {
+    static constexpr uint16_t kNothing = 0; // a state from which no layer takes any light
+
+    uint16_t start = kNothing;     // after the eye
+    uint32_t column_count = 0;     // scatterings that differ to some expression
+    std::vector<uint16_t> columns; // [surface tag * kScatteringColumns + scattering_column]
+    std::vector<uint16_t> next;    // [state * column_count + column]
+    uint32_t light_count = 0;      // lights that differ
+    std::vector<uint16_t> lights;  // [light tag], of light_count
+    std::vector<uint32_t> layers;  // [state * light_count + light]: bits
+
+    uint32_t state_count() const { return static_cast<uint32_t>(layers.size() / light_count); }
+    uint16_t next_state(uint16_t state, uint32_t tag, LobeClass lobe_class, bool is_transmission) const {
+        const uint16_t column = columns[tag * kScatteringColumns + scattering_column(lobe_class, is_transmission)];
+        return next[state * column_count + column];
+    }
+    uint32_t layers_of(uint16_t state, uint32_t tag) const { return layers[state * light_count + lights[tag]]; }
+};
+
+/// States of an automaton: their tables stay small.
+inline constexpr uint32_t kMaxLightPathStates = 16384;
+
+/// Layer i is that of expression i, of kMaxLightPathLayers at most. Throws Error(OverLimit) past kMaxLightPathStates.
+LightPathAutomaton make_automaton(std::span<const LightPathExpression> expressions, const LightPathTags& tags);
+
+} // namespace pertev

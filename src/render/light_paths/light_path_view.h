@@ -1,0 +1,90 @@
+#pragma once
+
+// Layers of light-path expressions as device code sees them: tables of the automaton, and where a path stands in it.
+//
+// A surface may scatter by diffuse and glossy lobes at once. Light of a shadow ray is split between the two by their
+// shares. A path that goes on cannot be two; each of its colours is taken for one of them by chance, with its share for
+// the probability: so a layer's mean is right, every contribution of a path is in one class to the last bit, and layers
+// that share out all paths add up to the picture sample by sample. One random number serves the three colours.
+
+#include <cstdint>
+
+#include "math/rgb.h"
+#include "render/accept_hit.h"
+#include "render/film_view.h"
+#include "render/light_paths/light_path_automaton.h"
+#include "render/scene_view.h"
+
+namespace pertev {
+
+/// Of each colour of a path, what the automaton has read since the eye.
+struct LightPathState {
+    uint32_t red_green = 0, blue = 0; // 16 bits each
+
+    HD uint32_t of(int colour) const {
+        return colour == 2 ? blue : colour == 1 ? red_green >> 16 : red_green & 0xffffu;
+    }
+    HD bool is_nothing() const { return (red_green | blue) == LightPathAutomaton::kNothing; }
+};
+HD inline LightPathState light_path_state(uint32_t red, uint32_t green, uint32_t blue) {
+    return {red | green << 16, blue};
+}
+
+struct LightPathView {
+    const uint16_t* columns = nullptr; // LightPathAutomaton's tables; null: there are no layers
+    const uint16_t* next = nullptr;
+    const uint32_t* layers = nullptr;
+    const uint16_t* surface_tags = nullptr; // LightPathLayers'
+    const uint16_t* instance_lights = nullptr;
+    const uint16_t* scene_lights = nullptr;
+    uint32_t column_count = 0, light_count = 0;
+    uint32_t start = 0, environment_light = 0;
+    uint32_t first_channel = 0; // of the film, of layer 0
+
+    HD bool is_there() const { return columns != nullptr; }
+    HD LightPathState begin() const { return light_path_state(start, start, start); }
+    /// Columns of an instance's scatterings, scattering_column() apart.
+    HD uint32_t first_column(uint32_t instance) const { return surface_tags[instance] * kScatteringColumns; }
+    HD uint32_t after(uint32_t state, uint32_t column) const { return next[state * column_count + columns[column]]; }
+    HD LightPathState after(LightPathState state, uint32_t column) const {
+        return light_path_state(after(state.of(0), column), after(state.of(1), column), after(state.of(2), column));
+    }
+
+    /// Of what a path or a shadow ray found: a triangle, or (kNoLight, a punctual light), or neither.
+    HD uint32_t light_of(const LightSetView& lights, TriangleId target) const {
+        if (target.instance != kNoLight) return instance_lights[target.instance];
+        return target.primitive != kNoLight ? scene_lights[lights.punctual[target.primitive].number]
+                                            : environment_light;
+    }
+
+    /// Light of `light` that a path in `state` found goes to its layers. `light` is light_of's.
+    HD void add(const FilmView& film, uint32_t pixel, LightPathState state, uint32_t light, Rgb radiance) const {
+        if (!(is_valid_sample(radiance.r) && is_valid_sample(radiance.g) && is_valid_sample(radiance.b))) return;
+        const float colours[] = {radiance.r, radiance.g, radiance.b};
+        for (int colour = 0; colour < 3; ++colour) {
+            if (!(colours[colour] != 0)) continue;
+            uint32_t bits = layers[state.of(colour) * light_count + light];
+            for (uint32_t layer = 0; bits != 0; ++layer, bits >>= 1) {
+                if ((bits & 1u) == 0) continue;
+                add_channel(film, pixel, first_channel + 3 * layer + static_cast<uint32_t>(colour), colours[colour]);
+            }
+        }
+    }
+};
+
+/// Where a path of `state` stands after a scattering at a surface whose columns begin at `column`: by a lobe of
+/// `lobe_class`, or, where that is not Specular, by diffuse lobes with the probability `diffuse` (each colour's) and
+/// glossy ones else. `u` in (0, 1).
+HD inline LightPathState after_scattering(const LightPathView& view, LightPathState state, uint32_t column,
+                                          bool is_specular, bool is_transmission, Rgb diffuse, float u) {
+    const auto column_of = [&](LobeClass lobe_class) {
+        return column + scattering_column(lobe_class, is_transmission);
+    };
+    if (is_specular) return view.after(state, column_of(LobeClass::Specular));
+    const auto column_by = [&](float share) { return column_of(u < share ? LobeClass::Diffuse : LobeClass::Glossy); };
+    return light_path_state(view.after(state.of(0), column_by(diffuse.r)),
+                            view.after(state.of(1), column_by(diffuse.g)),
+                            view.after(state.of(2), column_by(diffuse.b)));
+}
+
+} // namespace pertev

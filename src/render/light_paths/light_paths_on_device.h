@@ -1,0 +1,27 @@
+#pragma once
+
+// LightPathLayers in the device's memory.
+
+#include "device/buffer.h"
+#include "render/light_paths/light_path_layers.h"
+#include "render/light_paths/light_path_view.h"
+
+namespace pertev {
+
+class LightPathsOnDevice {
+public:
+    /// `queue` outlives it. Throws Error(OutOfMemory).
+    LightPathsOnDevice(Queue& queue, const LightPathLayers& layers);
+
+    static std::size_t predicted_bytes(const LightPathLayers& layers);
+
+    /// For a film of the auxiliary groups `aovs`.
+    LightPathView view(uint32_t aovs) const;
+
+private:
+    Buffer<uint16_t> columns_, next_, surface_tags_, instance_lights_, scene_lights_;
+    Buffer<uint32_t> layers_;
+    LightPathView view_;
+};
+
+} // namespace pertev

@@ -1,0 +1,25 @@
+#include "session/photometry.h"
+
+#include <filesystem>
+
+#include "math/portable_math.h"
+
+namespace pertev {
+
+double lumens_per_watt(const std::string& scene, double asked_for) {
+    if (asked_for > 0) return asked_for;
+    std::string extension = std::filesystem::path(scene).extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension == ".gltf" || extension == ".glb" ? 1 : kLumensPerWatt;
+}
+
+double exposure_value(const PhysicalExposure& exposure) {
+    const double squared = exposure.f_number * exposure.f_number;
+    return static_cast<double>(log2(static_cast<float>(squared / exposure.shutter_s * 100 / exposure.iso)));
+}
+
+float exposure_stops(const PhysicalExposure& exposure, double lumens_per_watt) {
+    return log2(static_cast<float>(lumens_per_watt / 1.2)) - static_cast<float>(exposure_value(exposure));
+}
+
+} // namespace pertev

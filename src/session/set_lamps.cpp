@@ -1,0 +1,188 @@
+#include "session/set_lamps.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "scene/names.h"
+#include "session/photometry.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kPiDouble = 3.141592653589793;
+
+constexpr std::pair<std::string_view, LampUnit> kUnits[] = {{"nits", LampUnit::Nit}, // the longest first
+                                                            {"lm", LampUnit::Lumen},
+                                                            {"cd", LampUnit::Candela},
+                                                            {"lx", LampUnit::Lux},
+                                                            {"W", LampUnit::Watt}};
+
+[[noreturn]] void refuse(const LampStrength& lamp, const std::string& why) {
+    throw Error(ErrorCode::BadInput, fmt::format("--lamp {}: {}", lamp.text, why));
+}
+
+double luminance_of(Rgb c) {
+    return 0.2126 * static_cast<double>(c.r) + 0.7152 * static_cast<double>(c.g) + 0.0722 * static_cast<double>(c.b);
+}
+
+/// `colour` times what gives it this luminance; a black one becomes white.
+Rgb with_luminance(const LampStrength& lamp, Rgb colour, double luminance) {
+    if (is_black(colour)) colour = {1, 1, 1};
+    const double factor = luminance / luminance_of(colour);
+    const Rgb result = static_cast<float>(factor) * colour;
+    if (!is_finite(result) || max_component(result) > 0x1p40f) refuse(lamp, "more light than there are numbers for");
+    return result;
+}
+
+/// Lumens of an amount of flux.
+double lumens(const LampStrength& lamp) { return lamp.value * (lamp.unit == LampUnit::Watt ? kLumensPerWatt : 1); }
+
+void set_light(const LampStrength& lamp, double lumens_per_watt, Light& light) {
+    const auto set = [&](double photometric) {
+        light.intensity = with_luminance(lamp, light.intensity, photometric / lumens_per_watt);
+    };
+    const bool is_far = light.kind == LightKind::Directional;
+    switch (lamp.unit) {
+    case LampUnit::Watt:
+    case LampUnit::Lumen: {
+        if (is_far) break;
+        // The cone's edge is the square of a ramp in the cosine (shading/light_set.h), a third of its width.
+        const double inner = static_cast<double>(light.cos_inner);
+        const double ramp = std::max(inner - static_cast<double>(light.cos_outer), 0.001);
+        const double solid_angle =
+            light.kind == LightKind::Point ? 4 * kPiDouble : 2 * kPiDouble * (1 - inner + ramp / 3);
+        return set(lumens(lamp) / solid_angle);
+    }
+    case LampUnit::Candela:
+        if (is_far) break;
+        return set(lamp.value);
+    case LampUnit::Lux:
+        if (!is_far) break;
+        return set(lamp.value);
+    case LampUnit::Nit:
+        break;
+    }
+    refuse(lamp, fmt::format("{} is a {}, which has {}", light.name.empty() ? "the light" : "'" + light.name + "'",
+                             is_far                          ? "directional light"
+                             : light.kind == LightKind::Spot ? "spot light"
+                                                             : "point light",
+                             is_far ? "lx" : "W, lm or cd"));
+}
+
+struct SurfaceSize {
+    double area = 0; // m2
+    bool is_flat = true;
+};
+
+SurfaceSize size_of(const Scene& scene, const Instance& instance) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    SurfaceSize size;
+    double sum[3] = {};
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const auto corner = [&](std::size_t k) {
+            return transform_point(instance.world_from_local, mesh.positions[mesh.indices[i + k]]);
+        };
+        const Vec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
+        const double x[] = {static_cast<double>(ab.x), static_cast<double>(ab.y), static_cast<double>(ab.z)};
+        const double y[] = {static_cast<double>(ac.x), static_cast<double>(ac.y), static_cast<double>(ac.z)};
+        const double normal[] = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+        size.area += 0.5 * std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        for (int k = 0; k < 3; ++k) sum[k] += 0.5 * normal[k];
+    }
+    // Area vectors of one direction add up to all of the area.
+    size.is_flat = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) > 0.9999 * size.area;
+    return size;
+}
+
+/// The material of an instance, its own.
+Material& own_material(Scene& scene, std::size_t index) {
+    const uint32_t material = scene.instances[index].material;
+    const auto is_of_it = [&](const Instance& other) { return other.material == material; };
+    if (std::ranges::count_if(scene.instances, is_of_it) > 1) {
+        scene.materials.push_back(scene.materials[material]);
+        scene.instances[index].material = static_cast<uint32_t>(scene.materials.size() - 1);
+    }
+    return scene.materials[scene.instances[index].material];
+}
+
+void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene, std::size_t index) {
+    const Instance& instance = scene.instances[index];
+    const Material& before = scene.materials[instance.material];
+    const bool has_texture = before.emission_texture.image != kNoImage;
+    double nits = lamp.value;
+    if (lamp.unit == LampUnit::Lux)
+        refuse(lamp, "a lamp with an area has W, lm, cd or nits; lx are of directional lights");
+    if (lamp.unit != LampUnit::Nit) {
+        const SurfaceSize size = size_of(scene, instance);
+        if (has_texture) refuse(lamp, "its emission has a texture; nits say what that is multiplied by");
+        if (!(size.area > 0)) refuse(lamp, "its object has no area");
+        if (lamp.unit == LampUnit::Candela && !size.is_flat) {
+            refuse(lamp, "its object is not flat, so it has no one intensity; say W, lm or nits");
+        }
+        const double faces = before.two_sided_emission ? 2 : 1;
+        nits = lamp.unit == LampUnit::Candela ? lamp.value / size.area : lumens(lamp) / (kPiDouble * size.area * faces);
+    }
+    Material& material = own_material(scene, index);
+    material.emission = with_luminance(lamp, material.emission, nits / lumens_per_watt);
+}
+
+void set_environment(const LampStrength& lamp, double lumens_per_watt, Environment& environment) {
+    if (lamp.unit != LampUnit::Nit) refuse(lamp, "an environment has nits");
+    if (!environment.image.pixels.empty()) {
+        refuse(lamp, "the environment is a panorama, with another luminance everywhere; --environment-scale multiplies "
+                     "it");
+    }
+    environment.scale = with_luminance(lamp, environment.scale, lamp.value / lumens_per_watt);
+}
+
+} // namespace
+
+LampStrength parse_lamp(std::string_view text) {
+    LampStrength lamp;
+    lamp.text = text;
+    const std::size_t equals = text.rfind('=');
+    const auto fail = [&] { refuse(lamp, "expected NAME=800lm; units are W, lm, cd, lx and nits"); };
+    if (equals == std::string_view::npos || equals == 0) fail();
+    lamp.name = text.substr(0, equals);
+    std::string_view amount = text.substr(equals + 1);
+    const auto unit = std::ranges::find_if(kUnits, [&](const auto& u) { return amount.ends_with(u.first); });
+    if (unit == std::end(kUnits)) fail();
+    lamp.unit = unit->second;
+    amount.remove_suffix(unit->first.size());
+    while (amount.ends_with(' ')) amount.remove_suffix(1);
+    const char* const end = amount.data() + amount.size();
+    const auto [last, fault] = std::from_chars(amount.data(), end, lamp.value);
+    if (fault != std::errc() || last != end || !(lamp.value >= 0 && lamp.value <= 1e15)) fail();
+    return lamp;
+}
+
+void set_lamps(Scene& scene, std::span<const LampStrength> lamps, double lumens_per_watt) {
+    for (const LampStrength& lamp : lamps) {
+        std::vector<Names> all; // of what gives light
+        bool is_found = false;
+        const auto is_called_so = [&](const Names& names) {
+            all.push_back(names);
+            const bool is_one = has_name(names, lamp.name);
+            is_found |= is_one;
+            return is_one;
+        };
+        for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+            if (!scene.materials[scene.instances[i].material].is_lamp()) continue;
+            if (is_called_so(names_of(scene, scene.instances[i]))) set_surface(lamp, lumens_per_watt, scene, i);
+        }
+        for (Light& light : scene.lights) {
+            if (is_called_so(names_of(scene, light))) set_light(lamp, lumens_per_watt, light);
+        }
+        if (scene.environment && is_called_so({kEnvironmentName})) {
+            set_environment(lamp, lumens_per_watt, *scene.environment);
+        }
+        if (!is_found) refuse(lamp, "no lamp of the scene is called so; " + some_names(all));
+    }
+}
+
+} // namespace pertev

@@ -1,0 +1,124 @@
+// Layers of light-path expressions under the one-picture law: the same bytes for any number of threads, any split of
+// the samples, either body of the path tracer, any batch; the picture beside them is the one without them, and layers
+// that share out all paths add up to it. With --device cuda the GPU joins in.
+
+#include <doctest/doctest.h>
+
+#include "base/parallel_for.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+/// Each path is in one of the first four, and in one of the last two.
+constexpr const char* kLightLayers[] = {"seen=LE",       "direct=L[DG]E",           "mirrored=L.*SE",
+                                        "rest=L.+[DG]E", "sky=L<'environment'>.*E", "lamps=L<^'environment'>.*E"};
+
+RenderSettings with_light_layers(const Scene& scene) {
+    RenderSettings settings;
+    settings.width = 61; // odd on purpose: tiles do not fit
+    settings.height = 35;
+    settings.samples = 4;
+    settings.aovs = kAovAlbedo | kAovDepth;
+    std::vector<LightPathExpression> expressions;
+    for (const char* text : kLightLayers) expressions.push_back(parse_light_path(text));
+    settings.light_paths = std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), scene));
+    return settings;
+}
+
+RenderResult render_mixed_layers(Queue& queue, const RenderSettings& settings) {
+    return test::render(queue, test::make_mixed_scene(), test::mixed_scene_camera(), settings);
+}
+Hash128 cpu_layers_hash(const RenderSettings& settings) {
+    Queue queue = Queue::make_cpu();
+    return test::render_hash(render_mixed_layers(queue, settings));
+}
+const Hash128& reference_layers_hash() {
+    static const Hash128 hash = cpu_layers_hash(with_light_layers(test::make_mixed_scene()));
+    return hash;
+}
+
+} // namespace
+
+TEST_CASE("layers do not depend on threads, passes, bodies and batches") {
+    const RenderSettings settings = with_light_layers(test::make_mixed_scene());
+    set_thread_count(3);
+    CHECK(cpu_layers_hash(settings) == reference_layers_hash());
+    set_thread_count(0);
+    RenderSettings other = settings;
+    other.pass_samples = 1;
+    CHECK(cpu_layers_hash(other) == reference_layers_hash());
+    other = settings;
+    other.body = PathBody::Wavefront;
+    for (const uint32_t batch : {777u, 1u << 20}) {
+        other.batch = batch;
+        CHECK(cpu_layers_hash(other) == reference_layers_hash());
+    }
+    if (!test::cuda_requested()) return;
+    Queue queue = test::make_cuda_queue();
+    for (const uint32_t batch : {777u, 1u << 20}) {
+        other.batch = batch;
+        CHECK(test::render_hash(render_mixed_layers(queue, other)) == reference_layers_hash());
+    }
+}
+
+TEST_CASE("the picture beside layers is the one without them, and so are the auxiliary layers") {
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings = with_light_layers(test::make_mixed_scene());
+    RenderResult with = render_mixed_layers(queue, settings);
+    settings.light_paths = nullptr;
+    const RenderResult without = render_mixed_layers(queue, settings);
+    CHECK(with.layers.size() == without.layers.size() + std::size(kLightLayers));
+    with.layers.resize(without.layers.size());
+    CHECK(test::render_hash(with) == test::render_hash(without));
+}
+
+TEST_CASE("layers that share out all paths add up to the picture within 1e-6") {
+    Queue queue = test::queue_asked_for();
+    for (const LightStrategy strategy : test::kLightStrategies) {
+        RenderSettings settings = with_light_layers(test::make_mixed_scene());
+        settings.path.strategy = strategy;
+        settings.path.clamp = strategy == LightStrategy::Mis ? 0.0f : 2.0f;
+        const RenderResult result = render_mixed_layers(queue, settings);
+        const auto add = [&](std::initializer_list<const char*> names, std::size_t i) {
+            double sum = 0;
+            for (const char* name : names) sum += static_cast<double>(layer_named(result, name).pixels[i]);
+            return sum;
+        };
+        std::size_t wrong = 0;
+        double sums[6] = {};
+        for (std::size_t i = 0; i < result.picture.pixels.size(); ++i) {
+            const auto whole = static_cast<double>(result.picture.pixels[i]);
+            const auto is_whole = [&](double sum) { return std::abs(sum - whole) <= 1e-6 * whole; };
+            wrong += is_whole(add({"seen", "direct", "mirrored", "rest"}, i)) ? 0 : 1;
+            wrong += is_whole(add({"sky", "lamps"}, i)) ? 0 : 1;
+            int layer = 0;
+            for (const char* name : {"seen", "direct", "mirrored", "rest", "sky", "lamps"})
+                sums[layer++] += add({name}, i);
+        }
+        CHECK(wrong == 0);
+        for (const double sum : sums) CHECK(sum > 0);
+    }
+}
+
+TEST_CASE("a session goes from layers to none and to others, and has the pictures of fresh ones") {
+    Queue queue = test::queue_asked_for();
+    const Scene scene = test::make_mixed_scene();
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = with_light_layers(scene);
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    session.render(2);
+    RenderSettings none = settings;
+    none.light_paths = nullptr;
+    session.set_settings(none);
+    session.render(1);
+    CHECK(session.layers().size() == 2);
+    session.set_settings(settings);
+    session.render(1);
+    session.meter(ToneMap::Agx); // a film without layers in between
+    session.render(3);
+    CHECK(test::render_hash(session.result()) == reference_layers_hash());
+}

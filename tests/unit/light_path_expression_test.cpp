@@ -1,0 +1,181 @@
+// Light-path expressions: what is not one is told with its character, and the automaton takes the words that the
+// standard library's regular expressions take.
+
+#include <doctest/doctest.h>
+
+#include <regex>
+
+#include "base/error.h"
+#include "render/light_paths/light_path_automaton.h"
+#include "scene/names.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr LobeClass kLobeClasses[] = {LobeClass::Diffuse, LobeClass::Glossy, LobeClass::Specular};
+constexpr char kLobeLetters[] = "DGS";
+
+/// Everything has one tag, through which all filters see.
+LightPathAutomaton automaton_of(const std::vector<std::string>& texts) {
+    std::vector<LightPathExpression> expressions;
+    std::size_t filters = 0;
+    for (const std::string& text : texts) {
+        expressions.push_back(parse_light_path("x=" + text));
+        filters += expressions.back().filters.size();
+    }
+    const std::vector<bool> tag(filters, true);
+    return make_automaton(expressions, {{tag}, {tag}});
+}
+
+/// The layers that take the light of a path whose scatterings are `word`, from the light to the eye; small letters are
+/// transmissions.
+uint32_t layers_of_word(const LightPathAutomaton& automaton, const std::string& word) {
+    uint16_t state = automaton.start;
+    for (auto letter = word.rbegin(); letter != word.rend(); ++letter) {
+        const bool is_small = *letter >= 'a';
+        const char capital = is_small ? static_cast<char>(*letter - 'a' + 'A') : *letter;
+        const auto number = std::string_view(kLobeLetters).find(capital);
+        state = automaton.next_state(state, 0, kLobeClasses[number], is_small);
+    }
+    return automaton.layers_of(state, 0);
+}
+
+/// All words of up to `most` letters.
+std::vector<std::string> words_of_lobes(std::size_t most) {
+    std::vector<std::string> all = {""};
+    for (std::size_t first = 0, length = 0; length < most; ++length) {
+        const std::size_t end = all.size();
+        for (; first < end; ++first) {
+            for (const char letter : std::string_view(kLobeLetters)) all.push_back(all[first] + letter);
+        }
+    }
+    return all;
+}
+
+std::string lpe_refusal(const std::string& text) {
+    return test::bad_input_message([&] { parse_light_path(text); });
+}
+
+/// Where the caret stands: the letter in the last line but its two blanks.
+std::size_t lpe_caret(const std::string& message) { return message.size() - message.rfind("\n  ") - 4; }
+
+} // namespace
+
+TEST_CASE("the automaton takes the words that a regular expression of the standard library takes") {
+    const std::vector<std::string> texts = {
+        "LE",         "L(D|S)*E",      "LDE",     "L(S|D)*D+DE", "LS+DE",         "L.*E",
+        "L.{0}E",     "L.{2,3}E",      "L.{2,}E", "L[DS]?G*E",   "L[^S]+E",       "(LD|LS)(G|D)*E",
+        "L(D?S){2}E", "L((D|G)*S)*DE", "L(|D)E",  "L(D*)*E",     "L(S(D|GS)?)+E", "LD*E|LS*E|L.G.E"};
+    const LightPathAutomaton automaton = automaton_of(texts);
+    std::vector<std::regex> oracle;
+    for (const std::string& text : texts) {
+        oracle.emplace_back(
+            std::regex_replace(std::regex_replace(text, std::regex("\\."), "[DGS]"), std::regex("\\[\\^S\\]"), "[DG]"));
+    }
+    for (const std::string& word : words_of_lobes(6)) {
+        CAPTURE(word);
+        uint32_t expected = 0;
+        for (std::size_t i = 0; i < texts.size(); ++i) {
+            expected |= std::regex_match("L" + word + "E", oracle[i]) ? 1u << i : 0;
+        }
+        REQUIRE(layers_of_word(automaton, word) == expected);
+    }
+}
+
+TEST_CASE("the automaton has no state more than it needs") {
+    CHECK(automaton_of({"L.*E"}).state_count() == 2); // that, and the one that takes nothing
+    CHECK(automaton_of({"L(D|G|S)*E", "L[DGS]*E"}).state_count() == 2);
+    CHECK(automaton_of({"LS+DE"}).state_count() == 4);            // E, DE, SDE
+    CHECK(automaton_of({"L(DD|DS|SD|SS)*E"}).state_count() == 3); // even, odd
+    CHECK(automaton_of({"LD{200}E"}).state_count() == 202);
+    CHECK(automaton_of({"L.*E"}).column_count == 1); // nothing tells scatterings apart
+}
+
+TEST_CASE("a scattering may be asked to go on to one side") {
+    const LightPathAutomaton automaton = automaton_of({"LS<T>+DE", "L[S<R>D]*E", "L[^S<T>]*E", "L.<T>E"});
+    CHECK(layers_of_word(automaton, "ssD") == 0b0001);
+    CHECK(layers_of_word(automaton, "SD") == 0b0110);
+    CHECK(layers_of_word(automaton, "g") == 0b1100); // not S<T>, and transmitted
+    CHECK(layers_of_word(automaton, "d") == 0b1110);
+    CHECK(layers_of_word(automaton, "s") == 0b1000);
+    CHECK(layers_of_word(automaton, "") == 0b0110);
+}
+
+TEST_CASE("a bad expression points at its character") {
+    const auto points_at = [](const std::string& text, std::size_t place, const std::string& says) {
+        const std::string message = lpe_refusal("name=" + text);
+        CAPTURE(message);
+        CHECK(lpe_caret(message) == place);
+        CHECK(message.find("--lpe name: character " + std::to_string(place + 1) + ": ") == 0);
+        CHECK(message.find(says) != std::string::npos);
+        CHECK(message.find("\n  " + text + "\n  ") != std::string::npos);
+    };
+    points_at("LXE", 1, "no letter of an expression");
+    points_at("L(DE", 1, "not closed");
+    points_at("LD)E", 2, "no ( before it");
+    points_at("L[DE", 3, "a set holds scatterings");
+    points_at("L[D", 1, "not closed");
+    points_at("L[]E", 2, "one letter at least");
+    points_at("L[Q]E", 2, "no letter of a set");
+    points_at("*LE", 0, "nothing stands before it");
+    points_at("L(|+)E", 3, "nothing stands before it");
+    points_at("LD{2E", 4, "} is missing");
+    points_at("LD{}E", 3, "a whole number");
+    points_at("LD{3,2}E", 2, "the smaller one");
+    points_at("LD{256}E", 3, "at most 255");
+    points_at("L<'lamp>E", 2, "not closed");
+    points_at("L<'lamp' E", 9, "between < and >");
+    points_at("L<'lamp'", 1, "not closed");
+    points_at("L<>E", 2, "between < and >");
+    points_at("L<''>E", 3, "a name stands here");
+    points_at("LD<^>E", 3, "before names");
+    points_at("L<T>E", 0, "ways of scattering");
+    points_at("LDE<'x'>", 3, "the eye has no name");
+    points_at("", 0, "an expression stands here");
+    points_at(" DE", 1, "begins with one L");
+    points_at("LD", 1, "ends with one E");
+    points_at("ELE", 0, "begins with one L");
+}
+
+TEST_CASE("letters of a name count as they are seen") {
+    const std::string message = lpe_refusal("n=L<'\xc3\xa4\xc3\xb6'>XE"); // two letters of two bytes each
+    CHECK(message.find("character 8") != std::string::npos);
+    CHECK(lpe_caret(message) == 7);
+}
+
+TEST_CASE("what is no NAME=EXPRESSION is refused") {
+    for (const std::string text : {"LDE", "=LDE", "a b=LDE", "a.b=LDE", "\xc3\xa4=LDE"}) {
+        CHECK(lpe_refusal(text).find("expected NAME=EXPRESSION") != std::string::npos);
+    }
+}
+
+TEST_CASE("expressions that grow without end are refused") {
+    const auto over = [](const std::string& text) {
+        const auto error = test::thrown_error([&] { automaton_of({text}); });
+        return error && error->code() == ErrorCode::OverLimit;
+    };
+    CHECK(over("L" + std::string(5000, 'D') + "E"));
+    CHECK(over("L((D{255}){255}){255}E"));
+    CHECK(over("L.{15}D.*E")); // from the eye it needs a state for each of 2^15 pasts
+    CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("within each other") !=
+          std::string::npos);
+    parse_light_path("x=LD" + std::string(4000, '*') + "E"); // as deep as it is long
+}
+
+TEST_CASE("names may have wildcards") {
+    CHECK(matches_name("lamp", "lamp"));
+    CHECK_FALSE(matches_name("lamp", "lamps"));
+    CHECK_FALSE(matches_name("lamps", "lamp"));
+    CHECK(matches_name("lamp*", "lamp"));
+    CHECK(matches_name("*amp*", "lamps"));
+    CHECK(matches_name("*a*a*b", "xaxaxbab"));
+    CHECK_FALSE(matches_name("*a*a*b", "xaxbxb"));
+    CHECK(matches_name("l?mp", "lamp"));
+    CHECK_FALSE(matches_name("l?mp", "lmp"));
+    CHECK(matches_name("\\*", "*"));
+    CHECK_FALSE(matches_name("\\*", "x"));
+    CHECK(matches_name("*", ""));
+    CHECK_FALSE(matches_name("?", ""));
+}

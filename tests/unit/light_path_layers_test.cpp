@@ -1,0 +1,124 @@
+// Names in light-path expressions: what of a scene they mean, and what is said where they mean nothing.
+
+#include <doctest/doctest.h>
+
+#include "render/light_paths/light_path_layers.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+/// A wall and a lamp under the node "house", a floor, a light under the house and one by itself.
+Scene make_named_scene() {
+    Scene scene;
+    scene.nodes.resize(2);
+    scene.nodes[0].name = "house";
+    scene.nodes[1].name = "room";
+    scene.nodes[1].parent = 0;
+    const auto add = [&](const char* object, const char* mesh, Material material, uint32_t node) {
+        test::add(scene, test::floor_at(0, 1), material);
+        scene.meshes.back().name = mesh;
+        scene.instances.back().name = object;
+        scene.instances.back().node = node;
+    };
+    add("wall", "panel", test::white(), 1);
+    Material glow = test::white();
+    glow.name = "glow";
+    glow.emission = {1, 1, 1};
+    add("lamp", "disc", glow, 0);
+    add("floor", "panel", test::white(), kNoNode);
+    scene.lights.push_back(test::point_light({0, 1, 0}, {1, 1, 1}));
+    scene.lights.back().name = "bulb";
+    scene.lights.back().node = 1;
+    scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
+    scene.lights.back().name = "sun";
+    scene.environment = Environment{};
+    return scene;
+}
+
+LightPathLayers put_layers(std::initializer_list<const char*> texts, const Scene& scene) {
+    std::vector<LightPathExpression> expressions;
+    for (const char* text : texts) expressions.push_back(parse_light_path(text));
+    return put_to_scene(std::move(expressions), scene);
+}
+
+/// Which of wall, lamp, floor a scattering of LD<filter>E may be at.
+std::vector<bool> surfaces_of_filter(const char* expression) {
+    const LightPathLayers layers = put_layers({expression}, make_named_scene());
+    std::vector<bool> are;
+    for (const uint16_t tag : layers.surface_tags) {
+        const uint16_t after = layers.automaton.next_state(layers.automaton.start, tag, LobeClass::Diffuse, false);
+        are.push_back(after != LightPathAutomaton::kNothing);
+    }
+    return are;
+}
+
+/// Which of lamp, bulb, sun, environment an LE may begin at.
+std::vector<bool> lights_of_filter(const char* expression) {
+    const LightPathLayers layers = put_layers({expression}, make_named_scene());
+    const LightPathAutomaton& automaton = layers.automaton;
+    std::vector<bool> are;
+    for (const uint16_t light :
+         {layers.instance_lights[1], layers.scene_lights[0], layers.scene_lights[1], layers.environment_light}) {
+        are.push_back(automaton.layers[automaton.start * automaton.light_count + light] == 1);
+    }
+    return are;
+}
+
+using TheseAre = std::vector<bool>;
+
+} // namespace
+
+TEST_CASE("a surface is called as its object, its mesh, its material and the nodes above it") {
+    CHECK(surfaces_of_filter("x=LD<'wall'>E") == TheseAre{true, false, false});
+    CHECK(surfaces_of_filter("x=LD<'panel'>E") == TheseAre{true, false, true});
+    CHECK(surfaces_of_filter("x=LD<'white'>E") == TheseAre{true, false, true});
+    CHECK(surfaces_of_filter("x=LD<'room'>E") == TheseAre{true, false, false});
+    CHECK(surfaces_of_filter("x=LD<'house'>E") == TheseAre{true, true, false});
+    CHECK(surfaces_of_filter("x=LD<'wall' 'floor'>E") == TheseAre{true, false, true});
+    CHECK(surfaces_of_filter("x=LD<^'wall' 'floor'>E") == TheseAre{false, true, false});
+    CHECK(surfaces_of_filter("x=LD<'?l*'>E") == TheseAre{false, true, true}); // glow and floor
+    CHECK(surfaces_of_filter("x=L[^D<'wall'>]E") == TheseAre{false, true, true});
+    CHECK(surfaces_of_filter("x=L.E") == TheseAre{true, true, true});
+}
+
+TEST_CASE("a light is called as itself and the nodes above it, and the environment by its word") {
+    CHECK(lights_of_filter("x=L<'bulb'>E") == TheseAre{false, true, false, false});
+    CHECK(lights_of_filter("x=L<'lamp'>E") == TheseAre{true, false, false, false});
+    CHECK(lights_of_filter("x=L<'glow'>E") == TheseAre{true, false, false, false});
+    CHECK(lights_of_filter("x=L<'house'>E") == TheseAre{true, true, false, false});
+    CHECK(lights_of_filter("x=L<'environment'>E") == TheseAre{false, false, false, true});
+    CHECK(lights_of_filter("x=L<^'environment' 's*'>E") == TheseAre{true, true, false, false});
+    CHECK(lights_of_filter("x=LE") == TheseAre{true, true, true, true});
+}
+
+TEST_CASE("a name that nothing has is refused at its letter, with names that there are") {
+    const auto message = [](const char* text) {
+        return test::bad_input_message([&] { put_layers({"a=LE", text}, make_named_scene()); });
+    };
+    CHECK(message("b=LD<'wal'>E").find("--lpe b: character 5: no object, mesh, material or node") == 0);
+    CHECK(message("b=LD<'wal'>E").find("\n      ^") != std::string::npos);
+    CHECK(message("b=LD<'wall' 'x*'>E").find("character 12") != std::string::npos);
+    CHECK(message("b=L<'wall'>E").find("no light of the scene is called so; there are 'bulb', 'disc'") !=
+          std::string::npos); // a wall gives no light
+    CHECK(message("a=LDE").find("two expressions have this name") != std::string::npos);
+}
+
+TEST_CASE("a render takes 32 layers and no more") {
+    std::vector<LightPathExpression> expressions;
+    for (int i = 0; i < 33; ++i) {
+        expressions.push_back(parse_light_path("n" + std::to_string(i) + "=LD{" + std::to_string(i) + "}E"));
+    }
+    const Scene scene = make_named_scene();
+    const auto error = test::thrown_error([&] { put_to_scene(expressions, scene); });
+    CHECK((error && error->code() == ErrorCode::OverLimit));
+    expressions.pop_back();
+    const LightPathLayers layers = put_to_scene(expressions, scene);
+    uint16_t state = layers.automaton.start;
+    for (int i = 0; i < 32; ++i) {
+        CHECK(layers.automaton.layers_of(state, 0) == 1u << i);
+        state = layers.automaton.next_state(state, 0, LobeClass::Diffuse, false);
+    }
+}

@@ -1,0 +1,151 @@
+// Lamps set to watts, lumens, candela, lux and nits: what they then send out, against sums over all directions.
+
+#include <doctest/doctest.h>
+
+#include "session/photometry.h"
+#include "session/set_lamps.h"
+#include "shading/light_set.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr double kLampPi = 3.14159265358979;
+
+void set_lamp(Scene& scene, const std::string& text, double efficacy = kLumensPerWatt) {
+    const LampStrength lamps[] = {parse_lamp(text)};
+    set_lamps(scene, lamps, efficacy);
+}
+
+Scene lamp_scene() {
+    Scene scene;
+    Material glow = test::white();
+    glow.name = "glow";
+    glow.emission = {2, 1, 0.5f};
+    test::add(scene, test::floor_at(0, 0.5f), glow);            // 1 m2
+    test::add(scene, test::floor_at(1, 1), scene.materials[0]); // 4 m2
+    scene.instances[1].material = 0;                            // shared
+    scene.instances[0].name = "small";
+    scene.instances[1].name = "large";
+    scene.lights.push_back(test::point_light({0, 1, 0}, {1, 2, 3}));
+    scene.lights.back().name = "bulb";
+    scene.lights.push_back({.name = "spot",
+                            .kind = LightKind::Spot,
+                            .direction = {0, -1, 0},
+                            .intensity = {1, 1, 1},
+                            .cos_inner = 0.95f,
+                            .cos_outer = 0.7f});
+    scene.lights.push_back({.name = "sun", .kind = LightKind::Directional, .intensity = {0, 0, 0}});
+    return scene;
+}
+
+double luminance_in(Rgb c) { return static_cast<double>(luminance(c)); }
+
+/// Lumens that a light sends out, by 100000 rings of equal solid angle.
+double flux_of(const Light& light, double efficacy) {
+    const PunctualLight view = {light.kind, {}, light.direction, light.intensity, light.cos_inner, light.cos_outer, 0};
+    constexpr int kRings = 100'000;
+    double sum = 0;
+    for (int i = 0; i < kRings; ++i) {
+        const auto cosine = static_cast<float>(1 - 2 * (i + 0.5) / kRings);
+        const Vec3 way = {sqrt(1 - cosine * cosine), -cosine, 0}; // about the direction down
+        sum += static_cast<double>(punctual_falloff(view, -way, 1)) * luminance_in(light.intensity);
+    }
+    return 4 * kLampPi * sum / kRings * efficacy;
+}
+
+std::string lamp_refusal(const std::string& text) {
+    return test::bad_input_message([&] {
+        Scene scene = lamp_scene();
+        set_lamp(scene, text);
+    });
+}
+
+} // namespace
+
+TEST_CASE("a light of 800 lm sends out 800 lm, and of 10 W 6830") {
+    for (const char* name : {"bulb", "spot"}) {
+        for (const double efficacy : {1.0, kLumensPerWatt}) {
+            CAPTURE(name);
+            Scene scene = lamp_scene();
+            const Light& light = scene.lights[name[0] == 'b' ? 0 : 1];
+            set_lamp(scene, std::string(name) + "=800lm", efficacy);
+            CHECK(flux_of(light, efficacy) == doctest::Approx(800).epsilon(1e-4));
+            set_lamp(scene, std::string(name) + "=10 W", efficacy);
+            CHECK(flux_of(light, efficacy) == doctest::Approx(6830).epsilon(1e-4));
+        }
+    }
+}
+
+TEST_CASE("lights keep their colour, and black ones become white") {
+    Scene scene = lamp_scene();
+    set_lamp(scene, "bulb=50cd", 1);
+    const Rgb bulb = scene.lights[0].intensity;
+    CHECK(luminance_in(bulb) == doctest::Approx(50));
+    CHECK(bulb.g / bulb.r == doctest::Approx(2.0));
+    CHECK(bulb.b / bulb.r == doctest::Approx(3.0));
+    set_lamp(scene, "sun=100000lx");
+    CHECK(luminance_in(scene.lights[2].intensity) == doctest::Approx(100000 / kLumensPerWatt));
+    CHECK(scene.lights[2].intensity.r == scene.lights[2].intensity.b);
+    set_lamp(scene, "sun=0lx");
+    CHECK(is_black(scene.lights[2].intensity));
+}
+
+TEST_CASE("each surface gets all of the amount, whatever its size, and a shared material is copied") {
+    Scene scene = lamp_scene();
+    set_lamp(scene, "glow=628.3185307lm", 1); // 200 pi
+    REQUIRE(scene.instances[0].material != scene.instances[1].material);
+    const auto emission = [&](int i) {
+        return luminance_in(scene.materials[scene.instances[static_cast<std::size_t>(i)].material].emission);
+    };
+    CHECK(emission(0) == doctest::Approx(200)); // pi L A
+    CHECK(emission(1) == doctest::Approx(50));
+    set_lamp(scene, "large=8cd", 1);
+    CHECK(emission(0) == doctest::Approx(200));
+    CHECK(emission(1) == doctest::Approx(2));
+    set_lamp(scene, "*a*=300nits");
+    CHECK(emission(0) == doctest::Approx(300 / kLumensPerWatt));
+    CHECK(emission(1) == doctest::Approx(300 / kLumensPerWatt));
+    scene.materials[scene.instances[0].material].two_sided_emission = true;
+    set_lamp(scene, "small=100lm", 1);
+    CHECK(emission(0) == doctest::Approx(50 / kLampPi)); // half of it from each face
+    scene.environment = Environment{};
+    set_lamp(scene, "environment=2000nits", 1);
+    CHECK(luminance_in(scene.environment->scale) == doctest::Approx(2000));
+}
+
+TEST_CASE("what a lamp cannot have is refused") {
+    CHECK(lamp_refusal("sun=800lm").find("directional light, which has lx") != std::string::npos);
+    CHECK(lamp_refusal("bulb=800lx").find("point light, which has W, lm or cd") != std::string::npos);
+    CHECK(lamp_refusal("small=8lx").find("lx are of directional lights") != std::string::npos);
+    CHECK(lamp_refusal("blub=800lm").find("no lamp of the scene is called so; there are 'bulb'") != std::string::npos);
+    for (const char* text :
+         {"bulb", "=8lm", "bulb=8", "bulb=lm", "bulb=-8lm", "bulb=8lmx", "bulb=nanlm", "bulb=1e300W"}) {
+        CHECK(lamp_refusal(text).find("expected NAME=800lm") != std::string::npos);
+    }
+    Scene scene = lamp_scene();
+    scene.meshes[0].positions[0].y = 1; // bent
+    CHECK(test::bad_input_message([&] { set_lamp(scene, "small=8cd"); }).find("not flat") != std::string::npos);
+    scene.images.resize(1);
+    scene.materials[0].emission_texture.image = 0;
+    CHECK(test::bad_input_message([&] { set_lamp(scene, "small=8lm"); }).find("texture") != std::string::npos);
+}
+
+TEST_CASE("a camera's exposure is the standard's") {
+    const PhysicalExposure sunny = {.iso = 100, .f_number = 16, .shutter_s = 0.01};
+    CHECK(exposure_value(sunny) == doctest::Approx(14.6439).epsilon(1e-5)); // log2 25600
+    CHECK(exposure_value({.iso = 400, .f_number = 16, .shutter_s = 0.01}) == doctest::Approx(12.6439).epsilon(1e-5));
+    CHECK(exposure_value({.iso = 100, .f_number = 1, .shutter_s = 1}) == doctest::Approx(0));
+    // 1.2 times 2^EV cd/m2 is the film's white.
+    const double white = 1.2 * 25600;
+    for (const double efficacy : {1.0, kLumensPerWatt}) {
+        const double stops = static_cast<double>(exposure_stops(sunny, efficacy));
+        CHECK(white / efficacy * std::exp2(stops) == doctest::Approx(1).epsilon(1e-5));
+    }
+    CHECK(lumens_per_watt("x.GLB") == 1);
+    CHECK(lumens_per_watt("x.obj") == 683);
+    CHECK(lumens_per_watt("cornell-box") == 683);
+    CHECK(lumens_per_watt("x.gltf", 90) == 90);
+}
