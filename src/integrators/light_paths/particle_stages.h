@@ -70,7 +70,7 @@ struct ShadeParticles {
     WalksView walks;
     uint32_t round;
 
-    HD void operator()(uint32_t i) const {
+    HD_FUSED void operator()(uint32_t i) const {
         const Hit hit = walks.hits().load(i);
         if (hit.instance == kNoHit) return;
         const LightPathSettings& settings = scene.settings;
@@ -99,7 +99,8 @@ struct ShadeParticles {
     }
 
 private:
-    HD void ask_camera(const Surface& surface, const Hit& hit, const WalkState& state, Vec3 wi, SampleKey key) const {
+    HD_FUSED void ask_camera(const Surface& surface, const Hit& hit, const WalkState& state, Vec3 wi,
+                             SampleKey key) const {
         const LightPathSettings& settings = scene.settings;
         const CameraRays& camera = scene.picture.camera;
         const Vec2 lens = camera.has_lens() ? sample_2d(settings.sampler, key,
@@ -132,7 +133,7 @@ private:
         walks.ask(place, connection, state.pixel);
         walks.asked_rasters[place] = seen.raster;
     }
-    HD void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, SampleKey key) const {
+    HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, SampleKey key) const {
         const LightPathSettings& settings = scene.settings;
         const uint32_t choices = particle_group(state.depth(), kWalkChoices);
         const WalkDraw draw =
