@@ -97,6 +97,9 @@ std::vector<Case> cases() {
     all.push_back(environment);
 
     Case lens = {.name = "depth of field", .scene = make_room(test::white(0.8f))};
+    // The camera looks through its back; light does not.
+    test::add(lens.scene, test::sheet({-0.3f, 0.5f, 0.8f}, {-0.3f, 0, 0}, {0, 0.3f, 0}), test::white(0.7f));
+    lens.scene.materials.back().double_sided = false;
     lens.camera.aperture_radius = 0.2f;
     lens.camera.focus_distance = 3.4f;
     all.push_back(lens);
