@@ -3,7 +3,7 @@
 
 ALLOWED is the "may know" column of docs/architecture.md: a module may include itself and the modules that stand there, all
 of which come before it. Beyond that table: only device/cuda and .cu files include CUDA's headers, no integrator includes
-another, but for the machine that several are made of (integrators/ray_tree), and no files include each other in a circle.
+another, but for the machines that several are made of (integrators/ray_tree, light_paths), and no files include each other in a circle.
 
 `check_includes.py [ROOT]` checks ROOT/src; `--self-test` makes trees that break each rule and must be caught.
 """
@@ -32,8 +32,8 @@ ALLOWED["restir"] = ALLOWED["render"] | {"render"}
 ALLOWED["session"] = set(ALLOWED)
 ALLOWED["lab"] = set(ALLOWED)
 
-# The machine that several integrators are made of.
-RAY_TREE = ("integrators", "ray_tree")
+# The machines that several integrators are made of.
+SHARED = (("integrators", "ray_tree"), ("integrators", "light_paths"))
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")
@@ -58,7 +58,7 @@ def fault_of(path, module, quoted, target):
         known = ", ".join(name for name in ALLOWED if name in ALLOWED[module])
         return f"{module} may know {known or 'nothing of ours'}, and not {owner}"
     parts = pathlib.PurePath(target).parts
-    is_shared = path.parts[0] == "integrators" and len(path.parts) > 2 and parts[:2] == RAY_TREE
+    is_shared = path.parts[0] == "integrators" and len(path.parts) > 2 and parts[:2] in SHARED
     if owner == "integrators" and len(parts) > 2 and path.parts[:2] != parts[:2] and path.stem != "make_integrator" and not is_shared:
         return "an integrator's folder is seen by itself and integrators/make_integrator alone"
     return None

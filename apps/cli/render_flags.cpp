@@ -132,7 +132,7 @@ RenderSettings light_settings(const RenderFlags& flags) {
         fmt::format("--ambient: a light of --integrator cast and whitted; {} finds what comes from all around itself",
                     flags.integrator));
     refuse(settings.path.clamp > 0 && settings.integrator != IntegratorKind::Path,
-           fmt::format("--clamp: of --integrator path; {} has no light scattered so often", flags.integrator));
+           fmt::format("--clamp: of --integrator path, not of {}", flags.integrator));
     return settings;
 }
 
@@ -244,7 +244,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->capture_default_str()
         ->group(group);
     verb.add_option("--integrator", flags.integrator,
-                    "path, or its parts direct and indirect; cast, whitted,\ndistributed (docs/transport.md)")
+                    "path, or its parts direct and indirect; cast, whitted,\ndistributed; light, bidirectional (docs/transport.md)")
         ->type_name("NAME")
         ->check(one_of(integrator_names()))
         ->capture_default_str()

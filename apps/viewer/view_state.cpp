@@ -170,7 +170,8 @@ std::vector<ViewSetting> make_settings() {
     choice(
         "integrator", "Light", "Light",
         "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on; cast, whitted and "
-        "distributed: trees of rays, without most of what surfaces send on",
+        "distributed: trees of rays, without most of what surfaces send on; light: particles from the lights, without "
+        "what mirrors and glass show; bidirectional: all light, from both ends",
         integrator_names(), [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
             RenderSettings wanted = s.picture;

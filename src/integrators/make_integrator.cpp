@@ -1,6 +1,8 @@
 #include "integrators/make_integrator.h"
 
 #include "base/limits.h"
+#include "integrators/bidirectional/most_joined_depth.h"
+#include "integrators/light_paths/walks_integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 
@@ -13,6 +15,24 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
+}
+
+LightPathSettings walk_settings(const IntegratorSettings& settings) {
+    return {.max_depth = settings.path.max_depth,
+            .roulette_depth = settings.path.roulette_depth,
+            .sampler = settings.path.sampler,
+            .seed = settings.path.seed};
+}
+
+template <class Algorithm>
+std::unique_ptr<Integrator> make_walks(Queue& queue, const IntegratorSettings& settings) {
+    return std::make_unique<WalksIntegrator<Algorithm>>(queue, walk_settings(settings), settings.body == PathBody::Loop,
+                                                        settings.batch);
+}
+
+template <class Algorithm>
+void set_walk_settings(Integrator& integrator, const IntegratorSettings& settings) {
+    static_cast<WalksIntegrator<Algorithm>&>(integrator).set_settings(walk_settings(settings));
 }
 
 template <class Algorithm>
@@ -30,11 +50,26 @@ void set_tree_settings(Integrator& integrator, const IntegratorSettings& setting
 
 bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path; }
 
-bool finds_all_light(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+bool finds_all_light(IntegratorKind kind) {
+    return kind == IntegratorKind::Path || kind == IntegratorKind::Bidirectional;
+}
 
 bool has_light_path_layers(IntegratorKind kind) { return kind == IntegratorKind::Path; }
 
-uint32_t most_depth(IntegratorKind kind) { return kind == IntegratorKind::Path ? kMaxPathDepth - 1 : kMaxTreeDepth; }
+uint32_t most_depth(IntegratorKind kind) {
+    switch (kind) {
+    case IntegratorKind::Path:
+    case IntegratorKind::Light:
+        break;
+    case IntegratorKind::Cast:
+    case IntegratorKind::Whitted:
+    case IntegratorKind::Distributed:
+        return kMaxTreeDepth;
+    case IntegratorKind::Bidirectional:
+        return kMostJoinedDepth;
+    }
+    return kMaxPathDepth - 1;
+}
 
 bool needs_punctual_lights(IntegratorKind kind) {
     return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted;
@@ -55,6 +90,10 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
         return make_ray_tree<Whitted>(queue, settings);
     case IntegratorKind::Distributed:
         return make_ray_tree<Distributed>(queue, settings);
+    case IntegratorKind::Light:
+        return make_walks<ParticlesAlone>(queue, settings);
+    case IntegratorKind::Bidirectional:
+        return make_walks<BothDirections>(queue, settings);
     }
     auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
     path->set_layers(settings.light_paths);
@@ -79,6 +118,12 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::Distributed:
         set_tree_settings<Distributed>(integrator, to);
         break;
+    case IntegratorKind::Light:
+        set_walk_settings<ParticlesAlone>(integrator, to);
+        break;
+    case IntegratorKind::Bidirectional:
+        set_walk_settings<BothDirections>(integrator, to);
+        break;
     }
     return true;
 }
@@ -97,6 +142,10 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
         return RayTreeIntegrator<Whitted>::predicted_bytes(tree_settings(settings), all, settings.batch);
     case IntegratorKind::Distributed:
         return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch);
+    case IntegratorKind::Light:
+        return WalksIntegrator<ParticlesAlone>::predicted_bytes(walk_settings(settings), all, settings.batch);
+    case IntegratorKind::Bidirectional:
+        return WalksIntegrator<BothDirections>::predicted_bytes(walk_settings(settings), all, settings.batch);
     }
     return tables + PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.light_paths != nullptr);
 }

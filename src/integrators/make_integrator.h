@@ -15,9 +15,11 @@ namespace pertev {
 
 enum class IntegratorKind : uint8_t {
     Path,
-    Cast,        // integrators/cast/cast.h
-    Whitted,     // integrators/whitted/whitted.h
-    Distributed, // integrators/distributed/distributed.h
+    Cast,          // integrators/cast/cast.h
+    Whitted,       // integrators/whitted/whitted.h
+    Distributed,   // integrators/distributed/distributed.h
+    Light,         // integrators/light/light.h
+    Bidirectional, // integrators/bidirectional/bidirectional.h
 };
 
 struct IntegratorSettings {
@@ -35,7 +37,7 @@ struct IntegratorSettings {
 
     // How the device does it: the light stays the same.
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront
-    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes each; or trees of rays
+    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes each; or other samples
 };
 
 /// Whether its samples can be taken apart for frames that are reconstructed (FilmView::frame), for pictures that are

@@ -8,7 +8,8 @@ namespace {
 // A switch names each value, so that the compiler tells of one that was forgotten; these list them.
 constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
 constexpr IntegratorKind kIntegrators[] = {IntegratorKind::Cast, IntegratorKind::Whitted, // beside Path
-                                           IntegratorKind::Distributed};
+                                           IntegratorKind::Distributed, IntegratorKind::Light,
+                                           IntegratorKind::Bidirectional};
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
                                     PixelFilter::BlackmanHarris};
@@ -38,6 +39,10 @@ std::string_view name_of(IntegratorKind integrator) {
         return "whitted";
     case IntegratorKind::Distributed:
         return "distributed";
+    case IntegratorKind::Light:
+        return "light";
+    case IntegratorKind::Bidirectional:
+        return "bidirectional";
     }
     return "";
 }
@@ -66,6 +71,8 @@ std::string_view integrator_name(const RenderSettings& settings) {
     case IntegratorKind::Cast:
     case IntegratorKind::Whitted:
     case IntegratorKind::Distributed:
+    case IntegratorKind::Light:
+    case IntegratorKind::Bidirectional:
         break;
     }
     return name_of(settings.integrator);

@@ -60,6 +60,9 @@ class WhatIsRefused(CliTest):
         for flags, code, says in [
                 ("--integrator whitted --denoise svgf", 2, "--denoise svgf: reconstructs pictures of --integrator path, not of whitted"),
                 ("--integrator distributed --max-depth 256", 3, "--max-depth 256: with --integrator distributed at most 255"),
+                ("--integrator bidirectional --denoise svgf", 2,
+                 "--denoise svgf: reconstructs pictures of --integrator path, not of bidirectional"),
+                ("--integrator bidirectional --max-depth 256", 3, "--max-depth 256: with --integrator bidirectional at most 255"),
                 ("--integrator cast", 2, "this scene has lamps alone: --integrator distributed or path knows all lights")]:
             with self.subTest(flags=flags):
                 outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])

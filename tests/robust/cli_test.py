@@ -389,7 +389,8 @@ class WhatIsRendered(CliTest):
     def test_every_choice_that_changes_the_light_changes_the_hash(self):
         choices = [[], ["--seed", "1"], ["--sampler", "independent"], ["--filter", "box"], ["--filter", "tent"],
                    ["--filter", "gaussian"], ["--filter-radius", "3"], ["--integrator", "direct"],
-                   ["--integrator", "indirect"], ["--integrator", "distributed"], ["--integrator", "cast", "--ambient", "0.5"],
+                   ["--integrator", "indirect"], ["--integrator", "distributed"], ["--integrator", "light"],
+                   ["--integrator", "bidirectional"], ["--integrator", "cast", "--ambient", "0.5"],
                    ["--integrator", "whitted", "--ambient", "0.5,0.2,0.1"], ["--max-depth", "2"], ["--clamp", "0.1"], ["--fov", "30"],
                    ["--environment", "1,0.5,0.2"], ["--environment", "1,1,1", "--environment-scale", "3"],
                    ["--aperture", "0.05", "--focus", "0.9"], ["--aperture", "0.05", "--focus", "1.3"],

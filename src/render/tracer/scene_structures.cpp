@@ -52,6 +52,7 @@ TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uin
 SceneStructures::SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level)
     : builder_(builder), top_level_(std::move(top_level)) {
     triangle_count_ = trees.triangle_count();
+    baked_bounds_ = trees.baked().bounds;
     binary_.emplace(builder, std::move(trees));
 }
 

@@ -43,6 +43,13 @@ public:
     /// Of the trees given at first.
     BvhBuilder builder() const { return builder_; }
     uint64_t triangle_count() const { return triangle_count_; } // in them
+    /// In the moved world: of what is baked into it, and of all that rays can meet.
+    const Bounds3& baked_bounds() const { return baked_bounds_; }
+    Bounds3 bounds() const {
+        Bounds3 all = baked_bounds_;
+        all.extend(top_level_.bounds);
+        return all;
+    }
 
     /// Bytes of a device's memory that the structures of a choice take; those not there yet are built.
     std::size_t device_bytes(const TracerChoice& choice);
@@ -52,6 +59,7 @@ private:
 
     BvhBuilder builder_;
     TopLevelBvh top_level_;
+    Bounds3 baked_bounds_;
     uint64_t triangle_count_ = 0;
     std::mutex mutex_;
     std::map<BvhBuilder, BinaryTrees> binary_;

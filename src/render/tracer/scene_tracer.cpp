@@ -25,7 +25,8 @@ std::shared_ptr<const BuiltStructure> structure_for(const Combination& c, SceneS
 } // namespace
 
 SceneTracer::SceneTracer(Queue& queue, SceneStructures& structures, const TracerChoice& choice)
-    : queue_(queue), choice_(choice), scene_on_device_(queue, 1, "scene") {
+    : queue_(queue), choice_(choice), scene_on_device_(queue, 1, "scene"), bounds_(structures.bounds()),
+      baked_bounds_(structures.baked_bounds()) {
     check_choice(choice, queue.is_cuda());
     std::map<std::shared_ptr<const BuiltStructure>, std::shared_ptr<StructureOnDevice>> placed;
     for (const RayKind kind : kRayKinds) {
@@ -41,6 +42,8 @@ SceneTracer::SceneTracer(Queue& queue, SceneStructures& structures, const Tracer
 }
 
 void SceneTracer::set_structures(SceneStructures& structures) {
+    bounds_ = structures.bounds();
+    baked_bounds_ = structures.baked_bounds();
     for (const RayKind kind : kRayKinds) {
         structures_[static_cast<std::size_t>(kind)]->update(structure_for(choice_[kind], structures));
     }
@@ -60,6 +63,8 @@ void SceneTracer::deform(std::span<const DeformedMesh> meshes, std::span<const P
     }
     const TopLevelBvh top_level = top_level_over(placed, bounds_of_trees);
     for (const auto& structure : all) structure->place(meshes, top_level);
+    bounds_ = baked_bounds_;
+    bounds_.extend(top_level.bounds);
 }
 
 void SceneTracer::set_surfaces(const SceneView& scene) {

@@ -45,6 +45,8 @@ public:
     /// traced so.
     const HostTrees* host_trees() const { return host_trees_; }
     const TracerChoice& choice() const { return choice_; }
+    /// Of all that rays can meet, the scene's moved world.
+    const Bounds3& bounds() const { return bounds_; }
     const Tracer& tracer(RayKind kind) const { return *tracers_[static_cast<std::size_t>(kind)]; }
 
     /// Whether rays of each kind are timed from now on, by waiting before and after, which is slower. Seconds since
@@ -71,6 +73,7 @@ private:
     const HostTrees* host_trees_ = nullptr;
     SceneView scene_{};
     Buffer<SceneView> scene_on_device_;
+    Bounds3 bounds_, baked_bounds_; // SceneStructures'
     bool is_timed_ = false;
     Seconds seconds_;
 };

@@ -1,0 +1,201 @@
+#pragma once
+
+// The stages of walks from the camera that are joined to particles: shade where their rays have met something, then
+// join that to the vertices that the sample's particle has left behind, some at a time.
+
+#include "integrators/light_paths/begin_eyes.h"
+
+namespace pertev {
+
+/// Vertices of a particle's walk that a vertex is joined to at once.
+inline constexpr uint32_t kJoinedAtOnce = 4;
+
+/// Where the camera's walks have met something: light that they ran into, a light drawn anew, the way on.
+template <MaterialsKnown kKnown>
+struct ShadeEyes {
+    WalkScene scene;
+    WalksView walks;
+    FilmView film;
+    uint32_t round;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const PictureView& picture = scene.picture;
+        const uint32_t walk = walks.owners[round % 2][i];
+        const Ray ray = load_ray(walks.rays[round % 2] + i);
+        const Hit hit = walks.hits().load(i);
+        WalkState state = walks.states[walk];
+        if (hit.instance == kNoHit) return add_background(state, ray);
+        const Surface surface = make_surface<kKnown>(picture.scene, hit, ray.direction);
+        state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
+        state.is_from_far = 0;
+        if (state.depth() == 0) {
+            add_seen(picture, film, state, ray, hit, surface);
+        } else if (!is_black(surface.emission)) {
+            add_light(state, light_densities(hit, ray.direction), surface.emission);
+        }
+        if (surface.is_unlit || state.depth() >= scene.settings.max_depth) return;
+
+        const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
+        const Vec3 wo = -ray.direction;
+        if (!surface.bsdf.has_delta_only()) {
+            ask_for_light(surface, state, wo, key);
+            if (state.depth() + 1 < scene.settings.max_depth && walks.kept_counts[walk] > 0) {
+                const uint32_t place = atomic_add(&walks.counts->vertices, 1u);
+                walks.present.store(place, {hit, ray.direction, state.throughput, state.mis});
+                walks.present_owners[place] = walk;
+            }
+        }
+        go_on(surface, walk, state, wo, key);
+    }
+
+private:
+    HD void add_light(const WalkState& state, const LightDensities& light, Rgb emission) const {
+        add_radiance(film, state.pixel, mis_weight(light.odds(state.mis)) * (state.throughput * emission));
+    }
+    HD void add_background(const WalkState& state, const Ray& ray) const {
+        if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
+        const LightSetView& lights = scene.picture.scene.lights;
+        if (!lights.has_environment()) return;
+        const float pdf = pdf_environment(lights, ray.direction);
+        add_light(state, {pdf, pdf_disc(scene.world)}, environment_radiance(lights.environment, ray.direction));
+    }
+    HD LightDensities light_densities(const Hit& hit, Vec3 direction) const {
+        const LightSetView& lights = scene.picture.scene.lights;
+        const uint32_t light = light_of(lights, hit.instance, hit.primitive);
+        if (light == kNoLight) return {}; // found by this walk alone
+        const EmissiveTriangle& triangle = lights.triangles[light];
+        const float cosine = dot(normalize(cross(triangle.ab, triangle.ac)), direction);
+        return {pdf_place(triangle), pdf_emission(triangle, cosine)};
+    }
+
+    /// One point of one light, as path tracing draws it.
+    HD_FUSED void ask_for_light(const Surface& surface, const WalkState& state, Vec3 wo, SampleKey key) const {
+        const SceneView& view = scene.picture.scene;
+        LightSample light;
+        const SampleBits bits = sample_bits(scene.settings.sampler, key, light_group(state.depth()), Pair::Last);
+        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return;
+        const BothWays scattered = scatter_both_ways<kKnown>(surface, wo, light.wi);
+        if (is_black(scattered.eye.f)) return;
+        const uint32_t coin = coin_key(key, state.depth(), true);
+        if (light.instance != kNoLight && view.any_alpha != 0 &&
+            !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
+            return; // a hole in the light
+        }
+        const float found = light.is_delta ? 0.0f : squared_density(scattered.eye.pdf / light.pdf);
+        const float arriving = density_from(light) * cosine_at(surface, light.wi);
+        const float weight = mis_weight(found + squared_density(arriving) * state.mis.others(scattered.particle.pdf));
+        Connection connection;
+        connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+        connection.start = surface.triangle;
+        connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        connection.key = coin;
+        connection.light = (weight / light.pdf) * (state.throughput * scattered.eye.f * light.radiance);
+        walks.ask(atomic_add(&walks.counts->asked, 1u), connection, state.pixel);
+    }
+    /// Density, 1/m2 across its way, with which a particle that leaves the place drawn passes where it shines.
+    HD float density_from(const LightSample& light) const {
+        const LightSetView& lights = scene.picture.scene.lights;
+        if (light.distance == kInfinity) return pdf_disc(scene.world);
+        const float inverse = 1.0f / square(light.distance);
+        if (light.is_delta) return inverse * pdf_direction(lights.punctual[light.primitive]);
+        const uint32_t number = light_of(lights, light.instance, light.primitive);
+        return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
+    }
+
+    HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wo, SampleKey key) const {
+        const LightPathSettings& settings = scene.settings;
+        const uint32_t choices = eye_group(state.depth(), kWalkChoices);
+        const WalkDraw draw =
+            draw_scatter(settings, key, surface.bsdf, eye_group(state.depth(), kWalkScatter), choices);
+        BsdfSample sample = surface.sample(wo, draw.lobe, draw.u);
+        if (!(sample.pdf > 0) || !survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        const Vec3 wi = sample.wi;
+        if (sample.is_delta()) {
+            state.mis.scatter_by_delta(cosine_at(surface, wi));
+        } else {
+            state.mis.scatter(cosine_at(surface, wi), sample.pdf,
+                              scatter_both_ways<kKnown>(surface, wo, wi).particle.pdf);
+        }
+        state.throughput = state.throughput * sample.weight;
+        ++state.scatterings;
+        walks.states[walk] = state;
+        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
+                         kInfinity};
+        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
+                        coin_key(key, state.depth(), false), round + 1);
+    }
+};
+
+/// One end of a way between two vertices.
+struct JoinedEnd {
+    Rgb f;                       // scattered along the way, per solid angle
+    float onwards_density = 0;   // of the walk's own step along the way, 1/sr
+    float backwards_density = 0; // of the other side's step back from here
+    float cosine = 0;
+    Vec3 start; // of a ray along the way
+    TriangleId triangle;
+};
+
+template <MaterialsKnown kKnown>
+HD inline JoinedEnd join_end(const SceneView& scene, const WalkVertex& vertex, Vec3 along, bool is_eye) {
+    const Surface surface = make_surface<kKnown>(scene, vertex.hit, vertex.direction);
+    const Vec3 from = -vertex.direction;
+    const BothWays scattered = scatter_both_ways<kKnown>(surface, is_eye ? from : along, is_eye ? along : from);
+    JoinedEnd end;
+    end.f = is_eye ? scattered.eye.f : scattered.particle.f;
+    end.onwards_density = is_eye ? scattered.eye.pdf : scattered.particle.pdf;
+    end.backwards_density = is_eye ? scattered.particle.pdf : scattered.eye.pdf;
+    end.cosine = cosine_at(surface, along);
+    end.start = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, along);
+    end.triangle = surface.triangle;
+    return end;
+}
+
+HD inline Vec3 position_of(const SceneView& scene, const Hit& hit) {
+    const InstanceView& instance = scene.instances[hit.instance];
+    return place_triangle(instance, scene.meshes[instance.mesh], hit).position;
+}
+
+/// Pair i: the present round's vertex i % vertices with vertex first + i / vertices of its sample's particle.
+template <MaterialsKnown kKnown>
+struct JoinWalks {
+    WalkScene scene;
+    WalksView walks;
+    uint32_t first, round;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const uint32_t vertices = walks.counts->vertices, present = i % vertices, number = first + i / vertices;
+        const uint32_t walk = walks.present_owners[present];
+        if (number >= walks.kept_counts[walk] || round + number + 2 > scene.settings.max_depth) return;
+        const std::size_t at = walks.kept_place(walk, number);
+        if (!walks.kept.is_there(at)) return;
+        const SceneView& view = scene.picture.scene;
+        const WalkVertex ends[2] = {walks.present.load(present), walks.kept.load(at)};
+        const Vec3 way = position_of(view, ends[1].hit) - position_of(view, ends[0].hit);
+        const float distance_squared = length_squared(way);
+        if (!(distance_squared > 0)) return;
+        const Vec3 along = way / sqrt(distance_squared);
+        JoinedEnd joined[2];
+        for (int k = 0; k < 2; ++k) { // one after the other: a kernel has room for one surface
+            joined[k] = join_end<kKnown>(view, ends[k], k == 0 ? along : -along, k == 0);
+            if (is_black(joined[k].f)) return;
+        }
+        const JoinedEnd &eye = joined[0], &particle = joined[1];
+        const float inverse = 1.0f / distance_squared;
+        const float by_eye = eye.onwards_density * particle.cosine * inverse;
+        const float by_particle = particle.onwards_density * eye.cosine * inverse;
+        const float weight = mis_weight(squared_density(by_eye) * ends[1].mis.others(particle.backwards_density) +
+                                        squared_density(by_particle) * ends[0].mis.others(eye.backwards_density));
+        const WalkState& state = walks.states[walk];
+        Connection connection;
+        connection.ray = {eye.start, 0, particle.start - eye.start, 1};
+        connection.start = eye.triangle;
+        connection.target = particle.triangle;
+        connection.key = coin_key({state.pixel, state.sample, scene.settings.seed ^ kConnectionCoins},
+                                  round * 0x1000u + number, true);
+        connection.light = (weight * inverse) * (ends[0].throughput * eye.f * particle.f * ends[1].throughput);
+        walks.ask(atomic_add(&walks.counts->asked, 1u), connection, state.pixel);
+    }
+};
+
+} // namespace pertev

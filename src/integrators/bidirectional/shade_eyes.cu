@@ -1,0 +1,7 @@
+#include "device/launch_body.h"
+#include "integrators/bidirectional/eye_stages.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const ShadeEyes<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeEyes<MaterialsKnown::PlainDiffuse>&);
+} // namespace pertev

@@ -1,0 +1,217 @@
+#pragma once
+
+// The stages of walks from the lights, in their order: begin; then, round by round, shade where the rays have met
+// something, add what the camera sees of that, count. Launched one by one on a device; a thread of the CPU runs the
+// same ones over a few walks of its own.
+//
+// Source: Dutre, Lafortune, Willems, "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993.
+
+#include "device/atomic_add.h"
+#include "integrators/light_paths/emit_particle.h"
+#include "integrators/light_paths/see_vertex.h"
+#include "integrators/light_paths/splat.h"
+#include "integrators/light_paths/walk_vertex.h"
+#include "render/tiled_pixel.h"
+
+namespace pertev {
+
+/// The samples that walks are begun for: [first_sample, ...) of pixels [first_pixel, + pixels) in tiled order, sample
+/// by sample.
+struct WalkSamples {
+    uint32_t first_pixel, pixels, first_sample;
+
+    HD void place(const CameraRays& camera, uint64_t number, WalkState& state) const {
+        state.sample = first_sample + static_cast<uint32_t>(number / pixels);
+        state.pixel = tiled_pixel(first_pixel + static_cast<uint32_t>(number % pixels), camera.width, camera.height);
+    }
+};
+
+/// What a particle's random numbers are drawn by. Where particles are all there is, one sequence goes through the
+/// particles of the whole picture, so that all of them together are spread evenly. Where they are joined to the
+/// camera's walk of their pixel, each pixel has its own.
+HD inline SampleKey particle_sample_key(const WalkScene& scene, uint32_t pixel, uint32_t sample) {
+    if (scene.is_joined) return {pixel, sample, scene.settings.seed};
+    const CameraRays& camera = scene.picture.camera;
+    const uint64_t number = uint64_t(sample) * (uint64_t(camera.width) * camera.height) + pixel;
+    return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number), scene.settings.seed};
+}
+
+/// Walks 0, 1, ... become the particles of samples `first`, first + 1, ... of `samples`.
+struct BeginParticles {
+    WalkScene scene;
+    WalksView walks;
+    WalkSamples samples;
+    uint64_t first;
+
+    HD void operator()(uint32_t i) const {
+        const LightPathSettings& settings = scene.settings;
+        WalkState state = {};
+        samples.place(scene.picture.camera, first + i, state);
+        if (walks.room.kept > 0) walks.kept_counts[i] = 0;
+        const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
+        const SampleBits place = sample_bits(settings.sampler, key, kGroupLight);
+        const Vec2 direction = sample_2d(settings.sampler, key, kGroupLight, Pair::Last);
+        const uint32_t coin = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, 0, false);
+        Particle particle;
+        if (!emit_particle(scene.picture.scene, scene.world, place, direction, coin, particle)) return;
+        if (!(max_component(particle.power) > 0)) return;
+        state.throughput = particle.power;
+        state.mis = particle.mis;
+        state.is_from_far = particle.is_from_far ? 1 : 0;
+        walks.states[i] = state;
+        walks.queue_ray(atomic_add(&walks.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
+    }
+};
+
+/// Where the particles' rays have met something: a connection to the camera, a vertex to be joined, the way on.
+template <MaterialsKnown kKnown>
+struct ShadeParticles {
+    WalkScene scene;
+    WalksView walks;
+    uint32_t round;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const Hit hit = walks.hits().load(i);
+        if (hit.instance == kNoHit) return;
+        const LightPathSettings& settings = scene.settings;
+        const uint32_t walk = walks.owners[round % 2][i];
+        const Ray ray = load_ray(walks.rays[round % 2] + i);
+        WalkState state = walks.states[walk];
+        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit, ray.direction);
+        if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
+        if (surface.is_unlit || is_black(state.throughput)) return;
+        state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
+        state.is_from_far = 0;
+
+        const bool can_be_joined = !surface.bsdf.has_delta_only();
+        if (state.depth() < walks.room.kept) {
+            const std::size_t at = walks.kept_place(walk, state.depth());
+            if (can_be_joined) {
+                walks.kept.store(at, {hit, ray.direction, state.throughput, state.mis});
+            } else {
+                walks.kept.store_none(at);
+            }
+            walks.kept_counts[walk] = state.depth() + 1;
+        }
+        const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
+        if (can_be_joined) ask_camera(surface, hit, state, -ray.direction, key);
+        if (state.depth() + 1 < settings.max_depth) go_on(surface, walk, state, -ray.direction, key);
+    }
+
+private:
+    HD_FUSED void ask_camera(const Surface& surface, const Hit& hit, const WalkState& state, Vec3 wi,
+                             SampleKey key) const {
+        const LightPathSettings& settings = scene.settings;
+        const CameraRays& camera = scene.picture.camera;
+        const Vec2 lens = camera.has_lens() ? sample_2d(settings.sampler, key,
+                                                        particle_group(state.depth(), kWalkScatter), Pair::Last)
+                                            : Vec2{};
+        SeenVertex seen;
+        if (!see_vertex(camera, surface.position, lens, seen)) return;
+        const AcceptHit accept = {scene.picture.scene, {}, {}, 0};
+        if (scene.picture.scene.any_hidden_back != 0 &&
+            AcceptCameraHit{accept, seen.direction}.meets_hidden_back(hit.instance, hit.primitive)) {
+            return; // the camera looks through its back
+        }
+        const Vec3 wo = -seen.direction;
+        const BothWays scattered = scatter_both_ways<kKnown>(surface, wo, wi);
+        if (is_black(scattered.particle.f)) return;
+        float weight = 1;
+        if (scene.is_joined) {
+            const float density = seen.density * cosine_at(surface, wo) / seen.distance_squared;
+            weight = mis_weight(squared_density(density) * state.mis.others(scattered.eye.pdf));
+        }
+        Connection connection;
+        // From the camera, as it looks: its rays pass hidden backs.
+        const Vec3 end = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo);
+        connection.ray = {seen.from, 0, end - seen.from, 1};
+        connection.start = {};
+        connection.target = surface.triangle;
+        connection.key = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, state.depth(), true);
+        connection.light = (weight * seen.density / seen.distance_squared) * (scattered.particle.f * state.throughput);
+        const uint32_t place = atomic_add(&walks.counts->asked, 1u);
+        walks.ask(place, connection, state.pixel);
+        walks.asked_rasters[place] = seen.raster;
+    }
+    HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, SampleKey key) const {
+        const LightPathSettings& settings = scene.settings;
+        const uint32_t choices = particle_group(state.depth(), kWalkChoices);
+        const WalkDraw draw =
+            draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kWalkScatter), choices);
+        BsdfSample sample = sample_adjoint(surface, wi, draw.lobe, draw.u);
+        if (!(sample.pdf > 0) || !survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
+        const Vec3 wo = sample.wi;
+        if (scene.is_joined) {
+            if (sample.is_delta()) {
+                state.mis.scatter_by_delta(cosine_at(surface, wo));
+            } else {
+                state.mis.scatter(cosine_at(surface, wo), sample.pdf,
+                                  scatter_both_ways<kKnown>(surface, wo, wi).eye.pdf);
+            }
+        }
+        state.throughput = state.throughput * sample.weight;
+        ++state.scatterings;
+        walks.states[walk] = state;
+        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo), 0, wo,
+                         kInfinity};
+        const uint32_t coin =
+            coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, state.depth(), false);
+        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle, coin, round + 1);
+    }
+};
+
+/// What the camera sees of particles.
+struct AddSplats {
+    WalksView walks; // asked_keys: what a tracer found, kNoHit where the ray met nothing
+    PixelFilterView filter;
+    FilmView film;
+
+    HD void operator()(uint32_t i) const {
+        if (walks.asked_keys[i] != kNoHit) return;
+        const Float4 light = walks.asked_light[i];
+        add_splat(film, filter, walks.asked_rasters[i], {light.x, light.y, light.z});
+    }
+};
+
+/// What other connections bring to their pixels.
+struct AddConnections {
+    WalksView walks;
+    FilmView film;
+
+    HD void operator()(uint32_t i) const {
+        if (walks.asked_keys[i] != kNoHit) return;
+        const Float4 light = walks.asked_light[i];
+        add_radiance(film, bits_of(light.w), {light.x, light.y, light.z});
+    }
+};
+
+/// One thread counts what was asked for since the last look, and, where `ends_round`, the rays that go on. `joined`:
+/// vertices of walks from lights that each of the present ones is to be joined to next.
+struct CountWalks {
+    WalkCounts* counts;
+    bool ends_round;
+    uint32_t joined;
+
+    HD void operator()(uint32_t) const {
+        counts->all_asked += counts->asked;
+        counts->asked = 0;
+        counts->pairs = counts->vertices * joined;
+        if (!ends_round) return;
+        counts->bounces += counts->next;
+        counts->rays = counts->next;
+        counts->next = counts->vertices = 0;
+    }
+};
+
+/// One thread: `rays` begin a first round.
+struct BeginWalks {
+    WalkCounts* counts;
+    uint32_t rays;
+
+    HD void operator()(uint32_t) const {
+        counts->rays = rays;
+        counts->next = counts->asked = counts->vertices = counts->pairs = 0;
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,167 @@
+#pragma once
+
+// The two ways to run the stages of walks, with one face: all at once through a queue of the device's, or over a few
+// walks of one thread of the CPU's. What orders the stages is written once, for both.
+
+#include <memory>
+#include <vector>
+
+#include "device/launch.h"
+#include "device/readback.h"
+#include "integrators/light_paths/particle_stages.h"
+#include "render/find_hits.h"
+#include "render/tracer/scene_tracer.h"
+
+namespace pertev {
+
+/// What is to be done with the walks there is room for.
+struct WalkJob {
+    WalkScene scene;
+    FilmView film;
+    WalksView walks;
+    WalkSamples samples;
+    uint64_t first; // of the samples
+    uint32_t count; // of walks of each kind
+};
+
+class WalksOnDevice {
+public:
+    WalksOnDevice(Queue& queue, SceneTracer& tracer, Readback<WalkCounts>& seen)
+        : queue_(queue), tracer_(tracer), seen_(seen) {}
+
+    template <class Stage>
+    void run(const char* name, WorkCount count, const Stage& stage) {
+        launch(queue_, name, count, stage);
+    }
+    void find_hits(RayKind kind, const WalkJob& job, WorkCount rays, uint32_t round) {
+        tracer_.find_hits(kind, job.walks.query(round), rays, job.walks.hits());
+    }
+    /// asked_keys become kNoHit where nothing is met.
+    void find_connections(const WalkJob& job, WorkCount asked) {
+        tracer_.find_occlusions(job.walks.asked_query(), asked, {nullptr, job.walks.asked_keys});
+    }
+    void find_connections_of_camera(const WalkJob& job, WorkCount asked) {
+        if (job.scene.picture.scene.any_hidden_back == 0) return find_connections(job, asked);
+        tracer_.find_hits(RayKind::Camera, job.walks.asked_query(), asked,
+                          {job.walks.hit_places, job.walks.asked_keys});
+    }
+
+    /// The bound of a first round's rays.
+    void begin_rounds(uint32_t most) {
+        if (is_pending_) seen_.wait();
+        is_pending_ = false;
+        most_ = most;
+    }
+    uint32_t most_rays() const { return most_; }
+    /// False once no ray is left: the host gives rounds without waiting for one, and looks one round late.
+    bool has_rays_left(const WalkJob& job) {
+        if (is_pending_) most_ = seen_.wait().rays;
+        is_pending_ = most_ > 0;
+        if (is_pending_) seen_.take(job.walks.counts);
+        return is_pending_;
+    }
+
+private:
+    Queue& queue_;
+    SceneTracer& tracer_;
+    Readback<WalkCounts>& seen_;
+    bool is_pending_ = false;
+    uint32_t most_ = 0;
+};
+
+class WalksInThread {
+public:
+    WalksInThread(const HostTrees& trees, WalkRoom room)
+        : trees_(trees), hits_(std::size_t(room.walks) * room.connections),
+          met_(std::make_unique<bool[]>(std::size_t(room.walks) * room.connections)) {}
+
+    template <class Stage>
+    void run(const char*, WorkCount count, const Stage& stage) {
+        for (uint32_t i = 0; i < count.value(); ++i) stage(i);
+    }
+    void find_hits(RayKind kind, const WalkJob& job, WorkCount rays, uint32_t round) {
+        const WalksView& walks = job.walks;
+        const SceneView& scene = job.scene.picture.scene;
+        const Ray* under_way = walks.rays[round % 2];
+        const auto ray_of = [&](uint32_t i) { return under_way[i]; };
+        const auto accept_of = [&](uint32_t i) {
+            return AcceptHit{scene, {walks.starts[i].x, walks.starts[i].y}, {}, walks.keys[i]};
+        };
+        const RayOrder order = kind == RayKind::Camera ? RayOrder::Together : RayOrder::Scattered;
+        if (kind == RayKind::Camera && scene.any_hidden_back != 0) {
+            const auto accept_camera = [&](uint32_t i) {
+                return AcceptCameraHit{accept_of(i), under_way[i].direction};
+            };
+            pertev::find_hits(trees_, rays.value(), order, ray_of, accept_camera, hits_.data());
+        } else {
+            pertev::find_hits(trees_, rays.value(), order, ray_of, accept_of, hits_.data());
+        }
+        for (uint32_t i = 0; i < rays.value(); ++i) walks.hits().store(i, hits_[i]);
+    }
+    void find_connections(const WalkJob& job, WorkCount asked) {
+        const WalksView& walks = job.walks;
+        find_occlusions(
+            trees_, asked.value(), RayOrder::Together, [&](uint32_t i) { return walks.asked_rays[i]; },
+            [&](uint32_t i) { return accept_asked(job, i); }, met_.get());
+        for (uint32_t i = 0; i < asked.value(); ++i) walks.asked_keys[i] = met_[i] ? 0 : kNoHit;
+    }
+    void find_connections_of_camera(const WalkJob& job, WorkCount asked) {
+        if (job.scene.picture.scene.any_hidden_back == 0) return find_connections(job, asked);
+        const WalksView& walks = job.walks;
+        find_occlusions(
+            trees_, asked.value(), RayOrder::Together, [&](uint32_t i) { return walks.asked_rays[i]; },
+            [&](uint32_t i) {
+                return AcceptCameraHit{accept_asked(job, i), walks.asked_rays[i].direction};
+            },
+            met_.get());
+        for (uint32_t i = 0; i < asked.value(); ++i) walks.asked_keys[i] = met_[i] ? 0 : kNoHit;
+    }
+
+    void begin_rounds(uint32_t most) { most_ = most; }
+    uint32_t most_rays() const { return most_; }
+    bool has_rays_left(const WalkJob& job) {
+        most_ = job.walks.counts->rays;
+        return most_ > 0;
+    }
+
+private:
+    static AcceptHit accept_asked(const WalkJob& job, uint32_t i) {
+        const Uint2 start = job.walks.asked_starts[i], target = job.walks.asked_targets[i];
+        return {job.scene.picture.scene, {start.x, start.y}, {target.x, target.y}, job.walks.asked_keys[i]};
+    }
+
+    const HostTrees& trees_;
+    std::vector<Hit> hits_;
+    std::unique_ptr<bool[]> met_;
+    uint32_t most_ = 0;
+};
+
+/// Calls run.operator()<kKnown>() with what is known of the materials, as far as walks have kernels for it.
+template <class Run>
+void with_known(MaterialsKnown known, const Run& run) {
+    if (known == MaterialsKnown::PlainDiffuse) return run.template operator()<MaterialsKnown::PlainDiffuse>();
+    run.template operator()<MaterialsKnown::Nothing>();
+}
+
+/// All particles of the job to their ends, and what the camera sees of them to the film.
+template <class Way>
+void run_particles(Way& way, const WalkJob& job) {
+    const WalksView& walks = job.walks;
+    way.run("begin_walks", 1, BeginWalks{walks.counts, 0});
+    way.run("begin_particles", job.count, BeginParticles{job.scene, walks, job.samples, job.first});
+    way.run("count_walks", 1, CountWalks{walks.counts, true, 0});
+    way.begin_rounds(job.count);
+    for (uint32_t round = 0; round < job.scene.settings.max_depth && way.has_rays_left(job); ++round) {
+        const WorkCount rays = {way.most_rays(), &walks.counts->rays};
+        const WorkCount asked = {way.most_rays(), &walks.counts->asked};
+        way.find_hits(RayKind::Bounce, job, rays, round);
+        with_known(job.scene.picture.scene.known, [&]<MaterialsKnown kKnown>() {
+            way.run("shade_particles", rays, ShadeParticles<kKnown>{job.scene, walks, round});
+        });
+        way.find_connections_of_camera(job, asked);
+        way.run("add_splats", asked, AddSplats{walks, job.scene.picture.camera.filter, job.film});
+        way.run("count_walks", 1, CountWalks{walks.counts, true, 0});
+    }
+}
+
+} // namespace pertev

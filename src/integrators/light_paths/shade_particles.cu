@@ -1,0 +1,7 @@
+#include "device/launch_body.h"
+#include "integrators/light_paths/particle_stages.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::PlainDiffuse>&);
+} // namespace pertev

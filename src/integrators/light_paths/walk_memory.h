@@ -1,0 +1,177 @@
+#pragma once
+
+// Walks in flight, first from the lights and then from the camera, one of each a sample: arrays in one piece of memory,
+// placed by lay_out() for a device and for a thread of the CPU alike. Rays that are under way lie side by side; what
+// else a walk knows lies at its own number. Vertices of walks from lights stay for the camera's walks to be joined to.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "integrators/light_paths/mis_walk.h"
+#include "math/float4.h"
+#include "math/rgb.h"
+#include "render/accept_hit.h"
+#include "render/ray_queue.h"
+
+namespace pertev {
+
+/// Beside its ray.
+struct alignas(16) WalkState {
+    Rgb throughput; // from the camera: of radiance; from a light: power, W
+    MisWalk mis;
+    uint32_t pixel, sample;   // whose it is
+    uint16_t scatterings = 0; // so far
+    uint16_t is_from_far = 0; // 1: its first way has no distance
+
+    HD uint32_t depth() const { return scatterings; }
+};
+static_assert(sizeof(WalkState) == 32);
+
+/// A surface that a walk has met, from which the other side's is to be joined.
+struct WalkVertex {
+    Hit hit;        // no instance: delta lobes alone, nothing can be joined
+    Vec3 direction; // of the walk, unit
+    Rgb throughput; // on arrival
+    MisWalk mis;
+};
+
+struct WalkVerticesView {
+    Float4 *places, *directions, *throughputs;
+
+    HD void store(std::size_t at, const WalkVertex& vertex) const {
+        const Hit& hit = vertex.hit;
+        places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
+        directions[at] = {vertex.direction.x, vertex.direction.y, vertex.direction.z, vertex.mis.last};
+        throughputs[at] = {vertex.throughput.r, vertex.throughput.g, vertex.throughput.b, vertex.mis.earlier};
+    }
+    HD void store_none(std::size_t at) const { places[at] = {0, 0, float_of(kNoHit), 0}; }
+    HD bool is_there(std::size_t at) const { return bits_of(places[at].z) != kNoHit; }
+    HD WalkVertex load(std::size_t at) const {
+        const Float4 p = places[at], d = directions[at], t = throughputs[at];
+        WalkVertex vertex;
+        vertex.hit = {0, p.x, p.y, bits_of(p.z), bits_of(p.w)};
+        vertex.direction = {d.x, d.y, d.z};
+        vertex.throughput = {t.x, t.y, t.z};
+        vertex.mis = {d.w, t.w};
+        return vertex;
+    }
+};
+
+/// What counts if nothing stands between a ray's ends.
+struct Connection {
+    Ray ray;
+    TriangleId start, target;
+    uint32_t key; // of blended surfaces' coin
+    Rgb light;    // W/(sr m2) of its pixel
+};
+
+/// Of one round.
+struct WalkCounts {
+    uint32_t rays;               // under way
+    uint32_t next;               // that go on after it
+    uint32_t asked;              // connections, since the last look
+    uint32_t vertices;           // of this round's walks that can be joined
+    uint32_t pairs;              // of these with some of those of the walks from lights
+    uint64_t bounces, all_asked; // of all rounds
+};
+
+/// How much there is room for.
+struct WalkRoom {
+    uint32_t walks;
+    uint32_t kept;        // vertices of a walk from a light
+    uint32_t connections; // of each walk at once
+};
+
+struct WalksView {
+    WalkRoom room;
+    WalkState* states; // [walks]
+
+    // Rays under way, side by side. Rounds read and write these and their owners, the walks, in two arrays in turns.
+    Ray* rays[2];
+    Uint2* starts;
+    uint32_t* keys; // of coins
+    uint32_t* owners[2];
+    Float4* hit_places;
+    uint32_t* hit_instances;
+
+    // Vertices of the walks from lights, vertex k of walk i at k * walks + i, and how many each has.
+    WalkVerticesView kept;
+    uint32_t* kept_counts;
+    // Those of the camera's walks in the present round, side by side.
+    WalkVerticesView present;
+    uint32_t* present_owners;
+
+    Ray* asked_rays;
+    Uint2 *asked_starts, *asked_targets;
+    uint32_t* asked_keys; // then what the ray met
+    Float4* asked_light;  // rgb, bits of the pixel
+    Vec2* asked_rasters;  // [walks] of those of the camera with a particle
+
+    WalkCounts* counts;
+
+    RayQueueView query(uint32_t round) const { return {.rays = rays[round % 2], .starts = starts, .keys = keys}; }
+    RayQueueView asked_query() const {
+        return {.rays = asked_rays, .starts = asked_starts, .targets = asked_targets, .keys = asked_keys};
+    }
+    HD HitQueueView hits() const { return {hit_places, hit_instances}; }
+    HD std::size_t kept_place(uint32_t walk, uint32_t number) const { return std::size_t(number) * room.walks + walk; }
+
+    HD void queue_ray(uint32_t place, uint32_t walk, const Ray& ray, TriangleId start, uint32_t key,
+                      uint32_t round) const {
+        store_ray(rays[round % 2] + place, ray);
+        starts[place] = {start.instance, start.primitive};
+        keys[place] = key;
+        owners[round % 2][place] = walk;
+    }
+    HD void ask(uint32_t place, const Connection& connection, uint32_t pixel) const {
+        store_ray(asked_rays + place, connection.ray);
+        asked_starts[place] = {connection.start.instance, connection.start.primitive};
+        asked_targets[place] = {connection.target.instance, connection.target.primitive};
+        asked_keys[place] = connection.key;
+        asked_light[place] = {connection.light.r, connection.light.g, connection.light.b, float_of(pixel)};
+    }
+};
+
+/// Places the arrays one after the other from `memory` on, a multiple of 16. Returns the bytes that they take; with no
+/// memory that is all it does.
+inline std::size_t lay_out(WalksView& view, std::byte* memory, WalkRoom room) {
+    std::size_t bytes = 0;
+    const auto place = [&]<class T>(T*& array, std::size_t count) {
+        array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
+        bytes += (count * sizeof(T) + 15) / 16 * 16;
+    };
+    const auto place_vertices = [&](WalkVerticesView& vertices, std::size_t count) {
+        place(vertices.places, count);
+        place(vertices.directions, count);
+        place(vertices.throughputs, count);
+    };
+    const std::size_t walks = room.walks, joins = room.kept > 0 ? walks : 0, asked = walks * room.connections;
+    view.room = room;
+    place(view.states, walks);
+    place(view.rays[0], walks);
+    place(view.rays[1], walks);
+    place(view.starts, walks);
+    place(view.keys, walks);
+    place(view.owners[0], walks);
+    place(view.owners[1], walks);
+    place(view.hit_places, walks);
+    place(view.hit_instances, walks);
+    place_vertices(view.kept, walks * room.kept);
+    place(view.kept_counts, joins);
+    place_vertices(view.present, joins);
+    place(view.present_owners, joins);
+    place(view.asked_rays, asked);
+    place(view.asked_starts, asked);
+    place(view.asked_targets, asked);
+    place(view.asked_keys, asked);
+    place(view.asked_light, asked);
+    place(view.asked_rasters, walks);
+    place(view.counts, 1);
+    return bytes;
+}
+inline std::size_t bytes_of(WalkRoom room) {
+    WalksView view;
+    return lay_out(view, nullptr, room);
+}
+
+} // namespace pertev

@@ -1,0 +1,177 @@
+// The one-picture law for walks from the lights: light and bidirectional give the same bytes for any number of threads,
+// any split of the samples, all stages over all walks or a few walks a thread, any number of them in flight. With
+// --device cuda the GPU joins in.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel_for.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr IntegratorKind kWalks[] = {IntegratorKind::Light, IntegratorKind::Bidirectional};
+
+RenderSettings walk_settings(IntegratorKind integrator) {
+    RenderSettings settings;
+    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.height = 21;
+    settings.samples = 4;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    settings.transparent = true;
+    settings.integrator = integrator;
+    settings.path.max_depth = 6;
+    return settings;
+}
+
+Camera camera_with_lens() {
+    Camera camera = test::mixed_scene_camera();
+    camera.aperture_radius = 0.05f;
+    camera.focus_distance = 6;
+    return camera;
+}
+
+struct WalkPicture {
+    Hash128 hash;
+    RayCounts rays;
+};
+
+WalkPicture picture_of(Queue& queue, const RenderSettings& settings) {
+    const RenderResult result = test::render(queue, test::make_mixed_scene(), camera_with_lens(), settings);
+    CHECK(result.invalid_samples == 0);
+    return {test::render_hash(result), result.rays};
+}
+
+void check_same(const WalkPicture& a, const WalkPicture& b) {
+    CHECK(a.hash == b.hash);
+    CHECK(a.rays.camera == b.rays.camera);
+    CHECK(a.rays.bounce == b.rays.bounce);
+    CHECK(a.rays.shadow == b.rays.shadow);
+}
+
+} // namespace
+
+TEST_CASE("pictures of walks from the lights do not depend on threads, passes, bodies or how many are in flight") {
+    for (const IntegratorKind integrator : kWalks) {
+        CAPTURE(static_cast<int>(integrator));
+        Queue queue = Queue::make_cpu();
+        RenderSettings settings = walk_settings(integrator);
+        const WalkPicture reference = picture_of(queue, settings);
+        CHECK(reference.rays.bounce > 37 * 21);
+        CHECK(reference.rays.shadow > 37 * 21);
+
+        set_thread_count(1);
+        check_same(picture_of(queue, settings), reference);
+        set_thread_count(5);
+        settings.pass_samples = 3;
+        check_same(picture_of(queue, settings), reference);
+        set_thread_count(0);
+        settings.body = PathBody::Wavefront;
+        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
+            settings.batch = batch;
+            check_same(picture_of(queue, settings), reference);
+            if (!test::cuda_requested()) continue;
+            Queue gpu = test::make_cuda_queue();
+            check_same(picture_of(gpu, settings), reference);
+        }
+        settings.path.seed = 1;
+        CHECK(picture_of(queue, settings).hash != reference.hash);
+    }
+}
+
+TEST_CASE("walks from the camera tell the same of the first surface as path tracing") {
+    Queue queue = test::queue_asked_for();
+    const auto layers_of = [&](IntegratorKind integrator) {
+        RenderSettings settings = walk_settings(integrator);
+        settings.samples = 2;
+        RenderResult result = test::render(queue, test::make_mixed_scene(), camera_with_lens(), settings);
+        std::ranges::fill(result.picture.pixels, 0.0f);
+        return test::render_hash(result);
+    };
+    const Hash128 of_path = layers_of(IntegratorKind::Path);
+    for (const IntegratorKind integrator : kWalks) CHECK(layers_of(integrator) == of_path);
+}
+
+TEST_CASE("without a scattering all that is left is what the camera looks straight at, whatever the integrator") {
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings = walk_settings(IntegratorKind::Path);
+    settings.path.max_depth = 0;
+    const Hash128 of_path = picture_of(queue, settings).hash;
+    for (const IntegratorKind integrator : kWalks) {
+        settings.integrator = integrator;
+        CHECK(picture_of(queue, settings).hash == of_path);
+    }
+}
+
+TEST_CASE("a session goes to walks from the lights and back, ends early and goes on, and each picture is whole") {
+    Queue queue = Queue::make_cpu();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = walk_settings(IntegratorKind::Path);
+    settings.samples = 2;
+    settings.pass_samples = 1;
+    Session session(queue, prepared, camera_with_lens(), settings);
+    std::atomic<bool> is_abandoned = false;
+    session.abandon_when(&is_abandoned);
+    for (const IntegratorKind integrator :
+         {IntegratorKind::Light, IntegratorKind::Bidirectional, IntegratorKind::Path, IntegratorKind::Bidirectional}) {
+        settings.integrator = integrator;
+        settings.path.max_depth = settings.path.max_depth == 6 ? 3 : 6; // less memory, and more
+        session.set_settings(settings);
+        is_abandoned = true;
+        CHECK(session.render(settings.samples) == 0);
+        is_abandoned = false;
+        // Asked to end after its first pass, and gone on with: what Ctrl-C and a render anew do.
+        CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
+        CHECK(session.render(settings.samples - 1) == settings.samples - 1);
+        CHECK(test::render_hash(session.result()) ==
+              test::render_hash(test::render(queue, scene, camera_with_lens(), settings)));
+    }
+}
+
+TEST_CASE("memory of walks is said beforehand, and is a GiB at most") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    for (const IntegratorKind integrator : kWalks) {
+        RenderSettings settings = walk_settings(integrator);
+        settings.body = PathBody::Wavefront;
+        Queue queue = test::queue_asked_for();
+        Session session(queue, prepared, camera_with_lens(), settings);
+        session.render(settings.samples);
+        const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
+        CHECK(queue.allocated_bytes() >= predicted);
+        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
+        for (const uint32_t depth : {0u, 8u, 255u}) {
+            settings.path.max_depth = depth;
+            CHECK(predicted_bytes(settings, uint64_t(1) << 26, 64, true, false) <= std::size_t(1) << 30);
+        }
+    }
+}
+
+TEST_CASE("walks from the lights are no frames, and are not too deep") {
+    RenderSettings settings = walk_settings(IntegratorKind::Bidirectional);
+    settings.denoise = Denoise::Svgf;
+    Queue queue = Queue::make_cpu();
+    Messages messages;
+    const Scene scene = test::make_furnace_scene(0.5f);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto refused = [&](const auto& body) { return test::bad_input_message(body); };
+    CHECK(refused([&] { Session(queue, prepared, {}, settings); }) ==
+          "--denoise svgf: reconstructs pictures of --integrator path, not of bidirectional");
+    settings.denoise = Denoise::None;
+    Session session(queue, prepared, {}, settings);
+    CHECK(refused([&] { session.render_frame(0, {}); }) ==
+          "--integrator bidirectional: frames are reconstructed of path's samples alone");
+    settings.path.max_depth = 256;
+    const auto error = test::thrown_error([&] { session.set_settings(settings); });
+    CHECK(test::says(error, "--max-depth 256: with --integrator bidirectional at most 255"));
+}

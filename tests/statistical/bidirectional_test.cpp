@@ -1,0 +1,144 @@
+// Light tracing and bidirectional path tracing against path tracing, where both find the same light; and what one of
+// them finds and another does not.
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/support/compare_pictures.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+/// A box's six sheets, their fronts outwards, edges along the axes turned by an eighth about y.
+void add_box(Scene& scene, Vec3 centre, Vec3 half, const Material& material) {
+    const Vec3 x = {0.8f * half.x, 0, 0.6f * half.x}, y = {0, half.y, 0}, z = {-0.6f * half.z, 0, 0.8f * half.z};
+    for (const float side : {1.0f, -1.0f}) {
+        test::add(scene, test::sheet(centre + side * x, side * y, z), material);
+        test::add(scene, test::sheet(centre + side * y, side * z, x), material);
+        test::add(scene, test::sheet(centre + side * z, side * x, y), material);
+    }
+}
+
+/// A room that is open to the camera: a lamp under its ceiling, and a box.
+Scene make_room(const Material& box, const Material& floor = test::white(0.6f), bool has_lamp = true) {
+    Scene scene;
+    const Material red = {.name = "red", .base_color = {0.7f, 0.2f, 0.2f}};
+    test::add(scene, test::sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), floor);
+    test::add(scene, test::sheet({0, 1, -1}, {1, 0, 0}, {0, 1, 0}), test::white(0.6f));
+    test::add(scene, test::sheet({-1, 1, 0}, {0, 1, 0}, {0, 0, 1}), red);
+    add_box(scene, {0.2f, 0.4f, 0.1f}, {0.35f, 0.35f, 0.35f}, box);
+    if (!has_lamp) return scene;
+    test::add(scene, test::sheet({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), test::white(0.6f));
+    test::add(scene, test::sheet({-0.2f, 1.9f, 0}, {0.6f, 0, 0}, {0, 0, 0.6f}),
+              {.name = "lamp", .base_color = {0.2f, 0.2f, 0.2f}, .emission = {4, 3.5f, 3}});
+    return scene;
+}
+
+Camera room_camera() {
+    Camera camera;
+    camera.world_from_camera = look_at({0.4f, 1.1f, 3.6f}, {0, 0.9f, 0}, {0, 1, 0});
+    camera.fov_y = 0.6f;
+    return camera;
+}
+
+Material plastic(float roughness) {
+    return {.name = "plastic",
+            .kind = MaterialKind::MetallicRoughness,
+            .base_color = {0.3f, 0.5f, 0.7f},
+            .roughness = roughness};
+}
+Material glass() {
+    return {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0};
+}
+
+struct Case {
+    std::string name;
+    Scene scene;
+    Camera camera = room_camera();
+    bool light_finds_all = true;
+    PixelFilter filter = PixelFilter::BlackmanHarris;
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    all.push_back({.name = "diffuse", .scene = make_room(test::white(0.8f))});
+
+    Material metal = {.name = "metal",
+                      .kind = MaterialKind::MetallicRoughness,
+                      .base_color = {0.9f, 0.8f, 0.6f},
+                      .metallic = 1,
+                      .roughness = 0.45f};
+    all.push_back({.name = "glossy", .scene = make_room(metal, plastic(0.5f)), .filter = PixelFilter::Gaussian});
+
+    all.push_back({.name = "glass", .scene = make_room(glass()), .light_finds_all = false});
+
+    Case delta = {.name = "delta lights", .scene = make_room(plastic(0.6f), test::white(0.6f), false)};
+    delta.filter = PixelFilter::Tent;
+    delta.scene.lights = test::make_mixed_scene().lights;
+    delta.scene.lights[0].position = {0.6f, 1.5f, 0.8f};
+    delta.scene.lights[0].range = 3;
+    delta.scene.lights[1].position = {1, 2.5f, 1};
+    delta.scene.lights[1].direction = normalize(Vec3{-1, -2, -1});
+    all.push_back(delta);
+
+    Case environment = {.name = "environment", .scene = make_room(metal, test::white(0.6f), false)};
+    environment.scene.environment = test::make_mixed_scene().environment;
+    environment.scene.materials[1].alpha = 0.5f; // the wall behind, seen through half of the time
+    environment.scene.materials[1].alpha_mode = AlphaMode::Blend;
+    environment.camera.projection = Projection::Orthographic;
+    environment.camera.ortho_height = 2.4f;
+    environment.filter = PixelFilter::Box;
+    all.push_back(environment);
+
+    Case lens = {.name = "depth of field", .scene = make_room(test::white(0.8f))};
+    // The camera looks through its back; light does not.
+    test::add(lens.scene, test::sheet({-0.3f, 0.5f, 0.8f}, {-0.3f, 0, 0}, {0, 0.3f, 0}), test::white(0.7f));
+    lens.scene.materials.back().double_sided = false;
+    lens.camera.aperture_radius = 0.2f;
+    lens.camera.focus_distance = 3.4f;
+    all.push_back(lens);
+    return all;
+}
+
+RenderSettings settings_of(const Case& c) {
+    RenderSettings settings;
+    settings.width = settings.height = 12;
+    settings.filter = c.filter;
+    settings.path.max_depth = 5;
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("bidirectional and light tracing give path tracing's picture where they find the same light") {
+    Queue queue = test::queue_asked_for();
+    for (const Case& c : cases()) {
+        CAPTURE(c.name);
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
+        const auto estimate = [&](IntegratorKind integrator, uint32_t samples, uint32_t first_seed) {
+            RenderSettings settings = settings_of(c);
+            settings.integrator = integrator;
+            settings.samples = samples;
+            return test::estimate_picture(queue, prepared, c.camera, settings, 24, first_seed);
+        };
+        const test::PictureEstimate path = estimate(IntegratorKind::Path, 64, 1000);
+        const test::PictureEstimate both = estimate(IntegratorKind::Bidirectional, 16, 1);
+        CHECK(test::p_value(both, path) > 0.001);
+        CHECK(test::p_value(test::brightened(both, 1.07, 5e-3), path) < 1e-4); // the test can see
+        const test::PictureEstimate light = estimate(IntegratorKind::Light, 48, 500);
+        const double same = test::p_value(light, path);
+        if (c.light_finds_all) {
+            CHECK(same > 0.001);
+            CHECK(test::p_value(test::brightened(light, 1.1, 5e-3), path) < 1e-3);
+        } else {
+            CHECK(same < 1e-6);
+        }
+    }
+}

@@ -1,0 +1,130 @@
+// Light tracing's parts against what they invert, and pictures of light and bidirectional in closed form.
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "integrators/light_paths/see_vertex.h"
+#include "integrators/light_paths/splat.h"
+#include "render/filter_table.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/random.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+TEST_CASE("a filter's density is that by which the camera's rays are drawn") {
+    Queue queue = Queue::make_cpu();
+    for (const PixelFilter kind :
+         {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {
+        CAPTURE(static_cast<int>(kind));
+        FilterTable table(queue);
+        const PixelFilterView filter = table.set(kind, 1.25f);
+        constexpr int kSteps = 20000;
+        double sum = 0;
+        int next = 1;
+        for (int i = 0; i < kSteps; ++i) {
+            const float x = 1.25f * (2.0f * (static_cast<float>(i) + 0.5f) / kSteps - 1.0f);
+            sum += static_cast<double>(filter_density(filter, x)) * 2.5 / kSteps;
+            while (next < 50 && sample_filter_axis(filter, static_cast<float>(next) / 50) < x) {
+                CHECK(sum == doctest::Approx(next / 50.0).epsilon(1e-3)); // what lies below it
+                ++next;
+            }
+        }
+        CHECK(next == 50);
+        CHECK(sum == doctest::Approx(1).epsilon(1e-3));
+        CHECK(filter_density(filter, 1.26f) == 0);
+    }
+}
+
+TEST_CASE("a vertex is seen where the camera's ray to it comes from") {
+    test::Random random(7);
+    for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
+        for (const float aperture : {0.0f, 0.3f}) {
+            Camera camera;
+            camera.projection = projection;
+            camera.world_from_camera = look_at({1, 2, 3}, {-0.5f, 0.2f, -1}, {0.1f, 1, 0});
+            camera.fov_y = 0.8f;
+            camera.aperture_radius = aperture;
+            camera.focus_distance = 2.5f;
+            const CameraRays rays = make_camera_rays(camera, {PixelFilter::Box, 0.5f, nullptr}, 40, 30, {0, 0, 0});
+            for (int i = 0; i < 100; ++i) {
+                const float x = 40 * random.unit(), y = 30 * random.unit(), distance = 1 + 4 * random.unit();
+                const float u = random.unit();
+                const Vec2 lens = {u, random.unit()};
+                const Ray ray = make_camera_ray(rays.view, {x, y}, lens);
+                SeenVertex seen;
+                REQUIRE(see_vertex(rays, ray.origin + distance * ray.direction, lens, seen));
+                CHECK(seen.raster.x == doctest::Approx(x).epsilon(1e-4));
+                CHECK(seen.raster.y == doctest::Approx(y).epsilon(1e-4));
+                CHECK(length(seen.from - ray.origin) < 1e-4f);
+                CHECK(length(seen.direction - ray.direction) < 1e-4f);
+                CHECK_FALSE(see_vertex(rays, ray.origin - distance * ray.direction, lens, seen)); // behind it
+            }
+        }
+    }
+}
+
+namespace {
+
+/// A floor under a spot light that stands one metre above it and shines straight down.
+Scene floor_under_spot() {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 4), test::white(0.5f));
+    Light spot = test::point_light({0, 1, 0}, {8, 8, 8});
+    spot.kind = LightKind::Spot;
+    spot.direction = {0, -1, 0};
+    spot.cos_inner = 0.971f;
+    spot.cos_outer = 0.97f;
+    scene.lights.push_back(spot);
+    return scene;
+}
+
+/// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
+double seen_below(const Scene& scene, IntegratorKind integrator, uint32_t samples, float eye = 0.1f) {
+    RenderSettings settings;
+    settings.width = settings.height = 8;
+    settings.samples = samples;
+    settings.integrator = integrator;
+    settings.filter = PixelFilter::Box;
+    settings.path.max_depth = 6;
+    Queue queue = test::queue_asked_for();
+    const RenderResult result = test::render(queue, scene, test::camera_down({0, eye, 0}, 0.2f), settings);
+    return test::mean_of(result.picture);
+}
+
+constexpr double kFloor = 0.5 * 8 / 3.14159265; // albedo I / pi, at 1 m; 1 % less towards the view's corners
+
+} // namespace
+
+TEST_CASE("a floor under a spot light has the radiance of the closed form") {
+    CHECK(seen_below(floor_under_spot(), IntegratorKind::Path, 4) == doctest::Approx(kFloor).epsilon(0.02));
+    CHECK(seen_below(floor_under_spot(), IntegratorKind::Light, 4096) == doctest::Approx(kFloor).epsilon(0.02));
+    CHECK(seen_below(floor_under_spot(), IntegratorKind::Bidirectional, 256) == doctest::Approx(kFloor).epsilon(0.02));
+}
+
+TEST_CASE("a light without size behind glass lights the floor, but for path tracing, which cannot find it") {
+    Scene scene = floor_under_spot();
+    const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f};
+    test::add(scene, test::floor_at(0.6f, 2), glass);
+    test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
+    scene.materials.back().roughness = scene.materials[1].roughness = 0;
+    // All mirrored ways between the two faces together let 2 n / (n^2 + 1) through; the light seems 0.2 (1 - 1 / n) m
+    // nearer.
+    const double nearer = 1 - 0.2 * (1 - 1 / 1.5), expected = kFloor * 2 * 1.5 / (1.5 * 1.5 + 1) / (nearer * nearer);
+    CHECK(seen_below(scene, IntegratorKind::Path, 64) == 0);
+    CHECK(seen_below(scene, IntegratorKind::Light, 4096) == doctest::Approx(expected).epsilon(0.03));
+    CHECK(seen_below(scene, IntegratorKind::Bidirectional, 4096) == doctest::Approx(expected).epsilon(0.03));
+}
+
+TEST_CASE("particles do not show what is seen in a mirror; walks from both ends do") {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 4), test::mirror());
+    test::add(scene, test::sheet({0, 2, 0}, {4, 0, 0}, {0, 0, 4}),
+              {.name = "lamp", .base_color = {0, 0, 0}, .emission = {3, 3, 3}});
+    const double path = seen_below(scene, IntegratorKind::Path, 16);
+    CHECK(path == doctest::Approx(3).epsilon(0.01));
+    CHECK(seen_below(scene, IntegratorKind::Light, 16) == 0);
+    CHECK(seen_below(scene, IntegratorKind::Bidirectional, 16) == doctest::Approx(path).epsilon(1e-6));
+}
