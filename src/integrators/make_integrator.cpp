@@ -2,6 +2,7 @@
 
 #include "base/limits.h"
 #include "integrators/path/path_integrator.h"
+#include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 
 namespace pertev {
@@ -10,6 +11,14 @@ namespace {
 RayTreeSettings tree_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .sampler = settings.path.sampler,
+            .seed = settings.path.seed,
+            .has_ambient = settings.ambient.has_value(),
+            .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
+}
+
+RasterSettings raster_settings(const IntegratorSettings& settings) {
+    return {.look = settings.look,
+            .max_depth = settings.path.max_depth,
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
@@ -28,23 +37,30 @@ void set_tree_settings(Integrator& integrator, const IntegratorSettings& setting
 
 } // namespace
 
-bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path || kind == IntegratorKind::Hybrid; }
 
-bool finds_all_light(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+bool rasterises_camera(IntegratorKind kind) { return kind == IntegratorKind::Hybrid || kind == IntegratorKind::Raster; }
 
-uint32_t most_depth(IntegratorKind kind) { return kind == IntegratorKind::Path ? kMaxPathDepth - 1 : kMaxTreeDepth; }
+bool lists_tiles(IntegratorKind kind) { return kind == IntegratorKind::Hybrid; }
+
+bool finds_all_light(IntegratorKind kind) { return makes_frames(kind); }
+
+uint32_t most_depth(IntegratorKind kind) {
+    return makes_frames(kind) || kind == IntegratorKind::Raster ? kMaxPathDepth - 1 : kMaxTreeDepth;
+}
 
 bool needs_punctual_lights(IntegratorKind kind) {
-    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted;
+    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted || kind == IntegratorKind::Raster;
 }
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
-    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient;
+    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
     switch (settings.integrator) {
     case IntegratorKind::Path:
+    case IntegratorKind::Hybrid:
         break;
     case IntegratorKind::Cast:
         return make_ray_tree<Cast>(queue, settings);
@@ -52,14 +68,18 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
         return make_ray_tree<Whitted>(queue, settings);
     case IntegratorKind::Distributed:
         return make_ray_tree<Distributed>(queue, settings);
+    case IntegratorKind::Raster:
+        return std::make_unique<RasterIntegrator>(queue, raster_settings(settings));
     }
-    return std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
+    return std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch,
+                                            lists_tiles(settings.integrator));
 }
 
 bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to) {
     if (from.integrator != to.integrator || from.body != to.body || from.batch != to.batch) return false;
     switch (to.integrator) {
     case IntegratorKind::Path:
+    case IntegratorKind::Hybrid:
         static_cast<PathIntegrator&>(integrator).set_settings(to.path);
         break;
     case IntegratorKind::Cast:
@@ -71,16 +91,22 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::Distributed:
         set_tree_settings<Distributed>(integrator, to);
         break;
+    case IntegratorKind::Raster:
+        static_cast<RasterIntegrator&>(integrator).set_settings(raster_settings(to));
+        break;
     }
     return true;
 }
 
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
                             bool walks_itself) {
+    if (settings.integrator == IntegratorKind::Raster) return RasterIntegrator::predicted_bytes(pixels);
     if (walks_itself && settings.body == PathBody::Loop) return 0;
     const uint64_t all = pixels * samples;
     switch (settings.integrator) {
     case IntegratorKind::Path:
+    case IntegratorKind::Hybrid:
+    case IntegratorKind::Raster:
         break;
     case IntegratorKind::Cast:
         return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch);

@@ -115,6 +115,10 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                             {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)}};
     if (settings.ambient && needs_punctual_lights(settings.integrator))
         metadata.emplace_back("pertev.ambient", comma_separated(*settings.ambient));
+    if (settings.integrator == IntegratorKind::Raster) {
+        metadata.emplace_back("pertev.shading", std::string(name_of(settings.look.shading)));
+        metadata.emplace_back("pertev.wireframe", static_cast<int32_t>(settings.look.is_wireframe));
+    }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }

@@ -73,18 +73,23 @@ std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bo
 }
 
 std::size_t PathIntegrator::bytes() const {
-    if (wavefronts_.empty()) return 0;
+    const std::size_t of_raster = raster_ ? raster_->bytes() : 0;
+    if (wavefronts_.empty()) return of_raster;
     const uint64_t paths = wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
-    return wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda());
+    return of_raster + wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda());
 }
 
-PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch)
-    : queue_(queue), settings_(settings), body_(body), batch_(batch) {}
+PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch,
+                               bool rasterises)
+    : queue_(queue), settings_(settings), body_(body), batch_(batch) {
+    if (rasterises) raster_.emplace(queue);
+}
 
 void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     picture_ = picture;
     tracer_ = &tracer;
     rays_ = {};
+    if (raster_) raster_->begin(picture);
     if (trees_of_loop() != nullptr) return;
     const uint64_t all = uint64_t(picture.camera.width) * picture.camera.height * samples;
     const Size size = size_for(all, batch_, queue_.is_cuda());
@@ -121,11 +126,12 @@ PathSettings PathIntegrator::settings_for(const FilmView& film) const {
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
     const PathSettings settings = settings_for(film);
+    const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
     std::atomic<uint64_t> bounces{0}, shadows{0};
     parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
         if (abandon_ != nullptr && *abandon_) return;
         RayCounts counts;
-        render_pixels(picture_, settings, trees, film, {begin, end, first, count}, counts);
+        render_pixels(picture_, settings, {trees, raster}, film, {begin, end, first, count}, counts);
         bounces += counts.bounce;
         shadows += counts.shadow;
     });
@@ -205,8 +211,12 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
             const WorkCount fresh = {most, &counts->fresh};
             launch(queue_, "generate_paths", fresh,
                    GeneratePaths{picture_.camera, work.settings, counts, pixels, last, any_alpha, paths});
-            tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh,
-                               {hits.places + last, hits.instances + last, -1});
+            const HitQueueView camera_hits = {hits.places + last, hits.instances + last, -1};
+            if (raster_) {
+                tracer_->find_hits(*raster_, paths.query_back(last), fresh, camera_hits);
+            } else {
+                tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits);
+            }
         }
         const WorkCount active = {most, &counts->active};
         const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave>() {

@@ -12,8 +12,8 @@ constexpr uint32_t kPaths = 128; // side by side: 30 KB, of a cache of 1 MB that
 
 class PathGroup {
 public:
-    PathGroup(const PictureView& picture, const PathSettings& settings, const HostTrees& trees, const FilmView& film)
-        : picture_(picture), settings_(settings), trees_(trees), film_(film) {}
+    PathGroup(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees, const FilmView& film)
+        : picture_(picture), settings_(settings), trees_(trees.trees), raster_(trees.raster), film_(film) {}
 
     bool is_full() const { return count_ == kPaths; }
     bool is_empty() const { return count_ == 0; }
@@ -89,6 +89,13 @@ private:
         };
         if (begin == end) return;
         const bool from_camera = paths_[begin].depth == 0;
+        if (from_camera && raster_ != nullptr) {
+            for (uint32_t i = begin; i < end; ++i) {
+                hits_[i] = find_in_tile(*raster_, picture_.scene, ray_of(i - begin), paths_[i].pixel,
+                                        key_of(paths_[i], false));
+            }
+            return;
+        }
         const RayOrder order = from_camera ? RayOrder::Together : RayOrder::Scattered;
         if (from_camera && picture_.scene.any_hidden_back != 0) {
             const auto accept_camera = [&](uint32_t i) {
@@ -147,6 +154,7 @@ private:
     const PictureView& picture_;
     const PathSettings& settings_;
     const HostTrees& trees_;
+    const TileRasterView* raster_;
     const FilmView& film_;
     const bool splits_light_ = film_.frame.splits_light();
     const bool tells_bounce_ = film_.frame.first_bounce.tells_bounce();
@@ -161,7 +169,7 @@ private:
 
 } // namespace
 
-void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
                    const FilmView& film, const PixelSamples& work, RayCounts& counts) {
     PathGroup group(picture, settings, trees, film);
     const uint32_t width = picture.camera.width, height = picture.camera.height;

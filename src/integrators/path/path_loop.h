@@ -7,6 +7,7 @@
 #include "integrators/path/path_settings.h"
 #include "render/film_view.h"
 #include "render/picture_view.h"
+#include "render/raster/find_in_tile.h"
 #include "trace/scene_trees.h"
 
 namespace pertev {
@@ -17,8 +18,14 @@ struct PixelSamples {
     uint32_t first_sample, samples;
 };
 
+/// What rays are traced in; what camera rays meet is found in `raster` where there is one.
+struct LoopTrees {
+    const HostTrees& trees;
+    const TileRasterView* raster;
+};
+
 /// Adds the samples to the film. What was traced beside camera rays is added to `counts`.
-void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
                    const FilmView& film, const PixelSamples& work, RayCounts& counts);
 
 } // namespace pertev
