@@ -42,31 +42,29 @@ private:
         const Vec2 weights = weights_at(corners.p, pass.camera.x_of(static_cast<double>(place.x)),
                                         pass.camera.y_of(static_cast<double>(place.y)));
         const RasterShading shading = pass.settings.look.shading;
-        // Corners, the middle of the triangle, or the pixel, which layers always want.
-        const Vec2 at[] = {{0, 0}, {1, 0}, {0, 1}, shading == RasterShading::Flat ? Vec2{1.0f / 3, 1.0f / 3} : weights};
+        // The corners (gouraud), the middle of the triangle (flat), and the pixel, which layers always want.
+        const Vec2 at[] = {{0, 0}, {1, 0}, {0, 1}, {1.0f / 3, 1.0f / 3}, weights};
         const float of_corner[] = {1 - weights.x - weights.y, weights.x, weights.y};
         Rgb sum = {};
-        for (int k = shading == RasterShading::Gouraud ? 0 : 3; k < 5; ++k) {
-            const bool is_pixel = k == 4;
-            const Vec2 uv = is_pixel ? weights : at[k];
-            const Hit hit = {depth, uv.x, uv.y, corners.instance, corners.primitive};
-            const Vec3 direction = is_pixel || shading == RasterShading::Phong || !pass.camera.is_perspective
+        const int first = pass.settings.look.is_wireframe || shading == RasterShading::Phong ? 4
+                          : shading == RasterShading::Gouraud                                ? 0
+                                                                                             : 3;
+        for (int k = first; k < 5; ++k) {
+            if (k == 3 && shading == RasterShading::Gouraud) continue;
+            const Hit hit = {depth, at[k].x, at[k].y, corners.instance, corners.primitive};
+            const Vec3 direction = k == 4 || !pass.camera.is_perspective
                                        ? ray.direction
                                        : normalize_or(place_of(hit) - ray.origin, ray.direction);
             Surface surface = make_surface(scene, hit, direction);
-            if (is_pixel) {
+            if (k == 4) {
                 add_first_hit(film, pixel, pass.sample, {ray.origin, ray.direction}, hit, surface, pass.picture);
-            } else if (pass.settings.look.is_wireframe) {
-                sum = surface.albedo; // lines show their colour as it is
-            } else if (k < 3) {
-                sum += of_corner[k] * lit(surface, -direction);
-            } else if (shading != RasterShading::Gouraud) {
-                if (shading == RasterShading::Flat) {
-                    surface.frame = make_frame(surface.geometric_normal);
-                    surface.tilt = 0;
-                }
-                sum = lit(surface, -direction);
+                if (pass.settings.look.is_wireframe) return surface.albedo; // lines show their colour as it is
+                if (shading != RasterShading::Phong) return sum;
+            } else if (k == 3) {
+                surface.frame = make_frame(surface.geometric_normal);
+                surface.tilt = 0;
             }
+            sum += (k < 3 ? of_corner[k] : 1.0f) * lit(surface, -direction);
         }
         return sum;
     }
