@@ -48,6 +48,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
     check_light(settings, benched->scene, messages);
     benched->camera = choose_camera(flags.scene, benched->scene, aspect_of(settings.width, settings.height), messages);
+    check_camera(settings, benched->camera);
     throw_if_interrupted();
     reporter.set_work("building trees");
     benched->prepared = prepare_scene(benched->scene, {}, messages);

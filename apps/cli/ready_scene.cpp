@@ -63,6 +63,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     check_light(settings, scene, messages);
     ready->camera.emplace(camera_choice(flags.scene), path, scene, aspect_of(settings.width, settings.height),
                           messages);
+    check_camera(settings, ready->camera->at(scene, std::nullopt));
     ready->load_s = watch.seconds();
     PrepareOptions prepare = prepare_options(settings, machine.is_cuda());
     prepare.may_be_better = may_be_better(flags.tracer);

@@ -125,13 +125,21 @@ RenderSettings light_settings(const RenderFlags& flags) {
                      .sampler = *sampler_named(flags.sampler),
                      .seed = flags.seed};
     if (!flags.ambient.empty()) settings.ambient = parse_radiance("--ambient", flags.ambient);
+    if (!flags.shading.empty()) settings.look.shading = *shading_named(flags.shading);
+    settings.look.is_wireframe = flags.wireframe;
     set_integrator(settings, flags.integrator);
     check_integrator(settings);
+    const bool is_raster = settings.integrator == IntegratorKind::Raster;
+    refuse(!flags.shading.empty() && !is_raster,
+           fmt::format("--shading: of --integrator raster; {} shades every sample", flags.integrator));
+    refuse(flags.wireframe && !is_raster, "--wireframe: of --integrator raster");
+    refuse(flags.wireframe && !flags.shading.empty(), "--shading: with --wireframe nothing is shaded");
     refuse(
         settings.ambient && !needs_punctual_lights(settings.integrator),
-        fmt::format("--ambient: a light of --integrator cast and whitted; {} finds what comes from all around itself",
-                    flags.integrator));
-    refuse(settings.path.clamp > 0 && settings.integrator != IntegratorKind::Path,
+        fmt::format(
+            "--ambient: a light of --integrator cast, whitted and raster; {} finds what comes from all around itself",
+            flags.integrator));
+    refuse(settings.path.clamp > 0 && !makes_frames(settings.integrator),
            fmt::format("--clamp: of --integrator path, not of {}", flags.integrator));
     return settings;
 }
@@ -244,7 +252,8 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->capture_default_str()
         ->group(group);
     verb.add_option("--integrator", flags.integrator,
-                    "path, or its parts direct and indirect; cast, whitted,\ndistributed; light, bidirectional (docs/transport.md)")
+                    "path, or its parts direct and indirect; hybrid, cast,\nwhitted, distributed, raster; light, "
+                    "bidirectional\n(docs/transport.md)")
         ->type_name("NAME")
         ->check(one_of(integrator_names()))
         ->capture_default_str()
@@ -255,10 +264,16 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->capture_default_str()
         ->group(group);
     verb.add_option("--ambient", flags.ambient,
-                    "of cast and whitted: radiance from all around that diffuse\nsurfaces reflect (cast 0, whitted the "
-                    "environment's mean)")
+                    "of cast, whitted and raster: radiance from all around that\ndiffuse surfaces reflect (cast 0, the "
+                    "others the\nenvironment's mean)")
         ->type_name("R,G,B")
         ->group(group);
+    verb.add_option("--shading", flags.shading,
+                    "of raster: light once a triangle, at its corners, or in\nevery pixel (phong)")
+        ->type_name("NAME")
+        ->check(one_of(shading_names()))
+        ->group(group);
+    verb.add_flag("--wireframe", flags.wireframe, "of raster: the triangles' edges alone")->group(group);
     verb.add_option("--seed", flags.seed, "of the random numbers")
         ->type_name("N")
         ->check(whole_between(0, UINT32_MAX))

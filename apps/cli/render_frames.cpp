@@ -27,7 +27,9 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      const PictureRecord& record) {
     SequenceRecord::Settings settings;
     for (const auto& [name, value] : settings_metadata(record)) {
-        if (name == "pertev.denoise" || name == "pertev.ambient") continue; // they stand there only where they are
+        // They stand there only where they are.
+        if (name == "pertev.denoise" || name == "pertev.ambient") continue;
+        if (name == "pertev.shading" || name == "pertev.wireframe") continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
     std::string layers;
@@ -44,6 +46,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
                                      {"--ambient", flags.ambient},
+                                     {"--shading", flags.shading},
+                                     {"--wireframe", flags.wireframe ? "yes" : "no"},
                                      {"--denoise", picture.denoise == Denoise::None ? "" : flags.denoise},
                                      {"--transparent", picture.transparent ? "yes" : "no"}});
     return settings;

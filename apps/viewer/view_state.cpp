@@ -169,15 +169,19 @@ std::vector<ViewSetting> make_settings() {
         });
     choice(
         "integrator", "Light", "Light",
-        "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on; cast, whitted and "
-        "distributed: trees of rays, without most of what surfaces send on; light: particles from the lights, without "
-        "what mirrors and glass show; bidirectional: all light, from both ends",
+        "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on; hybrid: path, by "
+        "rasterisation first; cast, whitted and distributed: trees of rays, without most of what surfaces send on; "
+        "raster: no rays at all; light: particles from the lights, without what mirrors and glass show; bidirectional: "
+        "all light, from both ends",
         integrator_names(), [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
             RenderSettings wanted = s.picture;
             set_integrator(wanted, name);
             for (const auto& [kind, why_dark] : s.dark) {
                 if (kind == wanted.integrator) return why_dark;
+            }
+            if (rasterises_camera(wanted.integrator) && s.lens.aperture_radius > 0) {
+                return fmt::format("{}: its camera has no lens; the radius of the lens is to be 0", name);
             }
             const std::string why_not = why_no_layer(s.layer, wanted);
             if (!why_not.empty()) return why_not;
@@ -253,9 +257,9 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
     numeric(
         "aperture", "Radius of the lens, m", "Camera",
-        "0: all is sharp. The larger, the more is blurred that is not in focus", Kind::Number, 0, 1e6, 0.005,
-        [](const ViewState& s) { return s.lens.aperture_radius; },
-        [](ViewState& s, float v) { s.lens.aperture_radius = v; });
+        "0: all is sharp. The larger, the more is blurred that is not in focus. hybrid has none", Kind::Number, 0, 1e6,
+        0.005, [](const ViewState& s) { return s.lens.aperture_radius; },
+        [](ViewState& s, float v) { s.lens.aperture_radius = rasterises_camera(s.picture.integrator) ? 0.0f : v; });
     numeric(
         "focus", "Distance in focus, m", "Camera", "How far away things are sharp. Alt-click sets it", Kind::Number,
         1e-6, 1e9, 0.1, [](const ViewState& s) { return s.lens.focus_distance; },

@@ -23,6 +23,7 @@ inline constexpr uint32_t kMaxPathDepth = 1u << 16;
 inline constexpr uint32_t kMaxTreeDepth = 255;                // of a tree of rays, whose branches wait in memory
 inline constexpr int kMaxBvhDepth = 64;                       // levels; also the capacity of a walk's stack
 inline constexpr uint64_t kMaxBruteForceTriangles = 1u << 16; // of a picture whose rays test all of them
+inline constexpr uint64_t kMaxRasterTriangles = 1u << 24;     // in view of a camera whose picture is rasterised
 inline constexpr float kMaxSampleValue = 0x1p40f;             // a larger sample counts as invalid
 
 /// Bytes that files of `file_bytes` bytes may take in memory. Honest ones stay far below; this stops a small file that

@@ -4,6 +4,7 @@
 #include "integrators/bidirectional/most_joined_depth.h"
 #include "integrators/light_paths/walks_integrator.h"
 #include "integrators/path/path_integrator.h"
+#include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 
 namespace pertev {
@@ -35,6 +36,14 @@ void set_walk_settings(Integrator& integrator, const IntegratorSettings& setting
     static_cast<WalksIntegrator<Algorithm>&>(integrator).set_settings(walk_settings(settings));
 }
 
+RasterSettings raster_settings(const IntegratorSettings& settings) {
+    return {.look = settings.look,
+            .max_depth = settings.path.max_depth,
+            .seed = settings.path.seed,
+            .has_ambient = settings.ambient.has_value(),
+            .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
+}
+
 template <class Algorithm>
 std::unique_ptr<Integrator> make_ray_tree(Queue& queue, const IntegratorSettings& settings) {
     return std::make_unique<RayTreeIntegrator<Algorithm>>(queue, tree_settings(settings),
@@ -48,17 +57,21 @@ void set_tree_settings(Integrator& integrator, const IntegratorSettings& setting
 
 } // namespace
 
-bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path || kind == IntegratorKind::Hybrid; }
 
-bool finds_all_light(IntegratorKind kind) {
-    return kind == IntegratorKind::Path || kind == IntegratorKind::Bidirectional;
-}
+bool rasterises_camera(IntegratorKind kind) { return kind == IntegratorKind::Hybrid || kind == IntegratorKind::Raster; }
 
-bool has_light_path_layers(IntegratorKind kind) { return kind == IntegratorKind::Path; }
+bool lists_tiles(IntegratorKind kind) { return kind == IntegratorKind::Hybrid; }
+
+bool finds_all_light(IntegratorKind kind) { return makes_frames(kind) || kind == IntegratorKind::Bidirectional; }
+
+bool has_light_path_layers(IntegratorKind kind) { return makes_frames(kind); }
 
 uint32_t most_depth(IntegratorKind kind) {
     switch (kind) {
     case IntegratorKind::Path:
+    case IntegratorKind::Hybrid:
+    case IntegratorKind::Raster:
     case IntegratorKind::Light:
         break;
     case IntegratorKind::Cast:
@@ -72,17 +85,18 @@ uint32_t most_depth(IntegratorKind kind) {
 }
 
 bool needs_punctual_lights(IntegratorKind kind) {
-    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted;
+    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted || kind == IntegratorKind::Raster;
 }
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
-    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient &&
+    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
            a.light_paths == b.light_paths && a.irradiance == b.irradiance;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
     switch (settings.integrator) {
     case IntegratorKind::Path:
+    case IntegratorKind::Hybrid:
         break;
     case IntegratorKind::Cast:
         return make_ray_tree<Cast>(queue, settings);
@@ -90,12 +104,15 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
         return make_ray_tree<Whitted>(queue, settings);
     case IntegratorKind::Distributed:
         return make_ray_tree<Distributed>(queue, settings);
+    case IntegratorKind::Raster:
+        return std::make_unique<RasterIntegrator>(queue, raster_settings(settings));
     case IntegratorKind::Light:
         return make_walks<ParticlesAlone>(queue, settings);
     case IntegratorKind::Bidirectional:
         return make_walks<BothDirections>(queue, settings);
     }
-    auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch);
+    auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch,
+                                                 lists_tiles(settings.integrator));
     path->set_layers(settings.light_paths);
     path->set_meter(settings.irradiance);
     return path;
@@ -105,6 +122,7 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     if (from.integrator != to.integrator || from.body != to.body || from.batch != to.batch) return false;
     switch (to.integrator) {
     case IntegratorKind::Path:
+    case IntegratorKind::Hybrid:
         static_cast<PathIntegrator&>(integrator).set_settings(to.path);
         static_cast<PathIntegrator&>(integrator).set_layers(to.light_paths);
         static_cast<PathIntegrator&>(integrator).set_meter(to.irradiance);
@@ -118,6 +136,9 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::Distributed:
         set_tree_settings<Distributed>(integrator, to);
         break;
+    case IntegratorKind::Raster:
+        static_cast<RasterIntegrator&>(integrator).set_settings(raster_settings(to));
+        break;
     case IntegratorKind::Light:
         set_walk_settings<ParticlesAlone>(integrator, to);
         break;
@@ -130,11 +151,14 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
 
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
                             bool walks_itself) {
+    if (settings.integrator == IntegratorKind::Raster) return RasterIntegrator::predicted_bytes(pixels);
     const std::size_t tables = settings.light_paths ? LightPathsOnDevice::predicted_bytes(*settings.light_paths) : 0;
     if (walks_itself && settings.body == PathBody::Loop) return tables;
     const uint64_t all = pixels * samples;
     switch (settings.integrator) {
     case IntegratorKind::Path:
+    case IntegratorKind::Hybrid:
+    case IntegratorKind::Raster:
         break;
     case IntegratorKind::Cast:
         return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch);

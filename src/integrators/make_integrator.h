@@ -8,6 +8,7 @@
 
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
+#include "integrators/raster/raster_settings.h"
 #include "math/rgb.h"
 #include "render/light_paths/light_path_layers.h"
 
@@ -15,9 +16,11 @@ namespace pertev {
 
 enum class IntegratorKind : uint8_t {
     Path,
+    Hybrid,        // path's samples, with what the camera sees found by rasterisation (render/raster/camera_raster.h)
     Cast,          // integrators/cast/cast.h
     Whitted,       // integrators/whitted/whitted.h
     Distributed,   // integrators/distributed/distributed.h
+    Raster,        // integrators/raster/raster_integrator.h
     Light,         // integrators/light/light.h
     Bidirectional, // integrators/bidirectional/bidirectional.h
 };
@@ -26,14 +29,15 @@ struct IntegratorSettings {
     IntegratorKind integrator = IntegratorKind::Path;
     PathSettings path; // of which all integrators have max_depth, sampler and seed
 
-    // Of Cast and Whitted: radiance from all around that diffuse surfaces reflect, W/(sr m2). None: Whitted takes the
-    // mean of the environment.
+    // Of Cast, Whitted and Raster: radiance from all around that diffuse surfaces reflect, W/(sr m2). None: Whitted and
+    // Raster take the mean of the environment.
     std::optional<Rgb> ambient;
+    RasterLook look; // of Raster
 
     // Of Path: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;
-    bool irradiance =
-        false; // of Path: in place of radiance, W/m2 on the side that the camera sees; 0 where it sees none
+    // Of Path: in place of radiance, W/m2 on the side that the camera sees; 0 where it sees none.
+    bool irradiance = false;
 
     // How the device does it: the light stays the same.
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront
@@ -43,6 +47,11 @@ struct IntegratorSettings {
 /// Whether its samples can be taken apart for frames that are reconstructed (FilmView::frame), for pictures that are
 /// denoised, and for ReSTIR.
 bool makes_frames(IntegratorKind kind);
+/// Whether what the camera sees is found by rasterisation; why_no_raster (render/raster/pinhole.h) says which cameras
+/// it cannot have.
+bool rasterises_camera(IntegratorKind kind);
+/// Whether that is done by a CameraRaster, whose memory comes on top of predicted_bytes().
+bool lists_tiles(IntegratorKind kind);
 /// Whether its mean is all light that there is, so that another one of these has the same.
 bool finds_all_light(IntegratorKind kind);
 /// Whether it tells light paths apart and can show irradiance: IntegratorSettings::light_paths and irradiance.

@@ -33,7 +33,8 @@ PartArrays list_geometry(const PreparedScene& prepared, std::vector<MeshView>& m
 
 struct Instances {
     std::vector<InstanceView> views;
-    std::vector<uint32_t> passing; // SceneView's
+    std::vector<uint32_t> passing;        // SceneView's
+    std::vector<uint32_t> first_triangle; // likewise
 };
 
 PartArrays list_instances(const PreparedScene& prepared, Instances& instances, SceneView& view) {
@@ -43,10 +44,14 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
     view.centre = prepared.centre;
     instances.views.reserve(scene.instances.size());
     instances.passing.resize((scene.instances.size() + 31) / 32);
+    view.instance_count = static_cast<uint32_t>(scene.instances.size());
+    view.triangle_count = 0;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Transform world_from_local = moved_to(instance.world_from_local, prepared.centre);
         const Material& material = scene.materials[instance.material];
+        instances.first_triangle.push_back(static_cast<uint32_t>(view.triangle_count));
+        view.triangle_count += scene.meshes[instance.mesh].triangle_count();
         const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
         const uint16_t hides_back = material.double_sided ? 0 : 1;
         view.any_alpha |= has_alpha;
@@ -56,9 +61,12 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
                                    has_alpha, hides_back, uint16_t(is_mirroring(world_from_local)),
                                    uint16_t(instance.is_hidden), prepared.is_baked[i] ? 1u : 0u});
     }
+    instances.first_triangle.push_back(static_cast<uint32_t>(view.triangle_count));
+    if (view.triangle_count > UINT32_MAX) instances.first_triangle.clear();
     PartArrays arrays;
     arrays.add(instances.views, view.instances);
     arrays.add(instances.passing, view.passing);
+    arrays.add(instances.first_triangle, view.first_triangle);
     return arrays;
 }
 

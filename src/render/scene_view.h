@@ -49,6 +49,11 @@ struct SceneView {
     uint32_t any_alpha;       // 0 lets every hit skip the look at its instance
     uint32_t any_hidden_back; // the same for hits of the camera's rays
     Vec3 centre;              // of the moved world, in the file's coordinates, metres (render/place_meshes.h)
+    // Triangles of all instances, numbered in their order: those of instance i are first_triangle[i] and on, up to
+    // first_triangle[i + 1]. Null where there are more than 32 bits count.
+    const uint32_t* first_triangle; // [instance_count + 1]
+    uint32_t instance_count;
+    uint64_t triangle_count; // of all instances
 };
 
 /// The three vertex numbers of a triangle.

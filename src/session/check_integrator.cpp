@@ -34,7 +34,8 @@ bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
     return wants_lights && settings.path.max_depth > 0 && !has_punctual_light(scene) && !is_all_unlit(scene);
 }
 bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
-    return settings.integrator == IntegratorKind::Whitted && scene.environment;
+    return (settings.integrator == IntegratorKind::Whitted || settings.integrator == IntegratorKind::Raster) &&
+           scene.environment;
 }
 
 /// "this scene has lamps alone"
@@ -75,6 +76,13 @@ void check_integrator(const RenderSettings& settings) {
     }
 }
 
+void check_camera(const RenderSettings& settings, const Camera& camera) {
+    if (!rasterises_camera(settings.integrator)) return;
+    const std::string why = why_no_raster(camera);
+    if (why.empty()) return;
+    throw Error(ErrorCode::BadInput, fmt::format("--integrator {}: {}", integrator_name(settings), why));
+}
+
 std::string why_dark(const RenderSettings& settings, const Scene& scene) {
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
     return fmt::format("--integrator {}: point, spot and directional lights alone light its surfaces, and {}: "
@@ -85,10 +93,11 @@ std::string why_dark(const RenderSettings& settings, const Scene& scene) {
 void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages) {
     if (const std::string why = why_dark(settings, scene); !why.empty()) throw Error(ErrorCode::BadInput, why);
     if (!lacks_lights(settings, scene)) return;
-    messages.note(fmt::format("--integrator {}: point, spot and directional lights cast its shadows, and {}; surfaces "
-                              "show the environment's mean as ambient light (--integrator distributed casts shadows "
-                              "of all lights)",
-                              integrator_name(settings), lights_of(scene)));
+    messages.note(
+        fmt::format("--integrator {}: point, spot and directional lights light its surfaces, and {}; surfaces "
+                    "show the environment's mean as ambient light (--integrator distributed casts shadows "
+                    "of all lights)",
+                    integrator_name(settings), lights_of(scene)));
 }
 
 } // namespace pertev

@@ -13,6 +13,9 @@ namespace pertev {
 /// Whether the settings go together. Throws Error(BadInput), Error(OverLimit) for a tree of rays that is too deep.
 void check_integrator(const RenderSettings& settings);
 
+/// Whether the integrator can see by this camera. Throws Error(BadInput).
+void check_camera(const RenderSettings& settings, const Camera& camera);
+
 /// Why nothing would be lit, for want of lights that the integrator knows, though mirrors may show lamps; empty where
 /// something may be.
 std::string why_dark(const RenderSettings& settings, const Scene& scene);

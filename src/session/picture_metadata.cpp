@@ -125,6 +125,10 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         }
         metadata.emplace_back("pertev.lpe", lines);
     }
+    if (settings.integrator == IntegratorKind::Raster) {
+        metadata.emplace_back("pertev.shading", std::string(name_of(settings.look.shading)));
+        metadata.emplace_back("pertev.wireframe", static_cast<int32_t>(settings.look.is_wireframe));
+    }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }

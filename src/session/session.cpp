@@ -43,6 +43,12 @@ std::vector<FilmLayer> layers_of(const Film& film, const RenderSettings& setting
     return layers;
 }
 
+uint64_t triangles_of_instances(const Scene& scene) {
+    uint64_t count = 0;
+    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangle_count();
+    return count;
+}
+
 /// Of trees that are kept on the device for meshes whose vertices move, and of the top level over them.
 std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice& tracers, bool on_cuda) {
     std::size_t bytes = 0;
@@ -69,6 +75,7 @@ std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice&
 Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings)
     : queue_(queue), camera_(camera), settings_(settings), filter_(queue), sharing_timer_(queue) {
     check_integrator(settings);
+    check_camera(settings, camera);
     set_scene(scene);
     history_.cuts = 0;
 }
@@ -237,6 +244,7 @@ PictureView Session::view_of(const Camera& camera, const RenderSettings& setting
 /// Makes the integrator ready to add `samples` samples of the picture of `settings`, never to be abandoned.
 void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples) {
     const PictureView picture = view_of(camera, settings); // first: it checks that there is a scene
+    check_camera(settings, camera);
     const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {
@@ -405,11 +413,16 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
         if (splits_light && !(has_loop && settings.body == PathBody::Loop)) film += 3 * sizeof(Float4) * paths;
     }
     const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
+    const std::size_t raster = lists_tiles(settings.integrator)
+                                   ? CameraRaster::predicted_bytes(triangles_of_instances(*scene.scene), settings.width,
+                                                                   settings.height, on_cuda)
+                                   : 0;
     const std::size_t motion = (settings.aovs & kAovMotion) != 0
                                    ? motion_vector_bytes(settings.width, settings.height) +
                                          scene.scene->instances.size() * sizeof(InstanceView)
                                    : 0;
-    return predicted_bytes(scene) + structures + motion + deforming_tree_bytes(scene, tracers, on_cuda) + film +
+    return predicted_bytes(scene) + structures + raster + motion + deforming_tree_bytes(scene, tracers, on_cuda) +
+           film +
            predicted_bytes(settings, uint64_t(settings.width) * settings.height, denoises ? 1 : settings.samples,
                            on_cuda, has_loop);
 }

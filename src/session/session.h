@@ -71,7 +71,8 @@ public:
     /// `keep_going`, called after each pass, returns false, and at kMaxSamplesPerPixel in the film; always at a whole
     /// sample of all pixels. Returns how many were added: at least one where one was asked for and fits, but none where
     /// it was abandoned. Throws
-    /// Error(OutOfMemory, DeviceFault), and what `keep_going` throws; the film then holds all passes done before.
+    /// Error(OutOfMemory, DeviceFault), as all that take samples what check_camera does, and what `keep_going` throws;
+    /// the film then holds all passes done before.
     uint32_t render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going = {});
 
     /// Of the present picture; without samples, all zero.

@@ -7,9 +7,11 @@ namespace {
 
 // A switch names each value, so that the compiler tells of one that was forgotten; these list them.
 constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
-constexpr IntegratorKind kIntegrators[] = {IntegratorKind::Cast, IntegratorKind::Whitted, // beside Path
-                                           IntegratorKind::Distributed, IntegratorKind::Light,
+constexpr IntegratorKind kIntegrators[] = {IntegratorKind::Hybrid,       IntegratorKind::Cast, // beside Path
+                                           IntegratorKind::Whitted,      IntegratorKind::Distributed,
+                                           IntegratorKind::Raster,       IntegratorKind::Light,
                                            IntegratorKind::Bidirectional};
+constexpr RasterShading kShadings[] = {RasterShading::Flat, RasterShading::Gouraud, RasterShading::Phong};
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
                                     PixelFilter::BlackmanHarris};
@@ -33,12 +35,16 @@ std::string_view name_of(IntegratorKind integrator) {
     switch (integrator) {
     case IntegratorKind::Path:
         return "path";
+    case IntegratorKind::Hybrid:
+        return "hybrid";
     case IntegratorKind::Cast:
         return "cast";
     case IntegratorKind::Whitted:
         return "whitted";
     case IntegratorKind::Distributed:
         return "distributed";
+    case IntegratorKind::Raster:
+        return "raster";
     case IntegratorKind::Light:
         return "light";
     case IntegratorKind::Bidirectional:
@@ -68,9 +74,11 @@ std::string_view integrator_name(const RenderSettings& settings) {
     switch (settings.integrator) {
     case IntegratorKind::Path:
         return name_of(settings.path.light);
+    case IntegratorKind::Hybrid:
     case IntegratorKind::Cast:
     case IntegratorKind::Whitted:
     case IntegratorKind::Distributed:
+    case IntegratorKind::Raster:
     case IntegratorKind::Light:
     case IntegratorKind::Bidirectional:
         break;
@@ -96,6 +104,21 @@ std::vector<std::string> integrator_names() {
     for (std::string& name : names_of(kIntegrators)) names.push_back(std::move(name));
     return names;
 }
+
+std::string_view name_of(RasterShading shading) {
+    switch (shading) {
+    case RasterShading::Flat:
+        return "flat";
+    case RasterShading::Gouraud:
+        return "gouraud";
+    case RasterShading::Phong:
+        return "phong";
+    }
+    return "";
+}
+
+std::optional<RasterShading> shading_named(std::string_view name) { return value_named(kShadings, name); }
+std::vector<std::string> shading_names() { return names_of(kShadings); }
 
 std::string_view name_of(SamplerKind sampler) {
     switch (sampler) {

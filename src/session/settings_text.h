@@ -13,12 +13,17 @@
 
 namespace pertev {
 
-/// The integrator, "path" by name of the part of the light that it shows: "path", "direct" or "indirect"; "cast",
-/// "whitted", "distributed".
+/// The integrator, "path" by name of the part of the light that it shows: "path", "direct" or "indirect"; "hybrid",
+/// "cast", "whitted", "distributed", "raster".
 std::string_view integrator_name(const RenderSettings& settings);
 /// False, and nothing done, where there is no such integrator.
 bool set_integrator(RenderSettings& settings, std::string_view name);
 std::vector<std::string> integrator_names();
+
+/// Of --integrator raster: "flat", "gouraud" or "phong".
+std::string_view name_of(RasterShading shading);
+std::optional<RasterShading> shading_named(std::string_view name);
+std::vector<std::string> shading_names();
 
 std::string_view name_of(SamplerKind sampler);
 std::optional<SamplerKind> sampler_named(std::string_view name);

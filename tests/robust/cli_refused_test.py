@@ -63,6 +63,11 @@ class WhatIsRefused(CliTest):
                 ("--integrator bidirectional --denoise svgf", 2,
                  "--denoise svgf: reconstructs pictures of --integrator path, not of bidirectional"),
                 ("--integrator bidirectional --max-depth 256", 3, "--max-depth 256: with --integrator bidirectional at most 255"),
+                ("--integrator hybrid --aperture 0.1", 2, "--integrator hybrid: a rasteriser sees through a pinhole, and this camera has a lens"),
+                ("--integrator raster --ambient 1 --aperture 0.1", 2, "--integrator raster: a rasteriser sees through a pinhole"),
+                ("--shading flat", 2, "--shading: of --integrator raster; path shades every sample"),
+                ("--integrator cast --ambient 1 --wireframe", 2, "--wireframe: of --integrator raster"),
+                ("--integrator raster --ambient 1 --wireframe --shading flat", 2, "--shading: with --wireframe nothing is shaded"),
                 ("--integrator cast", 2, "this scene has lamps alone: --integrator distributed or path knows all lights")]:
             with self.subTest(flags=flags):
                 outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])

@@ -391,14 +391,16 @@ class WhatIsRendered(CliTest):
                    ["--filter", "gaussian"], ["--filter-radius", "3"], ["--integrator", "direct"],
                    ["--integrator", "indirect"], ["--integrator", "distributed"], ["--integrator", "light"],
                    ["--integrator", "bidirectional"], ["--integrator", "cast", "--ambient", "0.5"],
-                   ["--integrator", "whitted", "--ambient", "0.5,0.2,0.1"], ["--max-depth", "2"], ["--clamp", "0.1"], ["--fov", "30"],
+                   ["--integrator", "whitted", "--ambient", "0.5,0.2,0.1"],
+                   ["--integrator", "raster", "--ambient", "0.5"], ["--integrator", "raster", "--wireframe", "--ambient", "0.5"], ["--max-depth", "2"], ["--clamp", "0.1"], ["--fov", "30"],
                    ["--environment", "1,0.5,0.2"], ["--environment", "1,1,1", "--environment-scale", "3"],
                    ["--aperture", "0.05", "--focus", "0.9"], ["--aperture", "0.05", "--focus", "1.3"],
                    ["--eye", "0.3,0.3,-0.7"], ["--target", "0.2,0.2,0"], ["--up", "1,1,0"],
                    ["--projection", "orthographic"], ["--projection", "orthographic", "--view-height", "0.3"]]
         hashes = [self.render(*flags, size="32x32", spp=2)["hash"] for flags in choices]
         self.assertEqual(len(set(hashes)), len(choices))
-        self.assertEqual(self.render("--aperture", "0", size="32x32", spp=2)["hash"], hashes[0])
+        for flags in [["--aperture", "0"], ["--integrator", "hybrid"]]:
+            self.assertEqual(self.render(*flags, size="32x32", spp=2)["hash"], hashes[0])
 
     def test_a_made_up_sky_is_an_environment_too(self):
         write(self.path("floor.obj"), FLOOR)

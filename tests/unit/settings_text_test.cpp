@@ -30,9 +30,8 @@ TEST_CASE("every value has a name") {
     CHECK(sampler_names() == std::vector<std::string>{"sobol", "independent"});
     CHECK(filter_names() == std::vector<std::string>{"box", "tent", "gaussian", "blackman-harris"});
     CHECK(tone_map_names() == std::vector<std::string>{"srgb", "agx", "aces", "neutral"});
-    CHECK(integrator_names() ==
-          std::vector<std::string>{"path", "direct", "indirect", "cast", "whitted", "distributed", "light",
-                                   "bidirectional"});
+    CHECK(integrator_names() == std::vector<std::string>{"path", "direct", "indirect", "hybrid", "cast", "whitted",
+                                                         "distributed", "raster", "light", "bidirectional"});
     CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion"});
 }
 

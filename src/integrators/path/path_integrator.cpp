@@ -119,19 +119,24 @@ std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bo
 }
 
 std::size_t PathIntegrator::bytes() const {
-    if (wavefronts_.empty()) return 0;
+    const std::size_t of_raster = raster_ ? raster_->bytes() : 0;
+    if (wavefronts_.empty()) return of_raster;
     const uint64_t paths = wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
     const bool has_layers = wavefronts_.front().layer_parts.size() > 0;
-    return wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda(), has_layers);
+    return of_raster + wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda(), has_layers);
 }
 
-PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch)
-    : queue_(queue), settings_(settings), body_(body), batch_(batch) {}
+PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch,
+                               bool rasterises)
+    : queue_(queue), settings_(settings), body_(body), batch_(batch) {
+    if (rasterises) raster_.emplace(queue);
+}
 
 void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     picture_ = picture;
     tracer_ = &tracer;
     rays_ = {};
+    if (raster_) raster_->begin(picture);
     if (layers_ && !layers_on_device_) layers_on_device_.emplace(queue_, *layers_);
     if (trees_of_loop() != nullptr) return;
     take_wavefronts(samples);
@@ -189,11 +194,12 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
     const PathSettings settings = settings_for(film);
     const LightPathView layers = layers_for(film);
+    const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
     std::atomic<uint64_t> bounces{0}, shadows{0};
     parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
         if (abandon_ != nullptr && *abandon_) return;
         RayCounts counts;
-        render_pixels(picture_, settings, trees, film, layers, is_meter_, {begin, end, first, count}, counts);
+        render_pixels(picture_, settings, {trees, raster}, film, layers, is_meter_, {begin, end, first, count}, counts);
         bounces += counts.bounce;
         shadows += counts.shadow;
     });
@@ -274,8 +280,12 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
             const WorkCount fresh = {most, &counts->fresh};
             launch(queue_, "generate_paths", fresh,
                    GeneratePaths{picture_.camera, work.settings, counts, pixels, last, any_alpha, paths});
-            tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh,
-                               {hits.places + last, hits.instances + last, -1});
+            const HitQueueView camera_hits = {hits.places + last, hits.instances + last, -1};
+            if (raster_) {
+                tracer_->find_hits(*raster_, paths.query_back(last), fresh, camera_hits);
+            } else {
+                tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits);
+            }
         }
         const WorkCount active = {most, &counts->active};
         if (work.layers.is_there() || is_meter_) {

@@ -24,16 +24,19 @@
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_settings.h"
 #include "render/light_paths/light_paths_on_device.h"
+#include "render/raster/camera_raster.h"
 
 namespace pertev {
 
 class PathIntegrator final : public Integrator {
 public:
     /// `queue` outlives the integrator. `batch`: most paths in flight of the wavefronts together,
-    /// rounded up to 32 each.
-    PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch);
+    /// rounded up to 32 each. `rasterises`: what the camera sees is found by rasterisation
+    /// (render/raster/camera_raster.h), which changes no sample; the camera has no lens then.
+    PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch, bool rasterises = false);
 
-    /// Bytes that begin() takes for so many samples of all pixels together, by the wavefront.
+    /// Bytes that begin() takes for so many samples of all pixels together, by the wavefront; those of a CameraRaster
+    /// come on top.
     static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
@@ -78,6 +81,7 @@ private:
     RayCounts rays_;
     SceneTracer* tracer_ = nullptr;
     const std::atomic<bool>* abandon_ = nullptr;
+    std::optional<CameraRaster> raster_; // where it rasterises
 
     // The queues of one wavefront, one element a path in flight.
     struct Wavefront {

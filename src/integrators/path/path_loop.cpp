@@ -27,9 +27,10 @@ class PathGroup {
     static constexpr bool kHasLayers = std::is_same_v<Layers, LayersOfGroup>;
 
 public:
-    PathGroup(const PictureView& picture, const PathSettings& settings, const HostTrees& trees, const FilmView& film,
+    PathGroup(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees, const FilmView& film,
               const Layers& layers)
-        : picture_(picture), settings_(settings), trees_(trees), film_(film), layers_(layers) {}
+        : picture_(picture), settings_(settings), trees_(trees.trees), raster_(trees.raster), film_(film),
+          layers_(layers) {}
 
     bool is_full() const { return count_ == kPaths; }
     bool is_empty() const { return count_ == 0; }
@@ -120,6 +121,13 @@ private:
         };
         if (begin == end) return;
         const bool from_camera = paths_[begin].depth == 0;
+        if (from_camera && raster_ != nullptr) {
+            for (uint32_t i = begin; i < end; ++i) {
+                hits_[i] = find_in_tile(*raster_, picture_.scene, ray_of(i - begin), paths_[i].pixel,
+                                        key_of(paths_[i], false));
+            }
+            return;
+        }
         const RayOrder order = from_camera ? RayOrder::Together : RayOrder::Scattered;
         if (from_camera && picture_.scene.any_hidden_back != 0) {
             const auto accept_camera = [&](uint32_t i) {
@@ -184,6 +192,7 @@ private:
     const PictureView& picture_;
     const PathSettings& settings_;
     const HostTrees& trees_;
+    const TileRasterView* raster_;
     const FilmView& film_;
     const bool splits_light_ = film_.frame.splits_light();
     const bool tells_bounce_ = film_.frame.first_bounce.tells_bounce();
@@ -198,7 +207,7 @@ private:
 };
 
 template <class Layers>
-void render_group(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+void render_group(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
                   const FilmView& film, const Layers& layers, const PixelSamples& work, RayCounts& counts) {
     PathGroup<Layers> group(picture, settings, trees, film, layers);
     const uint32_t width = picture.camera.width, height = picture.camera.height;
@@ -214,7 +223,7 @@ void render_group(const PictureView& picture, const PathSettings& settings, cons
 
 } // namespace
 
-void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
                    const FilmView& film, const LightPathView& layers, bool is_meter, const PixelSamples& work,
                    RayCounts& counts) {
     if (!layers.is_there() && !is_meter) return render_group(picture, settings, trees, film, NoLayers{}, work, counts);

@@ -8,6 +8,7 @@
 #include "render/film_view.h"
 #include "render/light_paths/light_path_view.h"
 #include "render/picture_view.h"
+#include "render/raster/find_in_tile.h"
 #include "trace/scene_trees.h"
 
 namespace pertev {
@@ -18,9 +19,15 @@ struct PixelSamples {
     uint32_t first_sample, samples;
 };
 
+/// What rays are traced in; what camera rays meet is found in `raster` where there is one.
+struct LoopTrees {
+    const HostTrees& trees;
+    const TileRasterView* raster;
+};
+
 /// Adds the samples to the film, and to those layers that there are. What was traced beside camera rays is added to
 /// `counts`. `is_meter`: shade_hit_to_layers'.
-void render_pixels(const PictureView& picture, const PathSettings& settings, const HostTrees& trees,
+void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
                    const FilmView& film, const LightPathView& layers, bool is_meter, const PixelSamples& work,
                    RayCounts& counts);
 

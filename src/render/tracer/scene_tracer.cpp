@@ -97,6 +97,10 @@ void SceneTracer::find_hits(RayKind kind, const RayQueueView& rays, WorkCount co
           [&] { tracer(kind).find_hits(query_of(kind, rays), count, hits); });
 }
 
+void SceneTracer::find_hits(CameraRaster& raster, const RayQueueView& rays, WorkCount count, const HitQueueView& hits) {
+    timed(seconds_.camera, [&] { raster.find_hits(rays, count, hits); });
+}
+
 void SceneTracer::find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits) {
     timed(seconds_.shadow,
           [&] { tracer(RayKind::Shadow).find_occlusions(query_of(RayKind::Shadow, rays), count, hits); });

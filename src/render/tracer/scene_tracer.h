@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "device/buffer.h"
+#include "render/raster/camera_raster.h"
 #include "render/ray_queue.h"
 #include "render/scene_view.h"
 #include "render/tracer/scene_structures.h"
@@ -38,6 +39,8 @@ public:
 
     /// What rays [0, count) meet first. Queued: the work may still be under way. Throws Error(DeviceFault).
     void find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
+    /// The same of rays of the camera, by its raster.
+    void find_hits(CameraRaster& raster, const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
     /// Whether shadow rays meet anything.
     void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
 

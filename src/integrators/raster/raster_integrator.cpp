@@ -1,0 +1,68 @@
+#include "integrators/raster/raster_integrator.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "device/launch.h"
+#include "integrators/raster/shade_pixels.h"
+
+namespace pertev {
+namespace {
+
+/// Rows that may wait for the second pass; where more would, their triangles are scanned in the first one.
+uint64_t rows_for(uint64_t pixels) { return std::clamp<uint64_t>(pixels, 1u << 12, 1u << 22); }
+
+} // namespace
+
+RasterIntegrator::RasterIntegrator(Queue& queue, const RasterSettings& settings)
+    : queue_(queue), settings_(settings), row_count_(queue, 1, "rows of triangles") {}
+
+std::size_t RasterIntegrator::predicted_bytes(uint64_t pixels) {
+    return (1 + pixels) * sizeof(uint64_t) + rows_for(pixels) * sizeof(Uint2);
+}
+
+void RasterIntegrator::begin(const PictureView& picture, SceneTracer&, uint32_t) {
+    if (picture.scene.triangle_count >= kNoHit) {
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("--integrator raster: {} triangles in all instances of the scene; it draws {} at most",
+                                picture.scene.triangle_count, kNoHit - 1));
+    }
+    picture_ = picture;
+    camera_ = make_pinhole(picture.camera);
+    picture_settings_ = settings_;
+    const LightSetView& lights = picture.scene.lights;
+    if (!settings_.has_ambient && lights.has_environment()) picture_settings_.ambient = lights.environment.mean;
+    const uint64_t pixels = uint64_t(picture.camera.width) * picture.camera.height;
+    if (depths_.size() < pixels) {
+        depths_ = Buffer<uint64_t>(); // before the new one, so that both need not fit
+        depths_ = {queue_, pixels, "depth buffer"};
+    }
+    if (rows_.size() < rows_for(pixels)) {
+        rows_ = Buffer<Uint2>();
+        rows_ = {queue_, rows_for(pixels), "rows of triangles"};
+    }
+}
+
+void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
+    const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
+    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
+    for (uint32_t sample = first; sample < first + count; ++sample) {
+        if (abandon_ != nullptr && *abandon_ && !queue_.is_cuda()) return;
+        const RasterPass pass = {camera_,      picture_,          picture_settings_, depths_.data(),
+                                 rows_.data(), row_count_.data(), rows_.size(),      sample};
+        depths_.fill(0xff); // kNoDepth
+        if (picture_settings_.look.is_wireframe) {
+            launch(queue_, "draw_edges", triangles, DrawEdges{pass});
+        } else {
+            row_count_.zero();
+            launch(queue_, "scan_triangles", triangles, ScanTriangles{pass});
+            launch(queue_, "scan_rows", static_cast<uint32_t>(rows_.size()), ScanRows{pass});
+        }
+        launch(queue_, "shade_pixels", pixels, ShadePixels{pass, film});
+    }
+    queue_.wait();
+}
+
+} // namespace pertev

@@ -1,0 +1,8 @@
+#include "device/launch_body.h"
+#include "integrators/raster/scan_triangles.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const ScanTriangles&);
+template void launch(Queue&, const char*, WorkCount, const ScanRows&);
+template void launch(Queue&, const char*, WorkCount, const DrawEdges&);
+} // namespace pertev

@@ -1,0 +1,93 @@
+#pragma once
+
+// Last stage of a rasterised sample: what stayed in the depth buffer is lit, by Phong's terms: what it emits, an
+// ambient light, and of each point, spot and directional light what the diffuse and glossy lobes of its BSDF scatter.
+// No shadow is cast; mirrors and glass are black.
+//
+// Sources: Gouraud, "Continuous Shading of Curved Surfaces", IEEE ToC 20(6), 1971; Phong, "Illumination for Computer
+// Generated Pictures", CACM 18(6), 1975.
+
+#include "integrators/raster/scan_triangles.h"
+#include "render/first_hit.h"
+#include "render/surface.h"
+
+namespace pertev {
+
+struct ShadePixels {
+    RasterPass pass;
+    FilmView film;
+
+    HD void operator()(uint32_t pixel) const {
+        const uint64_t nearest = pass.depths[pixel];
+        const auto row = static_cast<int32_t>(pixel / pass.camera.width),
+                   column = static_cast<int32_t>(pixel % pass.camera.width);
+        const Vec2 place = pass.place_in_picture(column, row);
+        const Ray ray = make_camera_ray(pass.picture.camera.view, place, {});
+        if (nearest == kNoDepth) return add_radiance(film, pixel, background(pixel, ray));
+        const auto depth = float_of(static_cast<uint32_t>(nearest >> 32));
+        add_radiance(film, pixel, shade(pixel, static_cast<uint32_t>(nearest), depth, place, ray));
+    }
+
+private:
+    HD Rgb background(uint32_t pixel, const Ray& ray) const {
+        add_no_first_hit(film, pixel, pass.sample);
+        const LightSetView& lights = pass.picture.scene.lights;
+        if (!lights.has_environment() || pass.picture.hide_background) return {};
+        return environment_radiance(lights.environment, ray.direction);
+    }
+    HD Rgb shade(uint32_t pixel, uint32_t number, float depth, Vec2 place, const Ray& ray) const {
+        const SceneView& scene = pass.picture.scene;
+        TriangleCorners corners = {};
+        if (!triangle_corners(pass.camera, scene, number, corners)) return {};
+        const Vec2 weights = weights_at(corners.p, pass.camera.x_of(static_cast<double>(place.x)),
+                                        pass.camera.y_of(static_cast<double>(place.y)));
+        const RasterShading shading = pass.settings.look.shading;
+        // The corners (gouraud), the middle of the triangle (flat), and the pixel, which layers always want.
+        const Vec2 at[] = {{0, 0}, {1, 0}, {0, 1}, {1.0f / 3, 1.0f / 3}, weights};
+        const float of_corner[] = {1 - weights.x - weights.y, weights.x, weights.y};
+        Rgb sum = {};
+        const int first = pass.settings.look.is_wireframe || shading == RasterShading::Phong ? 4
+                          : shading == RasterShading::Gouraud                                ? 0
+                                                                                             : 3;
+        for (int k = first; k < 5; ++k) {
+            if (k == 3 && shading == RasterShading::Gouraud) continue;
+            const Hit hit = {depth, at[k].x, at[k].y, corners.instance, corners.primitive};
+            const Vec3 direction = k == 4 || !pass.camera.is_perspective
+                                       ? ray.direction
+                                       : normalize_or(place_of(hit) - ray.origin, ray.direction);
+            Surface surface = make_surface(scene, hit, direction);
+            if (k == 4) {
+                add_first_hit(film, pixel, pass.sample, {ray.origin, ray.direction}, hit, surface, pass.picture);
+                if (pass.settings.look.is_wireframe) return surface.albedo; // lines show their colour as it is
+                if (shading != RasterShading::Phong) return sum;
+            } else if (k == 3) {
+                surface.frame = make_frame(surface.geometric_normal);
+                surface.tilt = 0;
+            }
+            sum += (k < 3 ? of_corner[k] : 1.0f) * lit(surface, -direction);
+        }
+        return sum;
+    }
+    HD Vec3 place_of(const Hit& hit) const {
+        const InstanceView& instance = pass.picture.scene.instances[hit.instance];
+        const MeshView& mesh = pass.picture.scene.meshes[instance.mesh];
+        const TriangleIndices i = triangle_indices(mesh, hit.primitive);
+        return transform_point(instance.world_from_local, interpolate(mesh.positions, i, hit.u, hit.v));
+    }
+    /// Of a surface without shadows, towards `wo` (unit).
+    HD Rgb lit(const Surface& surface, Vec3 wo) const {
+        Rgb sum = surface.emission;
+        if (surface.is_unlit || pass.settings.max_depth == 0) return sum;
+        sum += surface.bsdf.diffuse_albedo() * pass.settings.ambient;
+        if (surface.bsdf.has_delta_only()) return sum;
+        const LightSetView& lights = pass.picture.scene.lights;
+        for (uint32_t k = 0; k < lights.punctual_count; ++k) {
+            LightSample sample;
+            if (!sample_punctual_light(lights.punctual[k], 1.0f, surface.position, sample)) continue;
+            sum += surface.evaluate(wo, sample.wi, kAllLobeClasses).f * sample.radiance;
+        }
+        return sum;
+    }
+};
+
+} // namespace pertev

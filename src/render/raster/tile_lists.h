@@ -1,0 +1,177 @@
+#pragma once
+
+// Which triangles the rays of a tile of pixels can meet: a list for each tile, the nearest first. Made once for a scene
+// and a camera, by passes over triangles, and read by every sample (render/raster/find_in_tile.h).
+//
+// A triangle is put on the lists of all tiles that its bounds touch, a row of tiles at a time, since a long one is seen
+// in few tiles of each row. What spans many rows waits for a second pass, so that no thread has much more to do than
+// another. Places come from counters, so the order before sorting is any; after it, only triangles that are equally
+// near may change places, and which one a ray meets first does not depend on the order.
+
+#include <cstdint>
+
+#include "accel/bvh/bvh.h"
+#include "device/atomic_add.h"
+#include "math/float4.h"
+#include "render/raster/seen_bounds.h"
+#include "render/scene_view.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kIsBaked = 2; // BvhTriangle::flags: it lies in world space, else in its instance's
+
+struct TileCounts {
+    uint64_t triangles; // that are seen
+    uint64_t entries;   // of all lists
+    uint64_t rows;      // that wait for the second pass
+};
+
+/// Where lists are made. What does not fit is counted and left out.
+struct TileListsView {
+    BvhTriangle* triangles;    // seen, as walks have them, with their instance
+    uint64_t* codes;           // of entries: tile in the upper half; bits of the least t at which it is met
+    uint32_t* order;           // [i] is i
+    uint32_t* entry_triangles; // place in `triangles`
+    Uint2* rows;               // place in `triangles`, row of tiles
+    TileCounts* counts;
+    uint64_t most_triangles, most_entries, most_rows;
+    uint32_t shift;   // tiles have 2^shift pixels a side
+    uint32_t tiles_x; // tiles a row
+};
+
+/// Of the float instance transform, exact but for a double's rounding.
+HD inline DoubleVec3 transform_in_double(const Transform& m, Vec3 p) {
+    const DoubleVec3 d = to_double(p), t = to_double(m.translation);
+    return {dot(to_double(m.row0), d) + t.x, dot(to_double(m.row1), d) + t.y, dot(to_double(m.row2), d) + t.z};
+}
+
+/// Largest sum of sizes along a row.
+HD inline float row_norm(const Transform& m) { return max_component(transform_sizes(m, {1, 1, 1})); }
+
+/// The instance that a triangle of the scene belongs to.
+HD inline uint32_t instance_of(const SceneView& scene, uint32_t triangle) {
+    uint32_t lo = 0, hi = scene.instance_count; // the last whose first triangle is not beyond
+    while (hi - lo > 1) {
+        const uint32_t mid = lo + (hi - lo) / 2;
+        (scene.first_triangle[mid] <= triangle ? lo : hi) = mid;
+    }
+    return lo;
+}
+
+struct BinTriangles {
+    Pinhole camera;
+    SceneView scene;
+    TileListsView lists;
+    uint32_t first; // triangle of index 0
+
+    HD void operator()(uint32_t i) const {
+        const uint32_t number = first + i, instance = instance_of(scene, number);
+        const InstanceView& placed = scene.instances[instance];
+        if (placed.is_hidden != 0) return;
+        const MeshView& mesh = scene.meshes[placed.mesh];
+        BvhTriangle triangle;
+        triangle.primitive = number - scene.first_triangle[instance];
+        triangle.instance = instance;
+        const TriangleIndices at = triangle_indices(mesh, triangle.primitive);
+        triangle.a = mesh.positions[at.a], triangle.b = mesh.positions[at.b], triangle.c = mesh.positions[at.c];
+        if (placed.is_baked != 0) {
+            triangle.flags = kIsBaked;
+            triangle.a = transform_point(placed.world_from_local, triangle.a);
+            triangle.b = transform_point(placed.world_from_local, triangle.b);
+            triangle.c = transform_point(placed.world_from_local, triangle.c);
+        }
+        const SeenTriangle seen = see(camera, scene, triangle);
+        SeenBounds bounds;
+        if (!seen_bounds(camera, seen, 0, camera.height - 1, bounds)) return;
+        const uint64_t place = atomic_add(&lists.counts->triangles, uint64_t(1));
+        if (place >= lists.most_triangles) return;
+        lists.triangles[place] = triangle;
+        const auto from = static_cast<uint32_t>(bounds.top) >> lists.shift,
+                   to = static_cast<uint32_t>(bounds.bottom) >> lists.shift;
+        if (from == to) return add_row(lists, camera, static_cast<uint32_t>(place), from, bounds);
+        const uint64_t waiting = atomic_add(&lists.counts->rows, uint64_t(to - from + 1));
+        if (waiting + (to - from) >= lists.most_rows) return;
+        for (uint32_t row = from; row <= to; ++row) {
+            lists.rows[waiting + (row - from)] = {static_cast<uint32_t>(place), row};
+        }
+    }
+
+    /// In the camera's space, with the bound of what rounding does to it (render/raster/seen_bounds.h): in world space
+    /// 2^-18 (|o| + |p|), and where the ray goes into an instance's space, of condition K, 2 K times that, as the top
+    /// level's boxes have it (accel/bvh/top_level_bvh.h).
+    HD static SeenTriangle see(const Pinhole& camera, const SceneView& scene, const BvhTriangle& triangle) {
+        SeenTriangle seen;
+        const Vec3 corners[] = {triangle.a, triangle.b, triangle.c};
+        float reach = 0, growth = 1;
+        if ((triangle.flags & kIsBaked) != 0) {
+            for (int i = 0; i < 3; ++i) {
+                seen.corners[i] = camera.see(to_double(corners[i]));
+                reach = max(reach, max_component(abs(corners[i])));
+            }
+        } else {
+            const InstanceView& placed = scene.instances[triangle.instance];
+            const Transform& m = placed.world_from_local;
+            for (int i = 0; i < 3; ++i) {
+                seen.corners[i] = camera.see(transform_in_double(m, corners[i]));
+                reach = max(reach, max_component(transform_sizes(m, abs(corners[i])) + abs(m.translation)));
+            }
+            growth = 2 * row_norm(m) * row_norm(placed.local_from_world);
+        }
+        const double sizes = static_cast<double>(camera.origin_max) + static_cast<double>(reach);
+        seen.error = camera.error_scale * 0x1p-18 * static_cast<double>(growth) * sizes;
+        return seen;
+    }
+
+    /// Puts a triangle on the lists of its tiles of a row.
+    HD static void add_row(const TileListsView& lists, const Pinhole& camera, uint32_t place, uint32_t row,
+                           const SeenBounds& bounds) {
+        const auto from = static_cast<uint32_t>(bounds.left) >> lists.shift,
+                   to = static_cast<uint32_t>(bounds.right) >> lists.shift;
+        const uint64_t first_entry = atomic_add(&lists.counts->entries, uint64_t(to - from + 1));
+        if (first_entry + (to - from) >= lists.most_entries) return;
+        const double least_t = max(bounds.depth * camera.distance_scale, 0.0);
+        // The float below: it is only compared with a t that a ray has.
+        const float nearest = static_cast<float>(least_t * (1 - 0x1p-20));
+        for (uint32_t tile = from; tile <= to; ++tile) {
+            const uint64_t entry = first_entry + (tile - from);
+            lists.codes[entry] = uint64_t(row * lists.tiles_x + tile) << 32 | bits_of(nearest);
+            lists.order[entry] = static_cast<uint32_t>(entry);
+            lists.entry_triangles[entry] = place;
+        }
+    }
+};
+
+/// Second pass: one row of tiles of a triangle that spans several.
+struct BinRows {
+    Pinhole camera;
+    SceneView scene;
+    TileListsView lists;
+
+    HD void operator()(uint32_t i) const {
+        const Uint2 at = lists.rows[i];
+        const uint32_t top = at.y << lists.shift, bottom = min(camera.height, (at.y + 1) << lists.shift) - 1;
+        SeenBounds bounds;
+        const SeenTriangle seen = BinTriangles::see(camera, scene, lists.triangles[at.x]);
+        if (seen_bounds(camera, seen, top, bottom, bounds)) {
+            BinTriangles::add_row(lists, camera, at.x, at.y, bounds);
+        }
+    }
+};
+
+/// After the entries have been sorted: entry i of all lists, in their order.
+struct FinishTileLists {
+    const uint64_t* codes; // sorted
+    const uint32_t* entry_triangles;
+    uint32_t* order; // place of the entry before sorting; becomes its triangle's place
+    Uint2* tiles;    // first entry of each tile's list, and one past its last; zero before
+    uint32_t count;
+
+    HD void operator()(uint32_t i) const {
+        order[i] = entry_triangles[order[i]];
+        const auto tile = static_cast<uint32_t>(codes[i] >> 32);
+        if (i == 0 || static_cast<uint32_t>(codes[i - 1] >> 32) != tile) tiles[tile].x = i;
+        if (i + 1 == count || static_cast<uint32_t>(codes[i + 1] >> 32) != tile) tiles[tile].y = i + 1;
+    }
+};
+
+} // namespace pertev
