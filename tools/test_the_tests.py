@@ -292,12 +292,6 @@ MUTATIONS = [
              "mis_weight(squared_density(by_eye) * ends[1].mis.others(particle.backwards_density) +",
              "mis_weight(0 * squared_density(by_eye) * ends[1].mis.others(particle.backwards_density) +")],
              ["statistical/bidirectional"]),
-    Mutation("particles count for the pixel's square, whatever the filter", [
-        edit("src/integrators/light_paths/splat.h", "return pdf_tent(at) / filter.radius;", "return 0.5f / filter.radius;")],
-             ["unit/light_paths"]),
-    Mutation("rays of a round are written over while they are read", [
-        edit("src/integrators/light_paths/walk_memory.h", "store_ray(rays[round % 2] + place, ray);",
-             "store_ray(rays[0] + place, ray);")], ["consistency/light_paths"]),
     Mutation("layers pass all light on to a mirror beneath", [
         edit("src/shading/bsdf.h", "light_through(bsdf, i, wo, {-wo.x, -wo.y, wo.z}) * one.mirror", "one.mirror")],
              ["unit/bsdf_specular"]),
