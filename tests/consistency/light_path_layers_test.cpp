@@ -122,3 +122,25 @@ TEST_CASE("a session goes from layers to none and to others, and has the picture
     session.render(3);
     CHECK(test::render_hash(session.result()) == reference_layers_hash());
 }
+
+TEST_CASE("what layers take is said beforehand, by either body") {
+    const Scene scene = test::make_mixed_scene();
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = with_light_layers(scene);
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        Queue queue = Queue::make_cpu();
+        Session session(queue, prepared, test::mixed_scene_camera(), settings);
+        session.render(settings.samples);
+        const std::size_t said = predicted_bytes(prepared, settings, false);
+        CHECK(queue.allocated_bytes() >= said);
+        CHECK(queue.allocated_bytes() <= said + 4096); // the filter's table, the scene's view
+        RenderSettings without = settings;
+        without.light_paths = nullptr;
+        const std::size_t pixels = settings.width * settings.height, paths = pixels * settings.samples;
+        const std::size_t layers = pixels * std::size(kLightLayers) * 3 * sizeof(FixedSum);
+        const std::size_t queues = body == PathBody::Wavefront ? paths * 48 : 0;
+        CHECK(said - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
+    }
+}

@@ -162,7 +162,10 @@ class WhatIsWritten(LabTest):
                         self.assertIsNone(of["refused"])
                         self.assertEqual(len(of["frame_seconds"]), 2)
                 html = self.check_html(self.path("out/thesis.html"))
-                self.assertEqual(html.count("<img"), 4)
+                self.assertEqual(html.count("<img"), 8)
+                self.assertIn("Figures 3.3 to 3.8", html)
+                self.assertEqual(sorted(os.path.basename(name) for name in glob.glob(self.path("out/figure-3.*"))),
+                                 [f"figure-3.{number}.png" for number in (3, 4, 6, 8)])
                 figures = glob.glob(self.path("out/figure-6.*.svg"))
                 self.assertEqual(len(figures), 2)
                 for figure in figures:
