@@ -60,8 +60,8 @@ class WhatIsRefused(CliTest):
         for flags, code, says in [
                 ("--integrator whitted --denoise svgf", 2, "--denoise svgf: reconstructs pictures of --integrator path, not of whitted"),
                 ("--integrator distributed --max-depth 256", 3, "--max-depth 256: with --integrator distributed at most 255"),
-                ("--integrator hybrid --aperture 0.1", 2, "--integrator hybrid: a rasteriser sees through a pinhole, and this camera has a lens"),
-                ("--integrator raster --ambient 1 --aperture 0.1", 2, "--integrator raster: a rasteriser sees through a pinhole"),
+                ("--integrator hybrid --aperture 0.1 --focus 1", 2, "--integrator hybrid: a rasteriser sees through a pinhole, and this camera has a lens"),
+                ("--integrator raster --ambient 1 --aperture 0.1 --focus 1", 2, "--integrator raster: a rasteriser sees through a pinhole"),
                 ("--shading flat", 2, "--shading: of --integrator raster; path shades every sample"),
                 ("--integrator cast --ambient 1 --wireframe", 2, "--wireframe: of --integrator raster"),
                 ("--integrator raster --ambient 1 --wireframe --shading flat", 2, "--shading: with --wireframe nothing is shaded"),
