@@ -18,7 +18,7 @@ FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
-              "--integrator --max-depth --ambient --seed --sampler --filter --filter-radius --clamp --device --threads "
+              "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --device --threads "
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "

@@ -88,8 +88,7 @@ bool CameraRaster::make_lists(const Pinhole& camera, uint32_t shift) {
                                  rows_.size(),
                                  shift,
                                  tiles_x};
-    launch(queue_, "bin_triangles", static_cast<uint32_t>(scene_.triangle_count),
-           BinTriangles{camera, scene_, lists, 0});
+    launch(queue_, "bin_triangles", static_cast<uint32_t>(scene_.triangle_count), BinTriangles{camera, scene_, lists});
     const TileCounts first = counts_.download().front();
     if (first.triangles > triangles_.size()) {
         throw Error(ErrorCode::OverLimit,

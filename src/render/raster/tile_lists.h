@@ -62,10 +62,10 @@ struct BinTriangles {
     Pinhole camera;
     SceneView scene;
     TileListsView lists;
-    uint32_t first; // triangle of index 0
 
-    HD void operator()(uint32_t i) const {
-        const uint32_t number = first + i, instance = instance_of(scene, number);
+    /// Triangle `number` of the scene.
+    HD void operator()(uint32_t number) const {
+        const uint32_t instance = instance_of(scene, number);
         const InstanceView& placed = scene.instances[instance];
         if (placed.is_hidden != 0) return;
         const MeshView& mesh = scene.meshes[placed.mesh];
