@@ -33,7 +33,7 @@ ALLOWED["session"] = set(ALLOWED)
 ALLOWED["lab"] = set(ALLOWED)
 
 # The machines that several integrators are made of.
-SHARED = (("integrators", "ray_tree"), ("integrators", "light_paths"))
+SHARED = (("integrators", "ray_tree"), ("integrators", "subpaths"))
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")

@@ -2,10 +2,10 @@
 
 #include "base/limits.h"
 #include "integrators/bidirectional/most_joined_depth.h"
-#include "integrators/light_paths/walks_integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
+#include "integrators/subpaths/walks_integrator.h"
 
 namespace pertev {
 namespace {
@@ -18,7 +18,7 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
 }
 
-LightPathSettings walk_settings(const IntegratorSettings& settings) {
+SubpathSettings walk_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .roulette_depth = settings.path.roulette_depth,
             .sampler = settings.path.sampler,

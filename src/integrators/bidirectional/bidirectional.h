@@ -5,19 +5,19 @@
 // scatterings is found in k + 2 ways; each way's share is weighted by how densely it finds that path.
 //
 // Sources: Lafortune, Willems, "Bi-Directional Path Tracing", Compugraphics 1993; Veach, "Robust Monte Carlo Methods
-// for Light Transport Simulation", 1997, chapter 10. Weights: integrators/light_paths/mis_walk.h.
+// for Light Transport Simulation", 1997, chapter 10. Weights: integrators/subpaths/mis_walk.h.
 //
 // All light that path tracing finds, L(D|G|S)*E, with less noise where light comes to what the camera sees by narrow
 // ways. What both do not find: a point light seen by clear glass or mirrors alone, L S* D S* E with no end to draw.
 
 #include "integrators/bidirectional/eye_stages.h"
-#include "integrators/light_paths/run_walks.h"
+#include "integrators/subpaths/run_walks.h"
 
 namespace pertev {
 
 struct BothDirections {
     static constexpr bool kIsJoined = true;
-    static WalkRoom room(const LightPathSettings& settings, uint32_t walks) {
+    static WalkRoom room(const SubpathSettings& settings, uint32_t walks) {
         const uint32_t kept = settings.max_depth > 1 ? settings.max_depth - 1 : 1;
         return {walks, kept, kept < kJoinedAtOnce ? kept : kJoinedAtOnce};
     }

@@ -3,7 +3,7 @@
 // The stages of walks from the camera that are joined to particles: shade where their rays have met something, then
 // join that to the vertices that the sample's particle has left behind, some at a time.
 
-#include "integrators/light_paths/begin_eyes.h"
+#include "integrators/subpaths/begin_eyes.h"
 
 namespace pertev {
 
@@ -103,7 +103,7 @@ private:
     }
 
     HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wo, SampleKey key) const {
-        const LightPathSettings& settings = scene.settings;
+        const SubpathSettings& settings = scene.settings;
         const uint32_t choices = eye_group(state.depth(), kWalkChoices);
         const WalkDraw draw =
             draw_scatter(settings, key, surface.bsdf, eye_group(state.depth(), kWalkScatter), choices);

@@ -10,8 +10,8 @@
 // seen in a mirror or through clear glass, for no ray from a particle to the camera goes the one way that such a
 // surface sends light.
 
-#include "integrators/light_paths/begin_eyes.h"
-#include "integrators/light_paths/run_walks.h"
+#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/subpaths/run_walks.h"
 
 namespace pertev {
 
@@ -33,7 +33,7 @@ struct ShadeSeen {
 /// The stages in their order.
 struct ParticlesAlone {
     static constexpr bool kIsJoined = false;
-    static WalkRoom room(const LightPathSettings&, uint32_t walks) { return {walks, 0, 1}; }
+    static WalkRoom room(const SubpathSettings&, uint32_t walks) { return {walks, 0, 1}; }
 
     template <class Way>
     static void render(Way& way, const WalkJob& job) {

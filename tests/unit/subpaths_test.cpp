@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "integrators/light_paths/see_vertex.h"
-#include "integrators/light_paths/splat.h"
+#include "integrators/subpaths/see_vertex.h"
+#include "integrators/subpaths/splat.h"
 #include "render/filter_table.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
-#include "integrators/light_paths/run_walks.h"
-#include "integrators/light_paths/walks_integrator.h"
+#include "integrators/subpaths/run_walks.h"
+#include "integrators/subpaths/walks_integrator.h"
 
 namespace pertev {
 namespace walks {
@@ -19,7 +19,7 @@ inline constexpr uint64_t kLoopPixels = 256;                    // at least, tha
 
 /// As many as fit into `bytes`, at most `most` and at least 32.
 template <class Algorithm>
-WalkRoom room_within(const LightPathSettings& settings, std::size_t bytes, uint64_t most) {
+WalkRoom room_within(const SubpathSettings& settings, std::size_t bytes, uint64_t most) {
     const std::size_t each = bytes_of(Algorithm::room(settings, 32)) / 32;
     const uint64_t fit = std::max<std::size_t>(bytes / each, 32);
     return Algorithm::room(settings, static_cast<uint32_t>(std::min<uint64_t>(most, fit)));
@@ -33,12 +33,11 @@ inline WorldSphere sphere_round(const Bounds3& bounds) {
 } // namespace walks
 
 template <class Algorithm>
-WalksIntegrator<Algorithm>::WalksIntegrator(Queue& queue, const LightPathSettings& settings, bool in_loop,
-                                            uint32_t batch)
+WalksIntegrator<Algorithm>::WalksIntegrator(Queue& queue, const SubpathSettings& settings, bool in_loop, uint32_t batch)
     : queue_(queue), settings_(settings), in_loop_(in_loop), batch_(batch), seen_(queue) {}
 
 template <class Algorithm>
-std::size_t WalksIntegrator<Algorithm>::predicted_bytes(const LightPathSettings& settings, uint64_t samples,
+std::size_t WalksIntegrator<Algorithm>::predicted_bytes(const SubpathSettings& settings, uint64_t samples,
                                                         uint32_t batch) {
     return bytes_of(walks::room_within<Algorithm>(settings, walks::kMostBytes, std::min<uint64_t>(samples, batch)));
 }

@@ -11,13 +11,13 @@
 
 namespace pertev {
 
-struct LightPathSettings {
+struct SubpathSettings {
     uint32_t max_depth = 16;     // scatterings between light and camera
     uint32_t roulette_depth = 3; // first vertex of a walk (counted from 1) at which Russian roulette may end it
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
 
-    bool operator==(const LightPathSettings&) const = default;
+    bool operator==(const SubpathSettings&) const = default;
 };
 
 /// A sphere round all that rays can meet, the moved world: light from far away comes through its discs.

@@ -3,7 +3,7 @@
 // The camera's end of a light path: which place of the picture sees a point of the scene, through which point of the
 // lens, and how densely the camera's rays go there. The camera's own rays (render/camera_view.h) backwards.
 
-#include "integrators/light_paths/light_path_settings.h"
+#include "integrators/subpaths/subpath_settings.h"
 #include "render/camera_rays.h"
 
 namespace pertev {

@@ -7,8 +7,8 @@
 
 #include <cstdint>
 
-#include "integrators/light_paths/light_path_settings.h"
-#include "integrators/light_paths/mis_walk.h"
+#include "integrators/subpaths/mis_walk.h"
+#include "integrators/subpaths/subpath_settings.h"
 #include "math/frame.h"
 #include "render/scene_view.h"
 #include "render/surface.h"

@@ -1,5 +1,5 @@
 #include "device/launch_body.h"
-#include "integrators/light_paths/particle_stages.h"
+#include "integrators/subpaths/particle_stages.h"
 
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::Nothing>&);

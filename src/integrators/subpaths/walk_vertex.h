@@ -2,8 +2,8 @@
 
 // What both kinds of walks do where they meet a surface.
 
-#include "integrators/light_paths/light_path_settings.h"
-#include "integrators/light_paths/walk_memory.h"
+#include "integrators/subpaths/subpath_settings.h"
+#include "integrators/subpaths/walk_memory.h"
 #include "render/particle_scatter.h"
 #include "render/picture_view.h"
 
@@ -20,7 +20,7 @@ namespace pertev {
 /// What walks are made of.
 struct WalkScene {
     PictureView picture;
-    LightPathSettings settings;
+    SubpathSettings settings;
     WorldSphere world;
     bool is_joined; // walks from both sides are joined, and what each way brings is weighted; else particles alone
 };
@@ -47,8 +47,7 @@ HD inline float cosine_at(const Surface& surface, Vec3 direction) {
 /// Russian roulette, from a walk's vertex `vertex` (counted from 1) on: the chance to go on is the square root of what
 /// the vertex lets through, the same rule from both sides. What goes on is made up for, so nothing is lost in the mean;
 /// weights do not know of it. False: the walk ends.
-HD inline bool survives(const LightPathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex,
-                        Rgb& weight) {
+HD inline bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex, Rgb& weight) {
     if (vertex < settings.roulette_depth) return true;
     const float chance = sqrt(max_component(weight));
     if (!(chance < 1)) return true;
@@ -62,7 +61,7 @@ struct WalkDraw {
     float lobe;
     Vec2 u;
 };
-HD inline WalkDraw draw_scatter(const LightPathSettings& settings, SampleKey key, const Bsdf& bsdf,
+HD inline WalkDraw draw_scatter(const SubpathSettings& settings, SampleKey key, const Bsdf& bsdf,
                                 uint32_t scatter_group, uint32_t choices_group) {
     WalkDraw draw = {0.5f, {}};
     if (bsdf.draws_lobe()) draw.lobe = sample_1d(settings.sampler, key, choices_group, kNumberOfLobe);

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "integrators/light_paths/mis_walk.h"
+#include "integrators/subpaths/mis_walk.h"
 #include "math/float4.h"
 #include "math/rgb.h"
 #include "render/accept_hit.h"

@@ -1,5 +1,5 @@
 #include "device/launch_body.h"
-#include "integrators/light_paths/begin_eyes.h"
+#include "integrators/subpaths/begin_eyes.h"
 
 // Those that compile soon: shading has a file of its own.
 namespace pertev {

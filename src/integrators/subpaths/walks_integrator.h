@@ -17,8 +17,8 @@
 #include "device/buffer.h"
 #include "device/readback.h"
 #include "integrators/integrator.h"
-#include "integrators/light_paths/light_path_settings.h"
-#include "integrators/light_paths/walk_memory.h"
+#include "integrators/subpaths/subpath_settings.h"
+#include "integrators/subpaths/walk_memory.h"
 
 namespace pertev {
 
@@ -29,10 +29,10 @@ class WalksIntegrator final : public Integrator {
 public:
     /// `queue` outlives the integrator. `in_loop`: on the CPU, where it can walk the scene's trees by itself, threads
     /// take walks of their own. `batch`: most samples in flight else; their memory is 1 GiB at most.
-    WalksIntegrator(Queue& queue, const LightPathSettings& settings, bool in_loop, uint32_t batch);
+    WalksIntegrator(Queue& queue, const SubpathSettings& settings, bool in_loop, uint32_t batch);
 
     /// Bytes that begin() takes for so many samples of all pixels together, where the walks are in flight all at once.
-    static std::size_t predicted_bytes(const LightPathSettings& settings, uint64_t samples, uint32_t batch);
+    static std::size_t predicted_bytes(const SubpathSettings& settings, uint64_t samples, uint32_t batch);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
@@ -42,7 +42,7 @@ public:
     std::size_t bytes() const override { return memory_.size(); }
 
     /// Counts from the next begin().
-    void set_settings(const LightPathSettings& settings) { settings_ = settings; }
+    void set_settings(const SubpathSettings& settings) { settings_ = settings; }
 
 private:
     const HostTrees* trees_of_loop() const; // null: all at once
@@ -51,7 +51,7 @@ private:
     void render_all_at_once(uint32_t first, uint32_t count, const FilmView& film);
 
     Queue& queue_;
-    LightPathSettings settings_, picture_settings_; // asked for; of the picture begun
+    SubpathSettings settings_, picture_settings_; // asked for; of the picture begun
     bool in_loop_;
     uint32_t batch_;
     PictureView picture_{};

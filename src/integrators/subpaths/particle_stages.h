@@ -7,10 +7,10 @@
 // Source: Dutre, Lafortune, Willems, "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993.
 
 #include "device/atomic_add.h"
-#include "integrators/light_paths/emit_particle.h"
-#include "integrators/light_paths/see_vertex.h"
-#include "integrators/light_paths/splat.h"
-#include "integrators/light_paths/walk_vertex.h"
+#include "integrators/subpaths/emit_particle.h"
+#include "integrators/subpaths/see_vertex.h"
+#include "integrators/subpaths/splat.h"
+#include "integrators/subpaths/walk_vertex.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {
@@ -44,7 +44,7 @@ struct BeginParticles {
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
-        const LightPathSettings& settings = scene.settings;
+        const SubpathSettings& settings = scene.settings;
         WalkState state = {};
         samples.place(scene.picture.camera, first + i, state);
         if (walks.room.kept > 0) walks.kept_counts[i] = 0;
@@ -73,7 +73,7 @@ struct ShadeParticles {
     HD_FUSED void operator()(uint32_t i) const {
         const Hit hit = walks.hits().load(i);
         if (hit.instance == kNoHit) return;
-        const LightPathSettings& settings = scene.settings;
+        const SubpathSettings& settings = scene.settings;
         const uint32_t walk = walks.owners[round % 2][i];
         const Ray ray = load_ray(walks.rays[round % 2] + i);
         WalkState state = walks.states[walk];
@@ -101,7 +101,7 @@ struct ShadeParticles {
 private:
     HD_FUSED void ask_camera(const Surface& surface, const Hit& hit, const WalkState& state, Vec3 wi,
                              SampleKey key) const {
-        const LightPathSettings& settings = scene.settings;
+        const SubpathSettings& settings = scene.settings;
         const CameraRays& camera = scene.picture.camera;
         const Vec2 lens = camera.has_lens() ? sample_2d(settings.sampler, key,
                                                         particle_group(state.depth(), kWalkScatter), Pair::Last)
@@ -134,7 +134,7 @@ private:
         walks.asked_rasters[place] = seen.raster;
     }
     HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, SampleKey key) const {
-        const LightPathSettings& settings = scene.settings;
+        const SubpathSettings& settings = scene.settings;
         const uint32_t choices = particle_group(state.depth(), kWalkChoices);
         const WalkDraw draw =
             draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kWalkScatter), choices);

@@ -3,7 +3,7 @@
 // Walks from the camera begin: as path tracing's do, by the same numbers, so that layers of the first surface are
 // the same.
 
-#include "integrators/light_paths/particle_stages.h"
+#include "integrators/subpaths/particle_stages.h"
 #include "render/first_hit.h"
 
 namespace pertev {

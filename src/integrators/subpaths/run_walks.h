@@ -8,7 +8,7 @@
 
 #include "device/launch.h"
 #include "device/readback.h"
-#include "integrators/light_paths/particle_stages.h"
+#include "integrators/subpaths/particle_stages.h"
 #include "render/find_hits.h"
 #include "render/tracer/scene_tracer.h"
 
