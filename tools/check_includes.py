@@ -3,7 +3,7 @@
 
 ALLOWED is the "may know" column of docs/architecture.md: a module may include itself and the modules that stand there, all
 of which come before it. Beyond that table: only device/cuda and .cu files include CUDA's headers, no integrator includes
-another, but for the machines that several are made of (integrators/ray_tree, light_paths), and no files include each other in a circle.
+another, but for the machines that several are made of (integrators/ray_tree, subpaths), and no files include each other in a circle.
 
 `check_includes.py [ROOT]` checks ROOT/src; `--self-test` makes trees that break each rule and must be caught.
 """
