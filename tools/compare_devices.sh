@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Renders scenes on the CPU and in CUDA and compares the hashes of the pictures: tools/compare_devices.sh PERTEV SCENES
-# [SPP ...]. SCENES is a folder laid out as docs/scenes.md says. Exits 1 when a picture differs.
+# [SPP ...]. SCENES is a folder laid out as docs/scenes.md says. Then frames of moving pictures, reconstructed. Exits 1 when a
+# picture differs.
 set -uo pipefail
 pertev=$1 scenes=$2
 shift 2
@@ -36,6 +37,37 @@ whitted $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator whitted --
 whitted-lamps $scenes/sibenik/sibenik.obj --integrator whitted
 distributed $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator distributed
 distributed-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator distributed --aperture 0.05
+hybrid $scenes/crytek-sponza/sponza.obj --integrator hybrid
+raster $scenes/crytek-sponza/sponza.obj --integrator raster --ambient 0.5
+raster-gouraud $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator raster --shading gouraud
+wireframe $scenes/sibenik/sibenik.obj --integrator raster --wireframe --ambient 1
+light $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator light
+light-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator light --aperture 0.05
+bidirectional $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator bidirectional
+bidirectional-sky $scenes/crytek-sponza/sponza.obj --integrator bidirectional --max-depth 6
+layers $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --lpe seen=LE --lpe diffuse=L.*DE --lpe glossy=L.*[GS]E
 LIST
 done
+
+# The hash of the 31st frame of each sequence that docs/real_time.md has figures of.
+frame_of() {
+    local device=$1
+    shift
+    "$pertev" bench sequence "$@" --device "$device" --size 320x240 -q --json 2>&1 |
+        sed -n 's/.*"last_frame":"\([0-9a-f]*\)".*/\1/p'
+}
+here=$(cd "$(dirname "$0")" && pwd)
+python3 "$here/make_moving_box.py" "$work/box.gltf"
+while read -r name arguments; do
+    # shellcheck disable=SC2086 # the arguments are words
+    cpu=$(frame_of cpu $arguments) cuda=$(frame_of cuda $arguments)
+    verdict=same
+    [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
+    printf '%-16s frame 30  cpu %s  cuda %s  %s\n' "$name" "${cpu:-failed}" "${cuda:-failed}" "$verdict"
+done <<LIST
+sponza-flight $scenes/crytek-sponza/sponza.obj --camera-path $here/../bench/sequences/sponza_flight.json --frames 0-30
+sibenik-turn $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --frames 0-30
+helmet-turn $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --turntable 120 --frames 0-30
+box-moving $work/box.gltf --frames 0-30
+LIST
 exit $status
