@@ -158,10 +158,10 @@ int bench_frames(const FramesFlags& flags) {
     if (reporter.json()) {
         const auto part = [&](double Likeness::*of) { return likeness ? json_number(*likeness.*of) : "null"; };
         reporter.event(fmt::format(
-            R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"restir":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
+            R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"reconstruction":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
             json_string(flags.render.scene.scene), json_string(queue->device_name()),
             json_string(flags.render.integrator), settings.width, settings.height, flags.render.max_depth, flags.frames,
-            flags.still, json_string(flags.reconstruction.restir), json_number(figures.whole.median),
+            flags.still, json_of(flags.reconstruction), json_number(figures.whole.median),
             json_number(figures.whole.least), json_number(figures.whole.greatest),
             json_number(figures.reconstruction.median), rays_a_second, part(&Likeness::flip),
             part(&Likeness::flip_of_sample), part(&Likeness::rel_mse), part(&Likeness::rel_mse_of_sample),

@@ -191,11 +191,12 @@ int bench_sequence(const SequenceFlags& flags) {
     reporter.end_progress();
     if (reporter.json()) {
         reporter.event(fmt::format(
-            R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"reference_spp":{},"reference_noise":{},"reference_flicker":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
+            R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"max_depth":{},"reconstruction":{},"reference_spp":{},"reference_noise":{},"reference_flicker":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
             json_string(flags.render.scene.scene), json_string(ready->queue->device_name()), ready->settings.width,
-            ready->settings.height, ready->sequence.count(), flags.reference, json_number(scores.noise),
-            json_number(scores.half.mean_flicker()), json_of(scores.ours), json_of(scores.sample),
-            scores.peer ? json_of(*scores.peer) : "null", picture_hash(session.frame().picture()).hex()));
+            ready->settings.height, ready->sequence.count(), flags.render.max_depth, json_of(flags.reconstruction),
+            flags.reference, json_number(scores.noise), json_number(scores.half.mean_flicker()), json_of(scores.ours),
+            json_of(scores.sample), scores.peer ? json_of(*scores.peer) : "null",
+            picture_hash(session.frame().picture()).hex()));
         return 0;
     }
     reporter.answer(fmt::format("{} on {}: {}x{}, {} frames; last frame {}\n", flags.render.scene.scene,

@@ -28,5 +28,7 @@ void add_reconstruction_flags(CLI::App& verb, ReconstructionFlags& flags, const 
 /// As the flags say; with --no-reconstruction of_samples_alone.
 ReconstructionSettings reconstruction_settings(const ReconstructionFlags& flags);
 RestirSettings restir_settings(const ReconstructionFlags& flags);
+/// All of both as a JSON object: what makes the bytes of a frame, beside the picture's own settings.
+std::string json_of(const ReconstructionFlags& flags);
 
 } // namespace pertev

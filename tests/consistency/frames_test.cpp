@@ -89,6 +89,36 @@ TEST_CASE("frame 30 has the same bytes on every device, by every body and batch,
     }
 }
 
+TEST_CASE("another size or another scene begins the history anew, and so does the way back") {
+    Messages messages;
+    const Scenes other = diffuse_scene();
+    const PreparedScene prepared = prepare_scene(make_mixed_scene(), {}, messages),
+                        other_prepared = prepare_scene(other.scene, {}, messages);
+    const Camera camera = mixed_scene_camera();
+    RenderSettings smaller = frame_settings();
+    smaller.width = 56, smaller.height = 40;
+    constexpr uint32_t kFew = 5;
+    Queue queue = queue_asked_for();
+    const auto hash_of_new_session = [&](const PreparedScene& scene, const RenderSettings& settings) {
+        Session session(queue, scene, camera, settings);
+        return hash_of_frames(session, camera, kFew, {});
+    };
+    const Hash128 expected = hash_of_new_session(prepared, frame_settings()),
+                  of_smaller = hash_of_new_session(prepared, smaller),
+                  of_other = hash_of_new_session(other_prepared, frame_settings());
+    CHECK(expected != of_other);
+    Session session(queue, prepared, camera, frame_settings());
+    CHECK(hash_of_frames(session, camera, kFew, {}) == expected);
+    session.set_settings(smaller);
+    CHECK(hash_of_frames(session, camera, kFew, {}) == of_smaller);
+    session.set_settings(frame_settings());
+    CHECK(hash_of_frames(session, camera, kFew, {}) == expected);
+    session.set_scene(other_prepared);
+    CHECK(hash_of_frames(session, camera, kFew, {}) == of_other);
+    session.set_scene(prepared);
+    CHECK(hash_of_frames(session, camera, kFew, {}) == expected);
+}
+
 namespace {
 
 /// Ten frames in which the first instance that is not baked moves aside.

@@ -132,8 +132,11 @@ class Bench(CliTest):
         self.assertGreater(still["reference_mean"], still["mean"])  # in so small a picture the lamp is all edge
         self.assertRegex(self.succeed(*line, "--reference", "4").stdout, r"ms a frame .*\nHDR-FLIP of the last frame against 4 spp")
         shared = [self.succeed(*line, "--restir", name, "--json").events("frames")[0] for name in ("di", "gi")]
-        self.assertEqual([event["restir"] for event in [made[0], *shared]], ["off", "di", "gi"])
+        self.assertEqual([event["reconstruction"]["restir"] for event in [made[0], *shared]], ["off", "di", "gi"])
         self.assertEqual(len({event["picture"] for event in [made[0], *shared]}), 3)
+        coarse = self.succeed(*line, "--resolution-scale", "0.5", "--passes", "2", "--no-anti-alias", "--json").events("frames")[0]
+        self.assertEqual({name: value for name, value in coarse["reconstruction"].items() if made[0]["reconstruction"][name] != value},
+                         {"resolution_scale": 0.5, "passes": 2, "anti_alias": False})
         self.refuse(2, *line, "--restir", "all", says=["--restir", "off", "di", "gi"])
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
         self.refuse(6, *line, "--write", "/nowhere/at/all", says=["/nowhere/at/all"])

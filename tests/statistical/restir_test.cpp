@@ -42,6 +42,15 @@ RestirCase sky_case() {
     return {"sky", std::move(scene), mixed_scene_camera()};
 }
 
+/// The mixed scene by its point, spot and directional lights alone.
+RestirCase lights_case() {
+    RestirCase lights = sky_case();
+    lights.name = "lights";
+    lights.scene.lights = make_mixed_scene().lights;
+    lights.scene.environment.reset();
+    return lights;
+}
+
 /// The Cornell box with walls of rough plastic and blocks of metal.
 RestirCase glossy_case() {
     RestirCase box = builtin_case("cornell-box");
@@ -60,6 +69,7 @@ std::vector<RestirCase> restir_cases() {
     all.push_back(builtin_case("cornell-box"));
     all.push_back(glossy_case());
     all.push_back(sky_case());
+    all.push_back(lights_case());
     all.push_back(builtin_case("many-lights"));
     return all;
 }
