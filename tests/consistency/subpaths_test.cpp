@@ -43,13 +43,13 @@ struct WalkPicture {
     RayCounts rays;
 };
 
-WalkPicture picture_of(Queue& queue, const RenderSettings& settings) {
+WalkPicture picture_of_walks(Queue& queue, const RenderSettings& settings) {
     const RenderResult result = test::render(queue, test::make_mixed_scene(), camera_with_lens(), settings);
     CHECK(result.invalid_samples == 0);
     return {test::render_hash(result), result.rays};
 }
 
-void check_same(const WalkPicture& a, const WalkPicture& b) {
+void check_same_walks(const WalkPicture& a, const WalkPicture& b) {
     CHECK(a.hash == b.hash);
     CHECK(a.rays.camera == b.rays.camera);
     CHECK(a.rays.bounce == b.rays.bounce);
@@ -63,26 +63,26 @@ TEST_CASE("pictures of walks from the lights do not depend on threads, passes, b
         CAPTURE(static_cast<int>(integrator));
         Queue queue = Queue::make_cpu();
         RenderSettings settings = walk_settings(integrator);
-        const WalkPicture reference = picture_of(queue, settings);
+        const WalkPicture reference = picture_of_walks(queue, settings);
         CHECK(reference.rays.bounce > 37 * 21);
         CHECK(reference.rays.shadow > 37 * 21);
 
         set_thread_count(1);
-        check_same(picture_of(queue, settings), reference);
+        check_same_walks(picture_of_walks(queue, settings), reference);
         set_thread_count(5);
         settings.pass_samples = 3;
-        check_same(picture_of(queue, settings), reference);
+        check_same_walks(picture_of_walks(queue, settings), reference);
         set_thread_count(0);
         settings.body = PathBody::Wavefront;
         for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
             settings.batch = batch;
-            check_same(picture_of(queue, settings), reference);
+            check_same_walks(picture_of_walks(queue, settings), reference);
             if (!test::cuda_requested()) continue;
             Queue gpu = test::make_cuda_queue();
-            check_same(picture_of(gpu, settings), reference);
+            check_same_walks(picture_of_walks(gpu, settings), reference);
         }
         settings.path.seed = 1;
-        CHECK(picture_of(queue, settings).hash != reference.hash);
+        CHECK(picture_of_walks(queue, settings).hash != reference.hash);
     }
 }
 
@@ -103,10 +103,10 @@ TEST_CASE("without a scattering all that is left is what the camera looks straig
     Queue queue = test::queue_asked_for();
     RenderSettings settings = walk_settings(IntegratorKind::Path);
     settings.path.max_depth = 0;
-    const Hash128 of_path = picture_of(queue, settings).hash;
+    const Hash128 of_path = picture_of_walks(queue, settings).hash;
     for (const IntegratorKind integrator : kWalks) {
         settings.integrator = integrator;
-        CHECK(picture_of(queue, settings).hash == of_path);
+        CHECK(picture_of_walks(queue, settings).hash == of_path);
     }
 }
 
