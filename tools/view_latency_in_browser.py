@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How soon a page of `pertev view` shows what is asked for, in a real headless Chromium on this machine:
+"""How soon a page of `pertev view` shows what is asked for, in a real headless Chromium on the same machine:
 tools/view_latency_in_browser.py PERTEV SCENE [options] [-- flags of pertev view], on the CPU by default.
 
 Holds a key that turns the view's place into another one with each picture of the browser. Milliseconds from an input to

@@ -141,7 +141,7 @@ int bench_frames(const FramesFlags& flags) {
     if (!makes_frames(settings.integrator) && asks_for_more) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
-                                "--sample-order are for path",
+                                "--sample-order are for path and hybrid",
                                 flags.render.integrator));
     }
     Session session(*queue, prepared, camera, settings);

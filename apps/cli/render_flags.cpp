@@ -140,7 +140,7 @@ RenderSettings light_settings(const RenderFlags& flags) {
             "--ambient: a light of --integrator cast, whitted and raster; {} finds what comes from all around itself",
             flags.integrator));
     refuse(settings.path.clamp > 0 && !makes_frames(settings.integrator),
-           fmt::format("--clamp: of --integrator path, not of {}", flags.integrator));
+           fmt::format("--clamp: of --integrator path and hybrid, not of {}", flags.integrator));
     return settings;
 }
 

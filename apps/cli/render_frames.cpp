@@ -1,5 +1,8 @@
 #include "apps/cli/render_frames.h"
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
@@ -27,14 +30,18 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      const PictureRecord& record) {
     SequenceRecord::Settings settings;
     for (const auto& [name, value] : settings_metadata(record)) {
-        // They stand there only where they are.
-        if (name == "pertev.denoise" || name == "pertev.ambient") continue;
-        if (name == "pertev.shading" || name == "pertev.wireframe") continue;
+        // They stand there only where they are; a run without them must be told apart from one with them.
+        constexpr std::string_view kSometimes[] = {"pertev.denoise",   "pertev.ambient",    "pertev.shading",
+                                                   "pertev.wireframe", "pertev.lpe",        "pertev.lamp",
+                                                   "pertev.quantity",  "pertev.false_color"};
+        if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
     std::string layers;
     for (const std::string& layer : flags.aovs) layers += layer + " ";
     for (const std::string& layer : flags.light_paths) layers += layer + " ";
+    std::string lamps;
+    for (const std::string& lamp : flags.scene.lamps) lamps += lamp + " ";
     const RenderSettings& picture = record.settings;
     settings.insert(settings.end(), {{"first frame", fmt::format("{}", sequence.first)},
                                      {"--fps", sequence.fps ? fmt::format("{}", *sequence.fps) : ""},
@@ -45,6 +52,10 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
+                                     {"--lamp", lamps},
+                                     {"--efficacy", fmt::format("{}", flags.scene.efficacy)},
+                                     {"--false-color", flags.false_color},
+                                     {"--false-color-range", flags.false_color_range},
                                      {"--ambient", flags.ambient},
                                      {"--shading", flags.shading},
                                      {"--wireframe", flags.wireframe ? "yes" : "no"},

@@ -34,9 +34,9 @@ struct IntegratorSettings {
     std::optional<Rgb> ambient;
     RasterLook look; // of Raster
 
-    // Of Path: layers of the film beside the picture, each of some light paths alone. Null: none.
+    // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;
-    // Of Path: in place of radiance, W/m2 on the side that the camera sees; 0 where it sees none.
+    // Of Path and Hybrid: in place of radiance, W/m2 on the side that the camera sees; 0 where it sees none.
     bool irradiance = false;
 
     // How the device does it: the light stays the same.

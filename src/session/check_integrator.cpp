@@ -52,13 +52,13 @@ void check_integrator(const RenderSettings& settings) {
     const std::string_view name = integrator_name(settings);
     if (!makes_frames(settings.integrator) && settings.denoise != Denoise::None) {
         throw Error(ErrorCode::BadInput,
-                    fmt::format("--denoise {}: reconstructs pictures of --integrator path, not of {}",
+                    fmt::format("--denoise {}: reconstructs pictures of --integrator path and hybrid, not of {}",
                                 name_of(settings.denoise), name));
     }
     if (settings.light_paths) {
         refuse_layers(
             !has_light_path_layers(settings.integrator),
-            fmt::format("light paths are told apart by --integrator path, direct and indirect, not by {}", name));
+            fmt::format("light paths are told apart by --integrator path, direct, indirect and hybrid, not by {}", name));
         refuse_layers(settings.denoise != Denoise::None,
                       fmt::format("layers are means of samples, and --denoise {} makes one picture of them; leave out "
                                   "one of them",
@@ -66,7 +66,7 @@ void check_integrator(const RenderSettings& settings) {
     }
     if (settings.irradiance && (!has_light_path_layers(settings.integrator) || settings.denoise != Denoise::None)) {
         throw Error(ErrorCode::BadInput,
-                    fmt::format("--false-color illuminance: is found by --integrator path, direct and indirect, "
+                    fmt::format("--false-color illuminance: is found by --integrator path, direct, indirect and hybrid, "
                                 "undenoised; not by {}{}",
                                 name, settings.denoise != Denoise::None ? ", denoised" : ""));
     }

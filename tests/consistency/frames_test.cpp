@@ -91,16 +91,17 @@ TEST_CASE("frame 30 has the same bytes on every device, by every body and batch,
 
 TEST_CASE("another size or another scene begins the history anew, and so does the way back") {
     Messages messages;
+    const Scene scene = make_mixed_scene();
     const Scenes other = diffuse_scene();
-    const PreparedScene prepared = prepare_scene(make_mixed_scene(), {}, messages),
+    const PreparedScene prepared = prepare_scene(scene, {}, messages),
                         other_prepared = prepare_scene(other.scene, {}, messages);
     const Camera camera = mixed_scene_camera();
     RenderSettings smaller = frame_settings();
     smaller.width = 56, smaller.height = 40;
     constexpr uint32_t kFew = 5;
     Queue queue = queue_asked_for();
-    const auto hash_of_new_session = [&](const PreparedScene& scene, const RenderSettings& settings) {
-        Session session(queue, scene, camera, settings);
+    const auto hash_of_new_session = [&](const PreparedScene& of, const RenderSettings& settings) {
+        Session session(queue, of, camera, settings);
         return hash_of_frames(session, camera, kFew, {});
     };
     const Hash128 expected = hash_of_new_session(prepared, frame_settings()),
@@ -182,6 +183,10 @@ TEST_CASE("frames with ReSTIR have the same bytes on every device, by every body
             wavefront.batch = 1000;
             Session other(cpu, prepared, s.camera, wavefront);
             CHECK(hash_of_frames(other, s.camera, kRestirFrames, {}, restir) == expected);
+            RenderSettings hybrid = frame_settings();
+            hybrid.integrator = IntegratorKind::Hybrid; // its samples are path's
+            Session rasterised(cpu, prepared, s.camera, hybrid);
+            CHECK(hash_of_frames(rasterised, s.camera, kRestirFrames, {}, restir) == expected);
             if (cuda_requested()) {
                 Queue cuda = make_cuda_queue();
                 Session there(cuda, prepared, s.camera, frame_settings());

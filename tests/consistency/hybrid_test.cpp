@@ -118,6 +118,16 @@ TEST_CASE("hybrid has path's picture of all kinds of surfaces, for any threads, 
     }
 }
 
+TEST_CASE("hybrid is denoised as path is, and finds its irradiance") {
+    const Scene scene = test::make_mixed_scene();
+    RenderSettings settings = hybrid_settings();
+    settings.denoise = Denoise::Svgf;
+    check_as_path(scene, test::mixed_scene_camera(), settings);
+    settings.denoise = Denoise::None;
+    settings.irradiance = true;
+    check_as_path(scene, test::mixed_scene_camera(), settings);
+}
+
 TEST_CASE("hybrid has path's picture through any pixel filter and any angle of view, at any place") {
     const Scene scene = soup_scene(150, 1);
     for (const auto& [filter, radius] : {std::pair(PixelFilter::Box, 0.5f), std::pair(PixelFilter::Tent, 3.0f),

@@ -56,6 +56,11 @@ TEST_CASE("layers do not depend on threads, passes, bodies and batches") {
         other.batch = batch;
         CHECK(cpu_layers_hash(other) == reference_layers_hash());
     }
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) { // hybrid's samples are path's
+        other.integrator = IntegratorKind::Hybrid;
+        other.body = body;
+        CHECK(cpu_layers_hash(other) == reference_layers_hash());
+    }
     if (!test::cuda_requested()) return;
     Queue queue = test::make_cuda_queue();
     for (const uint32_t batch : {777u, 1u << 20}) {

@@ -168,7 +168,7 @@ TEST_CASE("trees of rays are no frames, and are not too deep") {
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const auto refused = [&](const auto& body) { return test::bad_input_message(body); };
     CHECK(refused([&] { Session(queue, prepared, {}, settings); }) ==
-          "--denoise svgf: reconstructs pictures of --integrator path, not of whitted");
+          "--denoise svgf: reconstructs pictures of --integrator path and hybrid, not of whitted");
     settings.denoise = Denoise::None;
     Session session(queue, prepared, {}, settings);
     CHECK(refused([&] { session.render_frame(0, {}); }) ==

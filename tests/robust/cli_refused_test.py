@@ -58,10 +58,10 @@ class WhatIsRefused(CliTest):
 
     def test_what_an_integrator_cannot_do_is_one_line(self):
         for flags, code, says in [
-                ("--integrator whitted --denoise svgf", 2, "--denoise svgf: reconstructs pictures of --integrator path, not of whitted"),
+                ("--integrator whitted --denoise svgf", 2, "--denoise svgf: reconstructs pictures of --integrator path and hybrid, not of whitted"),
                 ("--integrator distributed --max-depth 256", 3, "--max-depth 256: with --integrator distributed at most 255"),
                 ("--integrator bidirectional --denoise svgf", 2,
-                 "--denoise svgf: reconstructs pictures of --integrator path, not of bidirectional"),
+                 "--denoise svgf: reconstructs pictures of --integrator path and hybrid, not of bidirectional"),
                 ("--integrator bidirectional --max-depth 256", 3, "--max-depth 256: with --integrator bidirectional at most 255"),
                 ("--integrator hybrid --aperture 0.1 --focus 1", 2, "--integrator hybrid: a rasteriser sees through a pinhole, and this camera has a lens"),
                 ("--integrator raster --ambient 1 --aperture 0.1 --focus 1", 2, "--integrator raster: a rasteriser sees through a pinhole"),

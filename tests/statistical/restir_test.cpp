@@ -42,15 +42,6 @@ RestirCase sky_case() {
     return {"sky", std::move(scene), mixed_scene_camera()};
 }
 
-/// The mixed scene by its point, spot and directional lights alone.
-RestirCase lights_case() {
-    RestirCase lights = sky_case();
-    lights.name = "lights";
-    lights.scene.lights = make_mixed_scene().lights;
-    lights.scene.environment.reset();
-    return lights;
-}
-
 /// The Cornell box with walls of rough plastic and blocks of metal.
 RestirCase glossy_case() {
     RestirCase box = builtin_case("cornell-box");
@@ -60,6 +51,24 @@ RestirCase glossy_case() {
         material.kind = MaterialKind::MetallicRoughness;
         material.metallic = i == 0 ? 0.8f : 0.0f;
         material.roughness = 0.3f;
+    }
+    return box;
+}
+
+/// The Cornell box by a point, a spot and a directional light in place of its lamp.
+RestirCase lights_case() {
+    RestirCase box = builtin_case("cornell-box");
+    box.name = "lights";
+    for (Material& material : box.scene.materials) material.emission = {0, 0, 0};
+    box.scene.lights = make_mixed_scene().lights;
+    const Vec3 places[] = {{0.15f, 0.4f, 0.1f}, {0.45f, 0.5f, 0.2f}, {}};
+    const Vec3 directions[] = {{0, -1, 0}, {-0.5f, -1, 0.5f}, {0.3f, -0.6f, 1}}; // the sun shines in by the open front
+    const float strengths[] = {0.02f, 0.004f, 0.5f};
+    for (std::size_t i = 0; i < box.scene.lights.size(); ++i) {
+        Light& light = box.scene.lights[i];
+        light.position = places[i];
+        light.direction = normalize(directions[i]);
+        light.intensity = strengths[i] * light.intensity;
     }
     return box;
 }
