@@ -257,8 +257,8 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
     numeric(
         "aperture", "Radius of the lens, m", "Camera",
-        "0: all is sharp. The larger, the more is blurred that is not in focus. hybrid and raster have none", Kind::Number, 0, 1e6,
-        0.005, [](const ViewState& s) { return s.lens.aperture_radius; },
+        "0: all is sharp. The larger, the more is blurred that is not in focus. hybrid and raster have none",
+        Kind::Number, 0, 1e6, 0.005, [](const ViewState& s) { return s.lens.aperture_radius; },
         [](ViewState& s, float v) { s.lens.aperture_radius = rasterises_camera(s.picture.integrator) ? 0.0f : v; });
     numeric(
         "focus", "Distance in focus, m", "Camera", "How far away things are sharp. Alt-click sets it", Kind::Number,
