@@ -118,8 +118,12 @@ void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene,
     if (lamp.unit == LampUnit::Lux)
         refuse(lamp, "a lamp with an area has W, lm, cd or nits; lx are of directional lights");
     if (lamp.unit != LampUnit::Nit) {
+        if (instance.is_hidden) return; // sends out nothing, and has no size now
         const SurfaceSize size = size_of(scene, instance);
         if (has_texture) refuse(lamp, "its emission has a texture; nits say what that is multiplied by");
+        if (before.alpha_mode != AlphaMode::Opaque) {
+            refuse(lamp, "its surface has holes or lets light pass, so its area is not what shines; say nits");
+        }
         if (!(size.area > 0)) refuse(lamp, "its object has no area");
         if (lamp.unit == LampUnit::Candela && !size.is_flat) {
             refuse(lamp, "its object is not flat, so it has no one intensity; say W, lm or nits");

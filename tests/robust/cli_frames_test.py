@@ -125,10 +125,10 @@ class MovingPictures(CliTest):
                     "--continue", says=["pertev.seed"])
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--integrator",
                     "distributed", "--continue", says=["pertev.integrator"])
-        for flag, value in (("--false-color", "luminance"), ("--efficacy", "200"), ("--ambient", "1")):
-            other = ["--integrator", "cast"] if flag == "--ambient" else []
-            self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", flag, value, *other,
-                        "--continue", says=["--continue: the frames there were made with"])
+        for flags, named in ((["--exposure", "0", "--efficacy", "200"], "--efficacy"),
+                             (["--false-color", "luminance", "--false-color-range", "1,10"], "--false-color")):
+            self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY[:TINY.index("--exposure")], *flags, "--frames", "0-4",
+                        "--fps", "2", "--continue", says=["the frames there were made with", f'{named} "'])
         write(self.path("m.gltf"), moving_gltf() + " ")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
                     says=["hash of the scene's file"])

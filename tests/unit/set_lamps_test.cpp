@@ -128,6 +128,13 @@ TEST_CASE("what a lamp cannot have is refused") {
     Scene scene = lamp_scene();
     scene.meshes[0].positions[0].y = 1; // bent
     CHECK(test::bad_input_message([&] { set_lamp(scene, "small=8cd"); }).find("not flat") != std::string::npos);
+    scene.materials[0].alpha_mode = AlphaMode::Mask;
+    CHECK(test::bad_input_message([&] { set_lamp(scene, "small=8lm"); }).find("has holes") != std::string::npos);
+    const Rgb before = scene.materials[0].emission;
+    scene.instances[0].is_hidden = scene.instances[1].is_hidden = true; // nothing there to have a size
+    set_lamp(scene, "glow=8lm");
+    CHECK(scene.materials[0].emission == before);
+    scene.instances[0].is_hidden = scene.instances[1].is_hidden = false;
     scene.images.resize(1);
     scene.materials[0].emission_texture.image = 0;
     CHECK(test::bad_input_message([&] { set_lamp(scene, "small=8lm"); }).find("texture") != std::string::npos);

@@ -103,6 +103,8 @@ uint16_t place_in(std::vector<T>& values, const T& value) {
     return static_cast<uint16_t>(values.size() - 1);
 }
 
+constexpr uint64_t kMaxEntries = 1u << 24; // of the tables: states times all that a path may do in one
+
 /// Subsets of states as states, of which 0 is the empty one and 1 the first.
 LightPathAutomaton determinise(const AllExpressions& all, StateSet firsts, const LightPathTags& tags) {
     LightPathAutomaton automaton;
@@ -130,6 +132,12 @@ LightPathAutomaton determinise(const AllExpressions& all, StateSet firsts, const
                         fmt::format("--lpe: the expressions need more than {} states together; render some of them "
                                     "apart",
                                     kMaxLightPathStates));
+        }
+        if (sets.size() * (scatterings.size() + lights.size()) > kMaxEntries) {
+            throw Error(ErrorCode::OverLimit,
+                        fmt::format("--lpe: the names tell {} things apart, too many for {} states; render some of the "
+                                    "expressions apart",
+                                    scatterings.size() + lights.size(), sets.size()));
         }
         return place->second;
     };
