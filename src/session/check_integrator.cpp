@@ -58,17 +58,19 @@ void check_integrator(const RenderSettings& settings) {
     if (settings.light_paths) {
         refuse_layers(
             !has_light_path_layers(settings.integrator),
-            fmt::format("light paths are told apart by --integrator path, direct, indirect and hybrid, not by {}", name));
+            fmt::format("light paths are told apart by --integrator path, direct, indirect and hybrid, not by {}",
+                        name));
         refuse_layers(settings.denoise != Denoise::None,
                       fmt::format("layers are means of samples, and --denoise {} makes one picture of them; leave out "
                                   "one of them",
                                   name_of(settings.denoise)));
     }
     if (settings.irradiance && (!has_light_path_layers(settings.integrator) || settings.denoise != Denoise::None)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--false-color illuminance: is found by --integrator path, direct, indirect and hybrid, "
-                                "undenoised; not by {}{}",
-                                name, settings.denoise != Denoise::None ? ", denoised" : ""));
+        throw Error(
+            ErrorCode::BadInput,
+            fmt::format("--false-color illuminance: is found by --integrator path, direct, indirect and hybrid, "
+                        "undenoised; not by {}{}",
+                        name, settings.denoise != Denoise::None ? ", denoised" : ""));
     }
     if (settings.path.max_depth > most_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, fmt::format("--max-depth {}: with --integrator {} at most {}",
