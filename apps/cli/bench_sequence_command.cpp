@@ -118,7 +118,7 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         reporter.progress((number + 1.0) / ready.sequence.count(),
                           fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
         go_to(ready.sequence.time_of(frame), *ready.moving, session, reporter.messages());
-        place_frame(frame, ready.scene(), camera, record);
+        place_frame(frame, *ready.moving, camera, record);
         session.set_camera(record.camera.camera);
         session.render_frame(number, settings, restir);
         const Image ours = session.frame().picture();

@@ -60,6 +60,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     RenderSettings& settings = ready->settings;
     settings = render_settings(flags, scene);
     settings.tracers = tracers;
+    if (!flags.shutter.empty()) check_shutter(settings);
     check_light(settings, scene, messages);
     ready->camera.emplace(camera_choice(flags.scene), path, scene, aspect_of(settings.width, settings.height),
                           messages);
@@ -69,13 +70,14 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     prepare.may_be_better = may_be_better(flags.tracer);
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
-    ready->sequence = frame_sequence(flags).value_or(FrameSequence{.time_s = flags.time_s});
-    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages);
+    ready->sequence = frame_sequence(flags).value_or(FrameSequence{.time_s = flags.time_s, .shutter = shutter(flags)});
+    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages,
+                          ready->sequence.shutter);
     ready->queue = machine.take();
     return ready;
 }
 
-PictureRecord picture_record(const SceneOptions& options, const ReadyScene& ready) {
+PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready) {
     PictureRecord record = {.scene = source_of(open_options(options), ready.scene()),
                             .camera = {},
                             .settings = ready.settings,
@@ -84,7 +86,7 @@ PictureRecord picture_record(const SceneOptions& options, const ReadyScene& read
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
     record.scene.load_seconds = ready.load_s;
     record.scene.build_seconds = ready.prepared().build_seconds;
-    place_frame(ready.sequence.first, ready.scene(), {*ready.camera, ready.sequence}, record);
+    place_frame(ready.sequence.first, *ready.moving, {*ready.camera, ready.sequence}, record);
     return record;
 }
 

@@ -30,7 +30,7 @@ struct RenderFlags {
     uint32_t samples = RenderSettings{}.samples;
     double time_limit_s = 0;
     std::optional<double> time_s;
-    std::string frames, camera_path;
+    std::string frames, camera_path, shutter;
     double fps = 0; // 0: not given
     uint32_t turntable = 0;
     bool goes_on = false; // --continue
@@ -54,6 +54,8 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags);
 /// which throws Error(BadInput).
 void add_motion_flags(CLI::App& verb, RenderFlags& flags);
 void check_motion_flags(const RenderFlags& flags);
+/// Of --shutter; none: it is not given. Throws Error(BadInput).
+std::optional<Shutter> shutter(const RenderFlags& flags);
 /// Of these, the ones that say at which time the scene is shown, or how the camera goes over time: --time,
 /// --camera-path, --turntable. `plays`: without a time, time runs.
 void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays);

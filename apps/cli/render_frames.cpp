@@ -33,7 +33,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
         // They stand there only where they are; a run without them must be told apart from one with them.
         constexpr std::string_view kSometimes[] = {"pertev.denoise",   "pertev.ambient",    "pertev.shading",
                                                    "pertev.wireframe", "pertev.lpe",        "pertev.lamp",
-                                                   "pertev.quantity",  "pertev.false_color"};
+                                                   "pertev.quantity",  "pertev.false_color", "pertev.shutter"};
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
@@ -49,6 +49,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"hash of --camera-path", hash_of_file(flags.camera_path)},
                                      {"hash of the scene's file", hash_of_file(flags.scene.scene)},
                                      {"hash of --environment", hash_of_file(flags.scene.environment)},
+                                     {"--shutter", flags.shutter},
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
@@ -84,6 +85,20 @@ std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
     return files;
 }
 
+/// Lets the camera of `frame` move while the shutter is open.
+void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& camera, Camera& moved) {
+    const FrameSequence& sequence = camera.sequence;
+    const PlacedBox about_eye = {moved.world_from_camera, {{-1, -1, -1}, {1, 1, 1}}}; // metres
+    const FittedMotions fitted = fit_motions({&about_eye, 1}, [&](double share) {
+        const double time_s = sequence.shutter->time_at(sequence.time_of(frame).value(), share);
+        Scene cameras; // nothing else of a scene moves a camera
+        cameras.cameras = moving.cameras_at(time_s);
+        const CameraSource at = camera_at(camera.camera, cameras, time_s, sequence.turn_at(frame, share));
+        return std::vector{std::optional(at.camera.world_from_camera)};
+    });
+    moved.motion = fitted.motions.front().keys;
+}
+
 /// What motion vectors of a frame are from.
 void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
                        Messages& messages) {
@@ -110,9 +125,11 @@ CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::opti
     return source;
 }
 
-void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record) {
+void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record) {
     record.scene.time_s = camera.sequence.time_of(frame);
-    record.camera = camera_at(camera.camera, scene, record.scene.time_s, camera.sequence.turn_of(frame));
+    record.scene.shutter = camera.sequence.shutter;
+    record.camera = camera_at(camera.camera, moving.scene(), record.scene.time_s, camera.sequence.turn_of(frame));
+    if (camera.sequence.shutter) move_in_shutter(frame, moving, camera, record.camera.camera);
 }
 
 int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,
@@ -138,7 +155,7 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
         }
         go_to(time_s, moving, session, reporter.messages());
         const double update_s = update.seconds();
-        place_frame(frame, moving.scene(), camera, record);
+        place_frame(frame, moving, camera, record);
         session.set_camera(record.camera.camera);
         session.render(record.settings.samples, [&](const RenderProgress& now) {
             return show_progress(now, frame, number, sequence.count(), reporter);

@@ -21,8 +21,9 @@ struct FrameCamera {
 void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages);
 /// The camera at a time, and after a share of a turn.
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn);
-/// Gives `record` the camera and the time of `frame`; `scene` is at that time.
-void place_frame(uint32_t frame, const Scene& scene, const FrameCamera& camera, PictureRecord& record);
+/// Gives `record` the camera and the time of `frame`; `moving` is at that time. Where there is a shutter the camera
+/// moves while it is open.
+void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record);
 
 /// `moving`, `session` and `record` are those of the first frame, exposed as all frames will be. Ctrl-C ends after the
 /// last whole frame. Returns the exit status. Throws Error.

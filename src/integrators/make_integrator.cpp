@@ -67,6 +67,11 @@ bool finds_all_light(IntegratorKind kind) { return makes_frames(kind) || kind ==
 
 bool has_light_path_layers(IntegratorKind kind) { return makes_frames(kind); }
 
+bool has_shutter(IntegratorKind kind) {
+    return kind == IntegratorKind::Path || kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted ||
+           kind == IntegratorKind::Distributed;
+}
+
 uint32_t most_depth(IntegratorKind kind) {
     switch (kind) {
     case IntegratorKind::Path:
@@ -150,7 +155,7 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
 }
 
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
-                            bool walks_itself) {
+                            bool walks_itself, bool has_times) {
     if (settings.integrator == IntegratorKind::Raster) return RasterIntegrator::predicted_bytes(pixels);
     const std::size_t tables = settings.light_paths ? LightPathsOnDevice::predicted_bytes(*settings.light_paths) : 0;
     if (walks_itself && settings.body == PathBody::Loop) return tables;
@@ -161,17 +166,18 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     case IntegratorKind::Raster:
         break;
     case IntegratorKind::Cast:
-        return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch);
+        return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);
     case IntegratorKind::Whitted:
-        return RayTreeIntegrator<Whitted>::predicted_bytes(tree_settings(settings), all, settings.batch);
+        return RayTreeIntegrator<Whitted>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);
     case IntegratorKind::Distributed:
-        return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch);
+        return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);
     case IntegratorKind::Light:
         return WalksIntegrator<ParticlesAlone>::predicted_bytes(walk_settings(settings), all, settings.batch);
     case IntegratorKind::Bidirectional:
         return WalksIntegrator<BothDirections>::predicted_bytes(walk_settings(settings), all, settings.batch);
     }
-    return tables + PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.light_paths != nullptr);
+    return tables + PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.light_paths != nullptr,
+                                                    has_times);
 }
 
 } // namespace pertev

@@ -56,6 +56,8 @@ bool lists_tiles(IntegratorKind kind);
 bool finds_all_light(IntegratorKind kind);
 /// Whether it tells light paths apart and can show irradiance: IntegratorSettings::light_paths and irradiance.
 bool has_light_path_layers(IntegratorKind kind);
+/// Whether its rays have a time, so that what moves while a shutter is open is blurred.
+bool has_shutter(IntegratorKind kind);
 /// The largest PathSettings::max_depth.
 uint32_t most_depth(IntegratorKind kind);
 /// Whether point, spot and directional lights alone light surfaces.
@@ -72,8 +74,8 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
 bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to);
 
 /// Bytes of the device's memory that it takes for `samples` of each of `pixels`. `walks_itself`: its tracers are such
-/// that a loop may walk them ray by ray (can_walk_on_host).
+/// that a loop may walk them ray by ray (can_walk_on_host). `has_times`: instances move while the shutter is open.
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
-                            bool walks_itself);
+                            bool walks_itself, bool has_times = false);
 
 } // namespace pertev

@@ -11,6 +11,7 @@
 #include "math/sampler.h"
 #include "render/scene_view.h"
 #include "render/textured_factor.h"
+#include "trace/scene_trees.h"
 
 namespace pertev {
 
@@ -41,12 +42,17 @@ struct AcceptHit {
     const SceneView& scene;
     TriangleId start, target; // not hit by this ray
     uint32_t key;             // of the path and depth: the coin of blended surfaces
+    float time = kAtRest;     // of the ray, while the shutter is open, [0, 1]
 
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
         if (instance == start.instance && primitive == start.primitive) return false;
         if (instance == target.instance && primitive == target.primitive) return false;
         if (scene.any_alpha == 0) return true;
         return passes_alpha(instance, primitive, u, v);
+    }
+
+    HD Ray move_back(uint32_t motion, const Ray& ray) const {
+        return pertev::move_back(scene.motions.at(motion, time), ray);
     }
 
     HD bool passes_alpha(uint32_t instance, uint32_t primitive, float u, float v) const {
@@ -65,6 +71,7 @@ struct AcceptCameraHit {
     AcceptHit accept;
     Vec3 direction; // of the ray, world space
 
+    HD Ray move_back(uint32_t motion, const Ray& ray) const { return accept.move_back(motion, ray); }
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
         return !meets_hidden_back(instance, primitive) && accept(instance, primitive, u, v);
     }
@@ -78,7 +85,10 @@ struct AcceptCameraHit {
         const Vec3 a = mesh.positions[i.a], ab = mesh.positions[i.b] - a, ac = mesh.positions[i.c] - a;
         const float size = max(max_component(abs(ab)), max_component(abs(ac)));
         const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
-        return dot(normal, transform_vector(placed.local_from_world, direction)) > 0;
+        const uint32_t motion = accept.scene.motions.of(instance);
+        const Vec3 at_rest =
+            motion == kNoMotion ? direction : accept.scene.motions.at(motion, accept.time).turn_back(direction);
+        return dot(normal, transform_vector(placed.local_from_world, at_rest)) > 0;
     }
 };
 

@@ -16,6 +16,7 @@ struct TraceQuery {
     // In the device's memory; null where every surface is opaque, and shown from both sides to these rays.
     const SceneView* scene = nullptr;
     const uint32_t* passing = nullptr; // the scene's
+    const SceneView* moving = nullptr; // likewise; null where nothing moves while the shutter is open
     bool hides_backs = false;          // rays of the camera, which pass backs that are hidden
 
     bool is_opaque() const { return scene == nullptr; }
@@ -24,10 +25,20 @@ struct TraceQuery {
 /// Of an instance that may let something pass. Out of line: what it does with textures must not cost the walk
 /// registers.
 HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
-                                   uint32_t instance, uint32_t primitive, float u, float v) {
-    const AcceptHit accept{*scene, {}, {}, key};
+                                   const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
+    const AcceptHit accept{*scene, {}, {}, key, time != nullptr ? *time : kAtRest};
     if (hides_backs && AcceptCameraHit{accept, ray->direction}.meets_hidden_back(instance, primitive)) return true;
     return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
+}
+
+/// Where a ray begins and where it goes, as an instance meets it that has moved. Out of line: no still instance pays for
+/// it.
+struct MovedLine {
+    Vec3 origin, direction;
+};
+HD_CALL inline MovedLine moved_back(const SceneView* scene, uint32_t motion, const float* time, const Ray* ray) {
+    const RigidMotion now = scene->motions.at(motion, time != nullptr ? *time : kAtRest);
+    return {now.move_back(ray->origin), now.turn_back(ray->direction)};
 }
 
 /// Where all surfaces are opaque and shown from both sides: a walk has no registers to spare for the others.
@@ -59,7 +70,15 @@ struct AcceptQueued {
         if ((query.passing[instance / 32] >> instance % 32 & 1u) == 0) return true;
         const int64_t place = query.rays.place(i);
         const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[place] : 0;
-        return !passes_surface(query.scene, query.rays.rays + place, key, query.hides_backs, instance, primitive, u, v);
+        const float* const time = query.rays.times != nullptr ? query.rays.times + place : nullptr;
+        return !passes_surface(query.scene, query.rays.rays + place, key, query.hides_backs, time, instance, primitive,
+                               u, v);
+    }
+    HD Ray move_back(uint32_t motion, const Ray& ray) const {
+        const int64_t place = query.rays.place(i);
+        const float* const time = query.rays.times != nullptr ? query.rays.times + place : nullptr;
+        const MovedLine line = moved_back(query.moving, motion, time, query.rays.rays + place);
+        return {line.origin, ray.t_min, line.direction, ray.t_max};
     }
 };
 

@@ -11,14 +11,17 @@
 
 namespace pertev {
 
-/// The first groups of a sample's random numbers (math/sampler.h): place in the pixel; place on the lens.
+/// The first groups of a sample's random numbers (math/sampler.h): place in the pixel; place on the lens, and the time.
 enum CameraGroup : uint32_t { kGroupCamera, kGroupLens, kCameraGroups };
+inline constexpr uint32_t kNumberTime = 2; // of the lens's group
 
 struct CameraRays {
     CameraView view;
     PixelFilterView filter;
     Vec3 axis;              // unit, world space: depth is measured along it
     uint32_t width, height; // pixels
+    bool is_open = false;   // a shutter, through which something is seen to move
+    MotionTrack motion;     // of the camera
 
     /// The ray of the sample that lies at `in_filter` and `on_lens`, unit squares. Unit direction.
     HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens) const {
@@ -31,16 +34,27 @@ struct CameraRays {
     /// The ray of a sample of `pixel`, by the numbers that `key` draws.
     HD Ray ray(uint32_t pixel, SamplerKind sampler, SampleKey key) const {
         const Vec2 in_filter = sample_2d(sampler, key, kGroupCamera);
-        return ray(pixel, in_filter, has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{});
+        const Ray still = ray(pixel, in_filter, has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{});
+        return motion.moves() ? moved(still, time(sampler, key)) : still;
+    }
+    /// Of the sample that `key` draws, evenly over the time that the shutter is open, [0, 1).
+    HD float time(SamplerKind sampler, SampleKey key) const {
+        return is_open ? sample_1d(sampler, key, kGroupLens, kNumberTime) : kAtRest;
     }
     HD bool has_lens() const { return view.aperture_radius > 0; }
+
+private:
+    HD Ray moved(const Ray& still, float time) const {
+        const RigidMotion now = motion.at(time);
+        return {now.move(still.origin), still.t_min, normalize(now.turn(still.direction)), still.t_max};
+    }
 };
 
-/// `centre`: the origin of the scene's world, in the camera's coordinates.
+/// `centre`: the origin of the scene's world, in the camera's coordinates. The shutter is left closed.
 inline CameraRays make_camera_rays(const Camera& camera, const PixelFilterView& filter, uint32_t width, uint32_t height,
                                    Vec3 centre) {
-    return {make_camera_view(camera, width, height, centre), filter,
-            normalize(transform_vector(camera.world_from_camera, {0, 0, -1})), width, height};
+    const Vec3 axis = normalize(transform_vector(camera.world_from_camera, {0, 0, -1}));
+    return {make_camera_view(camera, width, height, centre), filter, axis, width, height, false, {}};
 }
 
 } // namespace pertev

@@ -123,8 +123,8 @@ uint64_t SceneTriangles::count() const {
     return count;
 }
 
-std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement,
-                                    std::span<const Bounds3> bounds) {
+std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement, std::span<const Bounds3> bounds,
+                                    const std::shared_ptr<const MotionKeys>& motions) {
     std::vector<PlacedBvh> placed;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
@@ -132,6 +132,9 @@ std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& pla
         const uint32_t tree = placement.tree_of_mesh[instance.mesh];
         placed.push_back(
             {moved_to(instance.world_from_local, placement.centre), bounds[tree], tree, static_cast<uint32_t>(i)});
+        if (motions == nullptr || motions->of_instance[i] == kNoMotion) continue;
+        placed.back().motions = motions;
+        placed.back().motion = motions->of_instance[i];
     }
     return placed;
 }

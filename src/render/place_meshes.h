@@ -55,8 +55,9 @@ struct SceneTriangles {
     std::size_t parts() const { return 1 + meshes.size(); }
 };
 
-/// What the top level is built from; `bounds` are of the mesh trees.
-std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement,
-                                    std::span<const Bounds3> bounds);
+/// What the top level is built from; `bounds` are of the mesh trees. `motions`: of the instances while a shutter is
+/// open; null: none.
+std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement, std::span<const Bounds3> bounds,
+                                    const std::shared_ptr<const MotionKeys>& motions = nullptr);
 
 } // namespace pertev

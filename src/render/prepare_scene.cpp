@@ -67,7 +67,8 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
         prepared.trees.add(taken, std::move(bvh), list.size());
     }
     prepared.tree_of_mesh = placement.tree_of_mesh;
-    prepared.placed = placed_trees(scene, placement, prepared.trees.mesh_bounds());
+    prepared.placed = placed_trees(scene, placement, prepared.trees.mesh_bounds(), options.motions);
+    prepared.motions = options.motions;
     prepared.top_level = build_top_level_bvh(prepared.placed);
     prepared.triangles = triangles.count();
     prepared.trees.build_s = watch.seconds();

@@ -26,6 +26,7 @@ struct PrepareOptions {
     bool may_be_better = false;
     bool keep_coordinates = false; // the world is the file's: for rays that are given in its coordinates
     std::optional<Vec3> centre;    // of the moved world, in place of the scene's own (world_centre)
+    std::shared_ptr<const MotionKeys> motions; // PreparedScene's
 };
 
 struct PreparedScene {
@@ -42,6 +43,7 @@ struct PreparedScene {
     std::vector<MeshPose> poses;
     std::vector<uint32_t> tree_of_mesh; // MeshPlacement's
     std::vector<PlacedBvh> placed;      // what top_level is built of
+    std::shared_ptr<const MotionKeys> motions; // of instances while a shutter is open, moved world; null: none moves
     double build_seconds = 0;           // placement, trees (built or read from the cache), structures asked for at once
 };
 

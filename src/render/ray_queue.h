@@ -43,6 +43,7 @@ struct RayQueueView {
     const Uint2* starts = nullptr;
     const Uint2* targets = nullptr;
     const uint32_t* keys = nullptr; // of the coin that blended surfaces toss; null where no surface is blended
+    const float* times = nullptr;   // while the shutter is open, [0, 1]; null: all is at rest
     int32_t step = 1;               // -1: these are the last elements, and ray i lies i before them
     bool is_endless = false;        // all go from t = 0 to infinity; numbers of the owner's stand in these places
 

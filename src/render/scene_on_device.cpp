@@ -67,6 +67,12 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
     arrays.add(instances.views, view.instances);
     arrays.add(instances.passing, view.passing);
     arrays.add(instances.first_triangle, view.first_triangle);
+    static const MotionKeys none;
+    const MotionKeys& motions = prepared.motions != nullptr ? *prepared.motions : none;
+    arrays.add(motions.keys, view.motions.keys);
+    arrays.add(motions.pivots, view.motions.pivots);
+    arrays.add(motions.of_instance, view.motions.of_instance);
+    view.motions.segments = motions.segments;
     return arrays;
 }
 

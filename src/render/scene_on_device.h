@@ -14,7 +14,7 @@ namespace pertev {
 /// What may change of a scene by itself. A set of them is an uint32_t.
 enum ScenePart : uint32_t {
     kPartGeometry = 1,  // meshes
-    kPartInstances = 2, // where they are, and the world's centre; of their materials, whether they have alpha and hide
+    kPartInstances = 2, // where they are and how they move, and the world's centre; of their materials, whether they have alpha and hide
                         // their backs
     kPartMaterials = 4, // all else of materials; what they emit is in the lights too
     kPartTextures = 8,  // images

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "math/rigid_motion.h"
 #include "math/transform.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
@@ -54,6 +55,7 @@ struct SceneView {
     const uint32_t* first_triangle; // [instance_count + 1]
     uint32_t instance_count;
     uint64_t triangle_count; // of all instances
+    MotionsView motions;     // while the shutter is open
 };
 
 /// The three vertex numbers of a triangle.

@@ -88,14 +88,15 @@ struct Surface {
 HD inline Vec3 light_point_error(Vec3 point) { return 0x1p-20f * abs(point); }
 
 /// The ray from a point of a surface, known to `error`, of unit normal `normal`, to what was drawn of a light; it ends
-/// there.
-HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal) {
+/// there. `lamp_error`: bound of what the motion of a lamp adds to the error of its point, metres.
+HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal, float lamp_error = 0) {
     Ray ray;
     ray.origin = offset_ray_origin(position, error, normal, light.wi);
     if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
         Vec3 end = light.light_point;
         if (light.instance != kNoLight) {
-            end = offset_ray_origin(end, light_point_error(end), light.light_normal, -light.wi);
+            const Vec3 off = light_point_error(end) + Vec3{lamp_error, lamp_error, lamp_error};
+            end = offset_ray_origin(end, off, light.light_normal, -light.wi);
         }
         ray.direction = end - ray.origin;
         ray.t_max = 1;

@@ -1,6 +1,7 @@
 #include "render/update_scene.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/stopwatch.h"
 #include "image/srgb_table.h"
@@ -48,13 +49,14 @@ SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placem
 } // namespace
 
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
-                           Messages& messages) {
+                           Messages& messages, std::shared_ptr<const MotionKeys> motions) {
     const Stopwatch watch;
     const MeshPlacement placement = place_meshes(scene, before.centre);
     if (placement.is_baked != before.is_baked || 1 + placement.mesh_tree_count != before.trees.parts.size()) {
         PrepareOptions options;
         options.centre = before.centre;
         options.builder = before.structures->builder();
+        options.motions = std::move(motions);
         return prepare_scene(scene, options, messages);
     }
     PreparedScene after = before;
@@ -62,7 +64,8 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     const std::vector<PartChange> changes = changes_of(scene, placement, update);
     const SceneTriangles triangles = changed_triangles(scene, placement, changes);
     after.trees = update_binary_trees(before.trees, before.structures->builder(), changes, triangles);
-    after.placed = placed_trees(scene, placement, after.trees.mesh_bounds());
+    after.placed = placed_trees(scene, placement, after.trees.mesh_bounds(), motions);
+    after.motions = std::move(motions);
     after.top_level = build_top_level_bvh(after.placed);
     after.structures = before.structures->updated(after.trees, after.top_level, changes, triangles);
     after.triangles = after.trees.triangle_count();

@@ -19,9 +19,10 @@ namespace pertev {
 ///   deformed meshes     have theirs refitted, or at first replaced by one that can be (update_binary_trees), and its
 ///                       other layouts made anew of it; kd-trees and octrees, whose planes do not move along, are built
 ///   replaced meshes     have theirs built anew
-/// Where other instances would have to be baked than before, all is prepared anew. Throws as prepare_scene.
+/// Where other instances would have to be baked than before, all is prepared anew. Throws as prepare_scene. `motions`:
+/// PreparedScene's from now on.
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
-                           Messages& messages);
+                           Messages& messages, std::shared_ptr<const MotionKeys> motions = nullptr);
 
 /// Whether update_scene has anything to do: PreparedScene::poses are all that whoever moves vertices has to set anew.
 bool changes_prepared(const SceneUpdate& update);

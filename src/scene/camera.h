@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "math/rigid_motion.h"
 #include "math/transform.h"
 #include "scene/node_number.h"
 
@@ -24,6 +26,9 @@ struct Camera {
     float aperture_radius = 0;   // thin lens, metres; 0 = pinhole
     float focus_distance = 1;    // metres along -z to the plane in focus
     uint32_t node = kNoNode;     // index into Scene::nodes
+    // While the shutter is open, about the origin, from where world_from_camera has it (math/rigid_motion.h), metres in
+    // the world. Empty: it stands still.
+    std::vector<MotionKey> motion;
 
     bool operator==(const Camera&) const = default;
 };

@@ -99,6 +99,31 @@ SceneUpdate PosedScene::set_time(double time_s) {
     return take_changes();
 }
 
+PosedScene::Places PosedScene::places_at(double time_s) {
+    const auto node_poses = node_poses_;
+    const auto morph_weights = morph_weights_;
+    const auto world_from_node = world_from_node_;
+    const auto cameras = cameras_, placed_cameras = scene_.cameras;
+    const auto lights = lights_;
+    read_channels(time_s);
+    place_nodes();
+    place_cameras();
+    Places places = {std::vector<std::optional<Transform>>(scene_.instances.size()), scene_.cameras};
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
+        const Transform world = placed_in(world_from_node_[instance.node], instance.node_from_local);
+        if (!is_singular(world)) places.instances[i] = world;
+    }
+    node_poses_ = node_poses;
+    morph_weights_ = morph_weights;
+    world_from_node_ = world_from_node;
+    cameras_ = cameras;
+    scene_.cameras = placed_cameras;
+    lights_ = lights;
+    return places;
+}
+
 void PosedScene::read_channels(double time_s) {
     for (const Animation& animation : scene_.animations) {
         for (const AnimationChannel& channel : animation.channels) {

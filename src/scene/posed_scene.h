@@ -11,6 +11,7 @@
 // What a transform does that is singular or not finite at a time: it hides its instance; a camera whose direction it
 // loses stands as at rest, a light gives no light.
 
+#include <optional>
 #include <vector>
 
 #include "scene/scene.h"
@@ -36,6 +37,14 @@ public:
     /// kMaxCoordinate then; the scene may then be anywhere, and the next set_time tells all that has changed since the
     /// last that returned.
     SceneUpdate set_time(double time_s);
+
+    /// Where things are at a time, without going there.
+    struct Places {
+        /// Of each instance, metres; none: it does not move by a transform, or has a singular one then.
+        std::vector<std::optional<Transform>> instances;
+        std::vector<Camera> cameras;
+    };
+    Places places_at(double time_s);
 
 private:
     void drop_shapes_at_rest();

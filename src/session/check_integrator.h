@@ -13,6 +13,9 @@ namespace pertev {
 /// Whether the settings go together. Throws Error(BadInput), Error(OverLimit) for a tree of rays that is too deep.
 void check_integrator(const RenderSettings& settings);
 
+/// Whether what moves while a shutter is open can be blurred. Throws Error(BadInput).
+void check_shutter(const RenderSettings& settings);
+
 /// Whether the integrator can see by this camera. Throws Error(BadInput).
 void check_camera(const RenderSettings& settings, const Camera& camera);
 

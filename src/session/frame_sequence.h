@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "session/shutter.h"
+
 namespace pertev {
 
 struct FrameSequence {
@@ -13,6 +15,7 @@ struct FrameSequence {
     std::optional<double> fps;    // frames a second; none: all frames are of one time
     std::optional<double> time_s; // that time; none: at rest
     uint32_t turntable = 0;       // frames that the camera takes to go round once; 0: it does not
+    std::optional<Shutter> shutter; // at each frame's time; none: a frame is of one moment
 
     uint32_t count() const { return last - first + 1; }
     /// Frame k of a moving scene is at k / fps seconds.
@@ -23,6 +26,8 @@ struct FrameSequence {
     std::optional<double> time_before(uint32_t frame) const {
         return fps ? std::optional((static_cast<double>(frame) - 1) / *fps) : time_s;
     }
+    /// The same after `share` in [0, 1] of the time that the shutter is open.
+    double turn_at(uint32_t frame, double share) const;
     double turn_before(uint32_t frame) const { return turntable == 0 ? 0 : turn_of(frame % turntable + turntable - 1); }
 };
 

@@ -7,13 +7,69 @@
 #include "render/scene_on_device.h"
 
 namespace pertev {
+namespace {
 
-MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages)
-    : posed_(std::move(rest), true), time_s_(time_s), options_(std::move(options)) {
+/// What moves while the shutter is open, now or before, has changed.
+void add_moving(const std::shared_ptr<const MotionKeys>& now, const std::shared_ptr<const MotionKeys>& before,
+                SceneUpdate& update) {
+    for (const auto& motions : {now, before}) {
+        if (motions == nullptr) continue;
+        for (uint32_t i = 0; i < motions->of_instance.size(); ++i) {
+            if (motions->of_instance[i] != kNoMotion) update.moved_instances.push_back(i);
+        }
+    }
+    std::ranges::sort(update.moved_instances);
+    const auto copies = std::ranges::unique(update.moved_instances);
+    update.moved_instances.erase(copies.begin(), copies.end());
+}
+
+} // namespace
+
+MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages,
+                         std::optional<Shutter> shutter)
+    : posed_(std::move(rest), true), shutter_(shutter), time_s_(time_s), options_(std::move(options)) {
     options_.centre = world_centre(posed_.scene());
     if (time_s) posed_.set_time(*time_s);
+    if (time_s) options_.motions = motions_at(*time_s);
     prepared_ = prepare_scene(posed_.scene(), options_, messages);
     if (time_s) prepared_.poses = posed_.poses();
+}
+
+/// Those of instances that walks take into their own space (place_meshes) and that move while the shutter is open.
+std::shared_ptr<const MotionKeys> MovingScene::motions_at(double time_s) {
+    if (!shutter_ || !posed_.is_animated()) return nullptr;
+    const Scene& now = scene();
+    std::vector<PlacedBox> things;
+    std::vector<uint32_t> instances;
+    const std::vector<bool> moves = may_move(now);
+    for (uint32_t i = 0; i < now.instances.size(); ++i) {
+        const Instance& instance = now.instances[i];
+        if (!moves[i] || instance.is_hidden || is_skewed(instance.world_from_local)) continue;
+        const Bounds3 box = bounds_of(now.meshes[instance.mesh]);
+        if (box.is_empty()) continue;
+        things.push_back({moved_to(instance.world_from_local, *options_.centre), box});
+        instances.push_back(i);
+    }
+    const FittedMotions fitted = fit_motions(things, [&](double share) {
+        const PosedScene::Places places = posed_.places_at(shutter_->time_at(time_s, share));
+        std::vector<std::optional<Transform>> of_things;
+        for (const uint32_t i : instances) {
+            const std::optional<Transform>& place = places.instances[i];
+            of_things.push_back(place ? std::optional(moved_to(*place, *options_.centre)) : std::nullopt);
+        }
+        return of_things;
+    });
+    auto motions = std::make_shared<MotionKeys>();
+    motions->segments = fitted.segments;
+    motions->of_instance.assign(now.instances.size(), kNoMotion);
+    for (std::size_t k = 0; k < instances.size(); ++k) {
+        const Motion& motion = fitted.motions[k];
+        if (motion.keys.empty()) continue;
+        motions->of_instance[instances[k]] = static_cast<uint32_t>(motions->pivots.size());
+        motions->pivots.push_back(motion.pivot);
+        motions->keys.insert(motions->keys.end(), motion.keys.begin(), motion.keys.end());
+    }
+    return motions->pivots.empty() ? nullptr : motions;
 }
 
 double MovingScene::end_s() const {
@@ -24,13 +80,18 @@ double MovingScene::end_s() const {
 
 uint32_t MovingScene::set_time(double time_s, Messages& messages) {
     const bool was_behind = std::exchange(is_behind_, true), was_at_rest = prepared_.poses.empty();
-    const SceneUpdate update = posed_.set_time(time_s);
+    SceneUpdate update = posed_.set_time(time_s);
+    const auto motions = motions_at(time_s);
+    if (motions != nullptr || prepared_.motions != nullptr) add_moving(motions, prepared_.motions, update);
+    options_.motions = motions;
     uint32_t parts = 0;
     if (was_behind) {
         prepared_ = prepare_scene(posed_.scene(), options_, messages);
         parts = kAllParts;
     } else if (!update.is_empty()) {
-        if (changes_prepared(update)) prepared_ = update_scene(prepared_, posed_.scene(), update, messages);
+        if (changes_prepared(update)) {
+            prepared_ = update_scene(prepared_, posed_.scene(), update, messages, motions);
+        }
         parts = parts_of(update);
     }
     if (was_at_rest && !posed_.poses().empty()) parts |= kPartShapes | kPartPoses;

@@ -13,14 +13,17 @@
 
 #include "render/update_scene.h"
 #include "scene/posed_scene.h"
+#include "session/shutter.h"
 
 namespace pertev {
 
 class MovingScene {
 public:
     /// Prepares `rest`, which has been through validate(), as it is at `time_s`; none: at rest. `options` name no
-    /// centre. Throws as PosedScene::set_time and prepare_scene.
-    MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages);
+    /// centre and no motions. `shutter`: instances move while it is open; only where there is a time. Throws as
+    /// PosedScene::set_time and prepare_scene.
+    MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages,
+                std::optional<Shutter> shutter = std::nullopt);
     MovingScene(const MovingScene&) = delete; // prepared() points into it
     MovingScene& operator=(const MovingScene&) = delete;
 
@@ -34,8 +37,14 @@ public:
     /// picture's scene stays as it is. Throws as the constructor; the next set_time then makes good for it.
     uint32_t set_time(double time_s, Messages& messages);
 
+    /// The cameras of the scene at a time, without going there.
+    std::vector<Camera> cameras_at(double time_s) { return posed_.places_at(time_s).cameras; }
+
 private:
+    std::shared_ptr<const MotionKeys> motions_at(double time_s);
+
     PosedScene posed_;
+    std::optional<Shutter> shutter_;
     std::optional<double> time_s_;
     PreparedScene prepared_;
     bool is_behind_ = false; // an update threw: prepared_ is not of the scene

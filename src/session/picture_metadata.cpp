@@ -133,6 +133,9 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }
     if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
+    if (scene.shutter) {
+        metadata.emplace_back("pertev.shutter", fmt::format("{},{}", scene.shutter->open_s, scene.shutter->close_s));
+    }
     append(metadata, camera_metadata(record.camera));
     append(metadata, environment_metadata(scene));
     if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);

@@ -25,6 +25,7 @@ struct SceneSource {
     bool has_environment = false; // the scene has one: asked for, its own or the default
     bool two_sided_lights = false, show_back_faces = false;
     std::optional<double> time_s;                  // that it is shown at; none: at rest
+    std::optional<Shutter> shutter;                // open at that time; none: it is of one moment
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty: none are said
     double load_seconds = 0, build_seconds = 0;    // of reading; of the trees
 };

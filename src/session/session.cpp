@@ -235,16 +235,32 @@ Film& Session::current_film() {
 PictureView Session::view_of(const Camera& camera, const RenderSettings& settings) {
     PERTEV_CHECK(scene_.has_value() && tracer_.has_value()); // the last set_scene or set_settings threw
     const SceneView& scene = scene_->view();
-    return {scene,
-            make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)), settings.width,
-                             settings.height, scene.centre),
-            settings.transparent};
+    PictureView picture = {scene,
+                           make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)),
+                                            settings.width, settings.height, scene.centre),
+                           settings.transparent};
+    picture.camera.motion = motion_of(camera, scene.centre);
+    picture.camera.is_open = picture.camera.motion.moves() || scene.motions.is_there();
+    return picture;
+}
+
+/// While the shutter is open, in the moved world; on the device.
+MotionTrack Session::motion_of(const Camera& camera, Vec3 centre) {
+    if (camera.motion.empty()) return {};
+    std::vector<MotionKey> keys = camera.motion;
+    for (MotionKey& key : keys) key.place = key.place - centre;
+    if (camera_motion_.size() != keys.size()) camera_motion_ = {queue_, keys.size(), "camera"};
+    queue_.wait();
+    camera_motion_.upload(std::span<const MotionKey>(keys));
+    return {camera_motion_.data(), camera.world_from_camera.translation - centre,
+            static_cast<uint32_t>(keys.size() - 1)};
 }
 
 /// Makes the integrator ready to add `samples` samples of the picture of `settings`, never to be abandoned.
 void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples) {
     const PictureView picture = view_of(camera, settings); // first: it checks that there is a scene
     check_camera(settings, camera);
+    if (picture.camera.is_open) check_shutter(settings);
     const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {
@@ -424,7 +440,7 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     return predicted_bytes(scene) + structures + raster + motion + deforming_tree_bytes(scene, tracers, on_cuda) +
            film +
            predicted_bytes(settings, uint64_t(settings.width) * settings.height, denoises ? 1 : settings.samples,
-                           on_cuda, has_loop);
+                           on_cuda, has_loop, scene.motions != nullptr);
 }
 
 } // namespace pertev

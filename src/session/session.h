@@ -148,6 +148,7 @@ private:
     void begin_signals();
     void render_signals(uint32_t first, uint32_t count);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
+    MotionTrack motion_of(const Camera& camera, Vec3 centre);
     void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
 
     Queue& queue_;
@@ -163,6 +164,7 @@ private:
     std::optional<SceneOnDevice> scene_; // none after a set_scene that threw
     std::optional<SceneTracer> tracer_;
     FilterTable filter_;
+    Buffer<MotionKey> camera_motion_; // while the shutter is open
     std::optional<Film> film_, meter_film_;
     std::optional<NoisyFrame> noisy_frame_;
     std::optional<NoisyFrame> features_; // of frames whose light is found at a lower resolution

@@ -16,6 +16,7 @@
 // of unlit materials are no lights.
 
 #include <cstdint>
+#include <type_traits>
 
 #include "base/host_device.h"
 #include "base/limits.h"
@@ -184,19 +185,34 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
+/// For sample_light: every lamp is where its triangles are.
+struct LampsAtRest {};
+
 /// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of
 /// a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the
-/// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives.
-template <bool kTextures = true>
-HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBits u, LightSample& sample) {
+/// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`: the rigid
+/// motion of the lamp of an instance (math/rigid_motion.h).
+template <bool kTextures = true, class Lamps = LampsAtRest>
+HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBits u, LightSample& sample,
+                            const Lamps& lamps = {}) {
     if (view.choice.starts == nullptr) return false;
     const uint32_t more = bits_behind(u);
     const OrderedDraw source = draw_ordered(view.choice, u.x, more);
     if (source.index < view.emitter_count) {
         const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
         const uint32_t first = view.emitters[source.index].first_triangle;
-        return triangle_light_at<kTextures>(view, first + view.triangle_order[first + triangle.index], from_point,
-                                            sample_uniform_triangle({rest_of(source), rest_of(triangle)}), sample);
+        const uint32_t light = first + view.triangle_order[first + triangle.index];
+        const Vec2 b = sample_uniform_triangle({rest_of(source), rest_of(triangle)});
+        if constexpr (std::is_same_v<Lamps, LampsAtRest>) {
+            return triangle_light_at<kTextures>(view, light, from_point, b, sample);
+        } else {
+            const auto motion = lamps(view.triangles[light].instance);
+            if (!triangle_light_at<kTextures>(view, light, motion.move_back(from_point), b, sample)) return false;
+            sample.wi = motion.turn(sample.wi);
+            sample.light_point = motion.move(sample.light_point);
+            sample.light_normal = motion.turn(sample.light_normal);
+            return true;
+        }
     }
     const float pmf = ordered_pmf(source.owned);
     if (source.index != view.environment_source) {

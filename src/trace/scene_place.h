@@ -82,7 +82,7 @@ private:
         const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
         instance = record.instance;
         tree = scene.meshes[record.mesh_bvh];
-        local = transform_ray(record.local_from_world, ray);
+        local = ray_in_instance(record, ray, visitor.accept);
         Walk::start(tree, local, visitor, place);
     }
 };

@@ -9,6 +9,7 @@
 #include "accel/bvh/top_level_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "base/host_device.h"
+#include "math/rigid_motion.h"
 #include "math/transform.h"
 #include "trace/ray.h"
 
@@ -38,6 +39,23 @@ struct SingleTree {
 HD inline Ray transform_ray(const Transform& local_from_world, const Ray& ray) {
     return {transform_point(local_from_world, ray.origin), ray.t_min, transform_vector(local_from_world, ray.direction),
             ray.t_max};
+}
+
+/// The ray as an instance meets it that has moved by `motion`, before its transform.
+HD inline Ray move_back(const RigidMotion& motion, const Ray& ray) {
+    return {motion.move_back(ray.origin), ray.t_min, motion.turn_back(ray.direction), ray.t_max};
+}
+
+/// The ray of `accept` in an instance's space, at the time of the ray. A scene with motions is traced with an Accept
+/// that knows the ray's time: `Ray move_back(uint32_t motion, const Ray&) const`.
+template <class Accept>
+HD inline Ray ray_in_instance(const InstanceRecord& record, const Ray& ray, const Accept& accept) {
+    if constexpr (requires { accept.move_back(0u, ray); }) {
+        if (record.motion != kNoMotion) {
+            return transform_ray(record.local_from_world, accept.move_back(record.motion, ray));
+        }
+    }
+    return transform_ray(record.local_from_world, ray);
 }
 
 } // namespace pertev

@@ -49,7 +49,7 @@ HD inline void walk_scene(const SceneTrees<typename Walk::Tree>& scene, const Ra
         const InstanceRecord record = load_aligned(scene.instances + (leaf & ~kLeafBit));
         instance = record.instance;
         tree = scene.meshes[record.mesh_bvh];
-        local = transform_ray(record.local_from_world, ray);
+        local = ray_in_instance(record, ray, visitor.accept);
     }
 }
 

@@ -98,6 +98,36 @@ class MovingPictures(CliTest):
                             "--aov", "motion")
         self.assertIn("--aov motion: 0 without --frames", said.stderr)
 
+    def test_a_shutter_blurs_what_moves(self):
+        sharp = self.hash_at("--time", "1")
+        blurred = self.hash_at("--time", "1", "--shutter", "0.5")
+        self.assertNotEqual(blurred, sharp)
+        self.assertEqual(self.hash_at("--time", "1", "--shutter=0,0.5"), blurred)
+        self.assertNotEqual(self.hash_at("--time", "1", "--shutter=-0.5,0"), blurred)
+        self.assertEqual(self.hash_at("--time", "5", "--shutter", "1"), self.hash_at("--time", "5"))  # all is at rest then
+        for integrator in ("distributed", "direct", "indirect", "whitted", "cast"):
+            moved = ["--time", "1", "--integrator", integrator]
+            self.assertNotEqual(self.hash_at(*moved, "--shutter", "0.5"), self.hash_at(*moved))
+        self.succeed("render", "m.gltf", "-o", "x.exr", "--size", "8x8", "--spp", "1", "--device", "cpu", "--time", "1",
+                     "--shutter=-0.25,0.5")
+        info = json.loads(self.succeed("info", "x.exr", "--json").stdout)
+        self.assertEqual(info["pertev.shutter"], "-0.25,0.5")
+        self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0.1")
+        self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-1", "--fps", "2", "--continue",
+                    "--shutter", "0.2", says=["the frames there were made with", '--shutter "0.1"'])
+
+    def test_a_shutter_that_cannot_be_is_refused(self):
+        def refuse(*arguments, says):
+            self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, *arguments, says=says)
+        refuse("--shutter", "0.1", says=["--shutter: it is open about a time; say --time S, or --frames A-B"])
+        for text in ("", "a", "1,2,3", "1,", ",1", "nan", "inf", "1e30"):
+            refuse("--time", "1", "--shutter=" + text, says=["--shutter"])
+        refuse("--time", "1", "--shutter", "0.2,0.1", says=["--shutter 0.2,0.1: it closes before it opens"])
+        refuse("--time", "1", "--shutter", "0.1", "--turntable", "9", says=["--frames"])
+        for integrator in ("hybrid", "raster", "light", "bidirectional"):
+            refuse("--time", "1", "--shutter", "0.1", "--integrator", integrator, says=["--shutter", integrator])
+        refuse("--time", "1", "--shutter", "0.1", "--denoise", "svgf", says=["--shutter: --denoise svgf"])
+
     def test_all_frames_are_exposed_as_the_first(self):
         said = self.succeed("render", "m.gltf", "-o", "f-#.png", "--size", "24x16", "--spp", "2", "--device", "cpu",
                             "--json", "--frames", "0-2", "--fps", "1")

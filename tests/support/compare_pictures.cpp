@@ -21,16 +21,17 @@ double student_p_value(double t, double degrees) {
 
 } // namespace
 
-PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
-                                 RenderSettings settings, uint32_t renders, uint32_t first_seed) {
-    settings.path.sampler = SamplerKind::Independent;
-    const std::size_t pixels = std::size_t(settings.width) * settings.height, count = 3 * pixels + 3;
-    std::vector<double> sum(count), square_sum(count);
-    for (uint32_t seed = 0; seed < renders; ++seed) {
-        settings.path.seed = first_seed + seed;
-        const RenderResult result = render_picture(queue, prepared, camera, settings);
-        std::vector<double> values(result.picture.pixels.begin(), result.picture.pixels.end());
+PictureEstimate estimate_of(uint32_t renders, const std::function<Image(uint32_t)>& render) {
+    std::size_t count = 0;
+    std::vector<double> sum, square_sum;
+    for (uint32_t number = 0; number < renders; ++number) {
+        const Image picture = render(number);
+        const std::size_t pixels = picture.pixels.size() / 3;
+        std::vector<double> values(picture.pixels.begin(), picture.pixels.end());
+        count = 3 * pixels + 3;
         values.resize(count);
+        sum.resize(count);
+        square_sum.resize(count);
         for (std::size_t i = 0; i < 3 * pixels; ++i) {
             values[3 * pixels + i % 3] += values[i] / static_cast<double>(pixels);
         }
@@ -48,6 +49,15 @@ PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, co
         result.variance_of_mean.push_back(std::max(0.0, square_sum[i] / renders - mean * mean) / (renders - 1));
     }
     return result;
+}
+
+PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
+                                 RenderSettings settings, uint32_t renders, uint32_t first_seed) {
+    settings.path.sampler = SamplerKind::Independent;
+    return estimate_of(renders, [&](uint32_t number) {
+        settings.path.seed = first_seed + number;
+        return render_picture(queue, prepared, camera, settings).picture;
+    });
 }
 
 double p_value(const PictureEstimate& a, const PictureEstimate& b) {

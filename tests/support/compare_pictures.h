@@ -3,6 +3,7 @@
 // Whether two ways to render give one picture in the mean: each is rendered several times with independent samples, and
 // every channel of every pixel, and of the whole picture, is compared by Welch's test.
 
+#include <functional>
 #include <vector>
 
 #include "session/render_picture.h"
@@ -17,6 +18,9 @@ struct PictureEstimate {
 
     std::size_t pixel_values() const { return mean.size() - 3; }
 };
+
+/// Of pictures render(0), ..., render(renders - 1), which are independent.
+PictureEstimate estimate_of(uint32_t renders, const std::function<Image(uint32_t)>& render);
 
 /// Renders with seeds first_seed, first_seed + 1, ... and independent numbers.
 PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,

@@ -35,6 +35,16 @@ WorldBox move_box(const Transform& m, const Bounds3& local) {
     return world;
 }
 
+/// All that instance `placed` takes up of the world while it moves from `rest`.
+WorldBox swept(const WorldBox& rest, const PlacedBvh& placed) {
+    const MotionKeys& motions = *placed.motions;
+    WorldBox all = {swept_bounds(motions, placed.motion, rest.bounds), 0};
+    all.bounds.extend(rest.bounds); // rays may ask for it there (kAtRest)
+    const float lengths = max_component(abs(motions.pivots[placed.motion])) + all.bounds.max_abs() + rest.reach;
+    all.reach = 1.01f * lengths; // the pivot's places lie within the bounds
+    return all;
+}
+
 } // namespace
 
 TopLevelBvh build_top_level_bvh(std::span<const PlacedBvh> instances) {
@@ -42,11 +52,14 @@ TopLevelBvh build_top_level_bvh(std::span<const PlacedBvh> instances) {
     std::vector<BuildReference> references;
     for (const PlacedBvh& placed : instances) {
         if (placed.local_bounds.is_empty()) continue;
-        const WorldBox world = move_box(placed.world_from_local, placed.local_bounds);
+        WorldBox world = move_box(placed.world_from_local, placed.local_bounds);
+        const bool moves = placed.motion != kNoMotion;
+        if (moves) world = swept(world, placed);
         references.push_back({world.bounds.lo, static_cast<uint32_t>(references.size()), world.bounds.hi});
-        top.instances.push_back({inverse(placed.world_from_local), placed.mesh_bvh, placed.instance});
+        top.instances.push_back(
+            {inverse(placed.world_from_local), placed.mesh_bvh, placed.instance, placed.motion});
         top.reach = max(top.reach, world.reach);
-        top.growth = max(top.growth, 2 * condition_number(placed.world_from_local));
+        top.growth = max(top.growth, 2 * condition_number(placed.world_from_local) + (moves ? 16.0f : 0.0f));
     }
     BuiltTree tree = build_tree(std::move(references), {.max_leaf = 1, .max_depth = kMaxTopLevelDepth});
     top.nodes = std::move(tree.nodes);

@@ -8,6 +8,11 @@
 
 namespace pertev {
 
+/// PathState::time of a path that was begun before.
+HD inline float time_of(const CameraRays& camera, const PathSettings& settings, const PathState& path) {
+    return camera.time(settings.sampler, sample_key(settings, path.pixel, path.sample));
+}
+
 HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, uint32_t pixel,
                                   uint32_t sample) {
     const Ray ray = camera.ray(pixel, settings.sampler, sample_key(settings, pixel, sample));
@@ -16,6 +21,7 @@ HD inline PathState generate_path(const CameraRays& camera, const PathSettings& 
     path.direction = ray.direction;
     path.pixel = pixel;
     path.sample = sample;
+    path.time = time_of(camera, settings, path);
     if (camera.view.projection == Projection::Cosine) {
         path.bsdf_pdf = pdf_cosine_hemisphere(dot(ray.direction, camera.axis)); // as if a white surface stood there
     }

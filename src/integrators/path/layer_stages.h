@@ -3,6 +3,7 @@
 // The stages of a wavefront whose light goes to layers of light-path expressions too, or whose picture is one of
 // irradiance: in place of ShadeHits, and after AddLight.
 
+#include "integrators/path/generate_path.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/shade_to_layers.h"
 
@@ -33,6 +34,7 @@ struct ShadeHitsToLayers {
     HD void operator()(uint32_t i) const {
         const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
         PathState path = paths.load(place);
+        path.time = time_of(picture.camera, settings, path);
         const Hit hit = hits.load(place);
         const uint32_t key = path_key(path, settings.seed, true);
         LightPathState state = layers.begin();
@@ -46,6 +48,7 @@ struct ShadeHitsToLayers {
         if (goes_on) {
             to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
+            if (next.times != nullptr) next.times[to] = path.time;
             if (layers.is_there()) layered.next_states[to] = {state.red_green, state.blue};
         } else {
             to = last - atomic_add(&round->ended, 1u);
@@ -54,6 +57,7 @@ struct ShadeHitsToLayers {
         if (!wants_shadow) return;
         const uint32_t ray = atomic_add(&round->shadows, 1u);
         shadows.store<false>(ray, shadow, to, path.pixel, {hit.instance, hit.primitive}, key);
+        if (shadows.times != nullptr) shadows.times[ray] = path.time;
         if (!layers.is_there()) return;
         layered.shadow_diffuse[ray] = {parts.diffuse.r, parts.diffuse.g, parts.diffuse.b, float_of(path.pixel)};
         layered.shadow_parts[ray] = {parts.state.red_green, parts.state.blue, parts.column, parts.light};

@@ -33,11 +33,15 @@ Size size_for(uint64_t samples, uint32_t batch, bool on_cuda) {
 void shade_hits(Queue& queue, const WorkCount& active, const PictureView& picture, const PathSettings& settings,
                 const FilmView& film, const PathQueueView& paths, const PathQueueView& next, const HitQueueView& hits,
                 const ShadowQueueView& shadows, RoundCounts* counts, uint32_t last) {
-    const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave>() {
+    const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave, bool kMoves = false>() {
         launch(queue, "shade_hits", active,
-               ShadeHits<kKnown, kMayBeFrame, kMayLeave>{picture, settings, film, paths, next, hits, shadows, counts,
-                                                         last});
+               ShadeHits<kKnown, kMayBeFrame, kMayLeave, kMoves>{picture, settings, film, paths, next, hits, shadows,
+                                                                 counts, last});
     };
+    if (picture.scene.motions.is_there()) {
+        PERTEV_CHECK(!film.frame.is_there());
+        return shade_as.operator()<MaterialsKnown::Nothing, false, false, true>();
+    }
     const bool leaves_light = film.frame.first_bounce.leaves_direct_light();
     const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
         if constexpr (kMayBeFrame) {
@@ -81,10 +85,17 @@ void PathIntegrator::Wavefront::split_light(Queue& queue) {
     shadow_diffuse = {queue, capacity, "shadow rays"};
 }
 
+void PathIntegrator::Wavefront::take_times(Queue& queue) {
+    if (path_times.size() > 0) return;
+    path_times = {queue, capacity, "path rays"};
+    shadow_times = {queue, capacity, "shadow rays"};
+}
+
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round, bool splits_light) const {
     const Paths& set = sets[of_round % 2];
     return {set.rays.data(),       path_starts.data(),  path_keys.data(),
-            set.throughput.data(), set.radiance.data(), splits_light ? set.diffuse.data() : nullptr};
+            set.throughput.data(), set.radiance.data(), splits_light ? set.diffuse.data() : nullptr,
+            path_times.data()};
 }
 
 ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light, bool tells_bounce) const {
@@ -94,7 +105,8 @@ ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light, bool tells
             shadow_keys.data(),
             contribution.data(),
             splits_light ? shadow_diffuse.data() : nullptr,
-            tells_bounce ? shadow_sent.data() : nullptr};
+            tells_bounce ? shadow_sent.data() : nullptr,
+            shadow_times.data()};
 }
 
 void PathIntegrator::Wavefront::take_layers(Queue& queue) {
@@ -109,10 +121,11 @@ LayerQueueView PathIntegrator::Wavefront::layered(uint32_t of_round) const {
             layer_parts.data()};
 }
 
-std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers) {
+std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers,
+                                            bool has_times) {
     constexpr std::size_t without = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
                                     sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
-    const std::size_t of_path = without + (has_layers ? LayerQueueView::kBytesOfPath : 0);
+    const std::size_t of_path = without + (has_layers ? LayerQueueView::kBytesOfPath : 0) + (has_times ? 2 * sizeof(float) : 0);
     const Size size = size_for(samples, batch, on_cuda);
     return static_cast<std::size_t>(size.wavefronts) * (of_path * size.capacity + 2 * sizeof(RoundCounts)) +
            sizeof(RenderCounts);
@@ -123,7 +136,8 @@ std::size_t PathIntegrator::bytes() const {
     if (wavefronts_.empty()) return of_raster;
     const uint64_t paths = wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
     const bool has_layers = wavefronts_.front().layer_parts.size() > 0;
-    return of_raster + wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda(), has_layers);
+    const bool has_times = wavefronts_.front().path_times.size() > 0;
+    return of_raster + wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda(), has_layers, has_times);
 }
 
 PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch,
@@ -140,6 +154,9 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     if (layers_ && !layers_on_device_) layers_on_device_.emplace(queue_, *layers_);
     if (trees_of_loop() != nullptr) return;
     take_wavefronts(samples);
+    if (picture.scene.motions.is_there()) {
+        for (Wavefront& wavefront : wavefronts_) wavefront.take_times(queue_);
+    }
     if (!layers_) return;
     for (Wavefront& wavefront : wavefronts_) wavefront.take_layers(queue_);
 }

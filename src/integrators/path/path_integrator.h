@@ -36,8 +36,8 @@ public:
     PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch, bool rasterises = false);
 
     /// Bytes that begin() takes for so many samples of all pixels together, by the wavefront; those of a CameraRaster
-    /// come on top.
-    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers);
+    /// come on top. `has_times`: something moves while the shutter is open.
+    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers, bool has_times);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
@@ -91,6 +91,8 @@ private:
         void split_light(Queue& queue);
         PathQueueView paths(uint32_t of_round, bool splits_light) const;
         ShadowQueueView shadows(bool splits_light, bool tells_bounce) const;
+        /// Takes what rays with a time need; it is kept.
+        void take_times(Queue& queue);
         /// Takes what layers need; it is kept.
         void take_layers(Queue& queue);
         LayerQueueView layered(uint32_t of_round) const;
@@ -110,6 +112,7 @@ private:
         Buffer<Float4> contribution, hit_places;
         Buffer<Float4> shadow_diffuse; // where frames split light
         Buffer<Float4> shadow_sent;    // where frames tell their first bounce
+        Buffer<float> path_times, shadow_times; // where something moves while the shutter is open
         Buffer<Float4> layer_diffuse;  // where there are layers
         Buffer<Uint4> layer_parts;     // likewise
         Buffer<uint32_t> hit_instances;

@@ -117,7 +117,7 @@ private:
         };
         const auto accept_of = [&](uint32_t i) {
             const PathState& path = paths_[begin + i];
-            return AcceptHit{picture_.scene, path.start, {}, key_of(path, false)};
+            return AcceptHit{picture_.scene, path.start, {}, key_of(path, false), path.time};
         };
         if (begin == end) return;
         const bool from_camera = paths_[begin].depth == 0;
@@ -145,7 +145,8 @@ private:
             return Ray{ray.origin, 0.0f, ray.direction, ray.t_max};
         };
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{picture_.scene, asked_[i].start, asked_[i].ray.target, asked_[i].key};
+            return AcceptHit{picture_.scene, asked_[i].start, asked_[i].ray.target, asked_[i].key,
+                             paths_[asked_[i].path].time};
         };
         find_occlusions(trees_, shadows, RayOrder::Together, ray_of, accept_of, occluded_);
         for (uint32_t i = 0; i < shadows; ++i) {

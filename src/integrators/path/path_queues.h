@@ -24,11 +24,17 @@ struct PathQueueView {
     Float4* radiance;   // rgb, bsdf_pdf; of a path that has ended rgb, bits of the pixel
     Float4* diffuse; // of the radiance, rgb that went through diffuse lobes of the first vertex; 1 where the path left
                      // it by one, else 0. Null unless a frame splits light
+    float* times;    // RayQueueView's, as the keys; null unless something moves while the shutter is open
 
     /// Of the rays at places 0, 1, ..., or back from `last`.
-    RayQueueView query() const { return {.rays = rays, .starts = starts, .keys = keys, .is_endless = true}; }
+    RayQueueView query() const { return {.rays = rays, .starts = starts, .keys = keys, .times = times, .is_endless = true}; }
     RayQueueView query_back(uint32_t last) const {
-        return {.rays = rays + last, .starts = starts + last, .keys = keys + last, .step = -1, .is_endless = true};
+        return {.rays = rays + last,
+                .starts = starts + last,
+                .keys = keys + last,
+                .times = times != nullptr ? times + last : nullptr,
+                .step = -1,
+                .is_endless = true};
     }
 
     /// Without `start`, which only the tracer needs.
@@ -85,8 +91,11 @@ struct ShadowQueueView {
     Float4* contribution; // rgb, bits of the path's place in the next round's arrays
     Float4* diffuse;      // ShadowRay's; null unless a frame splits light
     Float4* sent;         // ShadowRay's, bits of the pixel; null unless a frame tells its first bounce
+    float* times;         // as PathQueueView's
 
-    RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets, .keys = keys}; }
+    RayQueueView query() const {
+        return {.rays = rays, .starts = starts, .targets = targets, .keys = keys, .times = times};
+    }
 
     /// `kMayTell`: `sent` may be there.
     template <bool kMayTell>

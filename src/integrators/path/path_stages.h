@@ -47,12 +47,14 @@ struct GeneratePaths {
     HD void operator()(uint32_t i) const {
         const uint32_t sample = round->first_sample + (round->first_pixel + i) / pixels;
         const uint32_t pixel = tiled_pixel((round->first_pixel + i) % pixels, camera.width, camera.height);
-        paths.store(last - i, generate_path(camera, settings, pixel, sample), settings.seed, any_alpha);
+        const PathState path = generate_path(camera, settings, pixel, sample);
+        paths.store(last - i, path, settings.seed, any_alpha);
+        if (paths.times != nullptr) paths.times[last - i] = path.time;
     }
 };
 
-/// `kMayBeFrame`, `kMayLeave`: as shade_hit has them.
-template <MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave>
+/// `kMayBeFrame`, `kMayLeave`, `kMoves`: as shade_hit has them.
+template <MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave, bool kMoves>
 struct ShadeHits {
     PictureView picture;
     PathSettings settings;
@@ -66,6 +68,7 @@ struct ShadeHits {
     HD void operator()(uint32_t i) const {
         const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
         PathState path = paths.load(place);
+        if (kMoves) path.time = time_of(picture.camera, settings, path);
         const Hit hit = hits.load(place);
         const uint32_t key = path_key(path, settings.seed, true);
         const TriangleId here = {hit.instance, hit.primitive};
@@ -76,18 +79,21 @@ struct ShadeHits {
         if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
         uint32_t to = 0;
         const bool goes_on =
-            shade_hit<kKnown, kMayBeFrame, kMayLeave>(picture, settings, film, path, hit, shadow, wants_shadow);
+            shade_hit<kKnown, kMayBeFrame, kMayLeave, kMoves>(picture, settings, film, path, hit, shadow, wants_shadow);
         if (splits_light) split.put_back(path);
         if (goes_on) {
             to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
+            if (kMoves) next.times[to] = path.time;
         } else {
             to = last - atomic_add(&round->ended, 1u);
             next.store_ended(to, path);
         }
         if (splits_light) next.diffuse[to] = split.diffuse;
         if (wants_shadow) {
-            shadows.store<kMayLeave>(atomic_add(&round->shadows, 1u), shadow, to, path.pixel, here, key);
+            const uint32_t ray = atomic_add(&round->shadows, 1u);
+            shadows.store<kMayLeave>(ray, shadow, to, path.pixel, here, key);
+            if (kMoves) shadows.times[ray] = path.time;
         }
     }
 };

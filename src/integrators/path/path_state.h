@@ -23,6 +23,7 @@ struct PathState {
     uint32_t depth = 0;            // scattering vertices so far
     uint32_t rough_depth = 0;      // of which not delta
     bool is_first_diffuse = false; // the first vertex was left by a diffuse lobe
+    float time = kAtRest;          // of all of its rays, while the shutter is open
 };
 
 /// Asked for by shade_hit: `contribution` counts if nothing stands between origin and origin + direction * t_max.

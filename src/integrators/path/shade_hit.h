@@ -11,6 +11,7 @@
 #include "integrators/path/vertex_events.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
+#include "render/moved_surface.h"
 #include "render/picture_view.h"
 #include "render/ray_origin.h"
 #include "render/surface.h"
@@ -53,7 +54,7 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
 
 /// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
 /// `tells_bounce`: shadow.sent is, of a second vertex.
-template <MaterialsKnown kKnown, class Events = NoEvents>
+template <MaterialsKnown kKnown, bool kMoves, class Events = NoEvents>
 HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
                              const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow,
                              Events&& events = Events()) {
@@ -61,8 +62,11 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = sample_key(settings, path.pixel, path.sample);
     LightSample light;
-    if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position,
-                                            sample_bits(settings.sampler, key, light_group(path), Pair::Last), light)) {
+    const SampleBits u = sample_bits(settings.sampler, key, light_group(path), Pair::Last);
+    const bool moves = kMoves && scene.motions.is_there();
+    if (moves) {
+        if (!sample_light(scene.lights, surface.position, u, light, LampsAt{scene.motions, path.time})) return false;
+    } else if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position, u, light)) {
         return false;
     }
     const BsdfValue scattered = surface.evaluate(wo, light.wi);
@@ -85,7 +89,8 @@ HD inline bool ask_for_light(const SceneView& scene, const PathSettings& setting
     }
     if (tells_bounce) shadow.sent = surface.diffuse_share(wo, light.wi) * shadow.contribution;
     events.asks_for_light(surface, wo, light.wi);
-    const Ray ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+    const float lamp_error = moves ? lamp_error_at(scene, light, path.time) : 0.0f;
+    const Ray ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
     shadow.origin = ray.origin;
     shadow.direction = ray.direction;
     shadow.t_max = ray.t_max;
@@ -177,9 +182,10 @@ HD inline void store_no_hit(const NoisyFrameView& frame, uint32_t pixel) {
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
 /// Where `kMayBeFrame` is false `film` is none of a noisy frame, and where `kMayLeave` is, none that leaves light to
-/// ReSTIR: code for these would cost others registers. `events`: what is to be told of the vertex (vertex_events.h).
+/// ReSTIR, and where `kMoves` is, nothing moves while the shutter is open: code for these would cost others registers.
+/// `events`: what is to be told of the vertex (vertex_events.h).
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true, bool kMayLeave = true,
-          class Events = NoEvents>
+          bool kMoves = true, class Events = NoEvents>
 HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
                          PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow,
                          Events&& events = Events()) {
@@ -211,7 +217,9 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
         if (is_frame && path.depth == 0) store_emission(film.frame, path);
         return false;
     }
-    Surface surface = make_surface<kKnown>(scene, hit, path.direction);
+    const bool moves = kMoves && scene.motions.is_there();
+    Surface surface = kMoves ? make_surface_at<kKnown>(scene, hit, path.direction, path.time)
+                             : make_surface<kKnown>(scene, hit, path.direction);
     events.meets(surface, path.depth);
     if (is_frame) {
         if (path.depth == 0) store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
@@ -221,8 +229,10 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     }
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
-        const float light_pdf =
-            light != kNoLight ? pdf_light_hit(scene.lights, light, path.origin, surface.position) : 0.0f;
+        const float light_pdf = light == kNoLight ? 0.0f
+                                : moves           ? pdf_light_hit_at(scene, light, hit.instance, path.origin,
+                                                                     surface.position, path.time)
+                                        : pdf_light_hit(scene.lights, light, path.origin, surface.position);
         if (leaves_light && path.depth == 1 && light_pdf > 0) {
             left.light[path.pixel] = {hit.instance, hit.primitive, hit.u, hit.v};
         } else {
@@ -239,7 +249,7 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     const bool is_bounce = tells_bounce && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
     if (is_bounce) begin_bounce(left, path, hit, true);
     wants_shadow = !(leaves_light && path.depth == 0) &&
-                   ask_for_light<kKnown>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
+                   ask_for_light<kKnown, kMoves>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
     if (tells_bounce && wants_shadow && !is_bounce) {
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }

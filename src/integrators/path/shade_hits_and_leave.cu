@@ -2,7 +2,7 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, true, true>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse, true, true>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse, true, true>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, true, true, false>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse, true, true, false>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse, true, true, false>&);
 } // namespace pertev

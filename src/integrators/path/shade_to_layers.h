@@ -37,8 +37,8 @@ HD inline bool shade_hit_to_layers(const PictureView& picture, const PathSetting
     VertexEvents events;
     events.is_meter = is_meter;
     const bool is_sky_seen = hit.instance == kNoHit && path.depth == 0;
-    const bool goes_on = shade_hit<MaterialsKnown::Nothing, false, false>(picture, settings, film, path, hit, shadow,
-                                                                          wants_shadow, events);
+    const bool goes_on = shade_hit<MaterialsKnown::Nothing, false, false, true>(picture, settings, film, path, hit,
+                                                                                shadow, wants_shadow, events);
     if (is_meter && is_sky_seen) path.radiance = {0, 0, 0};
     if (!layers.is_there()) {
         path.radiance = before + path.radiance;

@@ -32,7 +32,9 @@ public:
     RayTreeIntegrator(Queue& queue, const RayTreeSettings& settings, bool in_loop, uint32_t batch);
 
     /// Bytes that begin() takes for so many samples of all pixels together, where the trees are in flight all at once.
-    static std::size_t predicted_bytes(const RayTreeSettings& settings, uint64_t samples, uint32_t batch);
+    /// `has_times`: something moves while the shutter is open.
+    static std::size_t predicted_bytes(const RayTreeSettings& settings, uint64_t samples, uint32_t batch,
+                                       bool has_times);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;

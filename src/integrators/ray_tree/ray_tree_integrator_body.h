@@ -27,14 +27,14 @@ uint32_t entries(const RayTreeSettings& settings) {
     return Algorithm::kMostBranches > 1 ? 1 + (Algorithm::kMostBranches - 1) * settings.max_depth : 1;
 }
 
-inline std::size_t bytes_of(uint32_t trees, uint32_t entries) {
+inline std::size_t bytes_of(uint32_t trees, uint32_t entries, bool has_times) {
     TreesView view;
-    return lay_out(view, nullptr, trees, entries);
+    return lay_out(view, nullptr, trees, entries, has_times);
 }
 
 /// As many trees as fit into `bytes`, at most `most` and at least 32.
-inline uint32_t trees_within(std::size_t bytes, uint64_t most, uint32_t entries) {
-    const std::size_t each = bytes_of(32, entries) / 32;
+inline uint32_t trees_within(std::size_t bytes, uint64_t most, uint32_t entries, bool has_times) {
+    const std::size_t each = bytes_of(32, entries, has_times) / 32;
     return static_cast<uint32_t>(std::min<uint64_t>(most, std::max<std::size_t>(bytes / each, 32)));
 }
 
@@ -45,9 +45,10 @@ public:
     TreeLoop(const PictureView& picture, const RayTreeSettings& settings, const HostTrees& scene, const FilmView& film)
         : picture_(picture), settings_(settings), scene_(scene), film_(film) {
         const uint32_t stacked = entries<Algorithm>(settings);
-        capacity_ = trees_within(kLoopBytes, 128, stacked);
-        memory_.resize(bytes_of(capacity_, stacked) / sizeof(Float4) + 1);
-        lay_out(trees_, reinterpret_cast<std::byte*>(memory_.data()), capacity_, stacked);
+        const bool moves = picture.scene.motions.is_there();
+        capacity_ = trees_within(kLoopBytes, 128, stacked, moves);
+        memory_.resize(bytes_of(capacity_, stacked, moves) / sizeof(Float4) + 1);
+        lay_out(trees_, reinterpret_cast<std::byte*>(memory_.data()), capacity_, stacked, moves);
         *trees_.counts = {};
         hits_.resize(capacity_);
         met_ = std::make_unique<bool[]>(std::size_t(capacity_) * kShadowsAtOnce);
@@ -81,14 +82,18 @@ private:
             run(rays, AddTreeLight{trees_, round});
             CountTrees{trees_.counts, false}(0);
         }
-        run(rays, TakeNextRays{settings_, film_, trees_, round});
+        run(rays, TakeNextRays{picture_.camera, settings_, film_, trees_, round});
         CountTrees{trees_.counts, true}(0);
     }
 
     void find_hits_of(uint32_t rays, uint32_t round) {
         const auto ray_of = [&](uint32_t i) { return trees_.rays[i]; };
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{picture_.scene, {trees_.starts[i].x, trees_.starts[i].y}, {}, trees_.keys[i]};
+            return AcceptHit{picture_.scene,
+                             {trees_.starts[i].x, trees_.starts[i].y},
+                             {},
+                             trees_.keys[i],
+                             trees_.times != nullptr ? trees_.times[i] : kAtRest};
         };
         const RayOrder order = round == 0 ? RayOrder::Together : RayOrder::Scattered;
         if (round == 0 && picture_.scene.any_hidden_back != 0) {
@@ -106,7 +111,11 @@ private:
         const auto ray_of = [&](uint32_t i) { return trees_.shadow_rays[i]; };
         const auto accept_of = [&](uint32_t i) {
             const Uint2 start = trees_.shadow_starts[i], target = trees_.shadow_targets[i];
-            return AcceptHit{picture_.scene, {start.x, start.y}, {target.x, target.y}, trees_.shadow_keys[i]};
+            return AcceptHit{picture_.scene,
+                             {start.x, start.y},
+                             {target.x, target.y},
+                             trees_.shadow_keys[i],
+                             trees_.shadow_times != nullptr ? trees_.shadow_times[i] : kAtRest};
         };
         find_occlusions(scene_, shadows, RayOrder::Together, ray_of, accept_of, met_.get());
         for (uint32_t i = 0; i < shadows; ++i) trees_.shadow_keys[i] = met_[i] ? 0 : kNoHit;
@@ -132,10 +141,11 @@ RayTreeIntegrator<Algorithm>::RayTreeIntegrator(Queue& queue, const RayTreeSetti
 
 template <class Algorithm>
 std::size_t RayTreeIntegrator<Algorithm>::predicted_bytes(const RayTreeSettings& settings, uint64_t samples,
-                                                          uint32_t batch) {
+                                                          uint32_t batch, bool has_times) {
     const uint32_t stacked = ray_tree::entries<Algorithm>(settings);
     const uint64_t most = std::min<uint64_t>(samples, batch);
-    return ray_tree::bytes_of(ray_tree::trees_within(ray_tree::kMostTreeBytes, most, stacked), stacked);
+    const uint32_t trees = ray_tree::trees_within(ray_tree::kMostTreeBytes, most, stacked, has_times);
+    return ray_tree::bytes_of(trees, stacked, has_times);
 }
 
 template <class Algorithm>
@@ -156,12 +166,15 @@ void RayTreeIntegrator<Algorithm>::begin(const PictureView& picture, SceneTracer
     if (trees_of_loop() != nullptr) return;
     const uint32_t stacked = ray_tree::entries<Algorithm>(settings_);
     const uint64_t all = uint64_t(picture.camera.width) * picture.camera.height * samples;
-    const uint32_t wanted = ray_tree::trees_within(ray_tree::kMostTreeBytes, std::min<uint64_t>(all, batch_), stacked);
-    if (memory_.size() < ray_tree::bytes_of(wanted, stacked)) {
+    const bool moves = picture.scene.motions.is_there();
+    const uint32_t wanted =
+        ray_tree::trees_within(ray_tree::kMostTreeBytes, std::min<uint64_t>(all, batch_), stacked, moves);
+    const std::size_t bytes = ray_tree::bytes_of(wanted, stacked, moves);
+    if (memory_.size() < bytes) {
         memory_ = {}; // before there is more
-        memory_ = {queue_, ray_tree::bytes_of(wanted, stacked), "ray trees"};
+        memory_ = {queue_, bytes, "ray trees"};
     }
-    lay_out(trees_, memory_.data(), wanted, stacked);
+    lay_out(trees_, memory_.data(), wanted, stacked, moves);
 }
 
 template <class Algorithm>
@@ -226,7 +239,7 @@ void RayTreeIntegrator<Algorithm>::give_rounds(uint32_t trees, const FilmView& f
             }
             launch(queue_, "count_trees", 1, CountTrees{trees_.counts, false});
         }
-        launch(queue_, "take_next_rays", rays, TakeNextRays{picture_settings_, film, trees_, round});
+        launch(queue_, "take_next_rays", rays, TakeNextRays{picture_.camera, picture_settings_, film, trees_, round});
         launch(queue_, "count_trees", 1, CountTrees{trees_.counts, true});
         if (round > 0) {
             most = seen_.wait().rays;

@@ -68,6 +68,7 @@ struct TreesView {
     Ray* rays;
     Uint2* starts;
     uint32_t* keys; // of coins
+    float* times;   // RayQueueView's; null unless something moves while the shutter is open
     uint32_t* owners[2];
     Float4* hit_places;
     uint32_t* hit_instances;
@@ -76,14 +77,19 @@ struct TreesView {
     Ray* shadow_rays;
     Uint2 *shadow_starts, *shadow_targets;
     uint32_t* shadow_keys; // then what the ray met
+    float* shadow_times;
     Float4* contributions;
     Uint4* asked; // [capacity]: places of the shadow rays of a tree
 
     TreeCounts* counts;
 
-    RayQueueView query() const { return {.rays = rays, .starts = starts, .keys = keys}; }
+    RayQueueView query() const { return {.rays = rays, .starts = starts, .keys = keys, .times = times}; }
     RayQueueView shadow_query() const {
-        return {.rays = shadow_rays, .starts = shadow_starts, .targets = shadow_targets, .keys = shadow_keys};
+        return {.rays = shadow_rays,
+                .starts = shadow_starts,
+                .targets = shadow_targets,
+                .keys = shadow_keys,
+                .times = shadow_times};
     }
     HD HitQueueView hits() const { return {hit_places, hit_instances}; }
 
@@ -107,28 +113,33 @@ struct TreesView {
         weights[at] = {ray.weight.r, ray.weight.g, ray.weight.b, float_of(ray.start.instance)};
         primitives[at] = ray.start.primitive;
     }
-    /// Puts `ray` of `tree` at `place` of the queue of those under way. `key`: its coin's.
-    HD void queue_ray(uint32_t place, uint32_t tree, const PendingRay& ray, uint32_t key, uint32_t round) const {
+    /// Puts `ray` of `tree` at `place` of the queue of those under way. `key`: its coin's; `time`: of all rays of the
+    /// tree.
+    HD void queue_ray(uint32_t place, uint32_t tree, const PendingRay& ray, uint32_t key, float time,
+                      uint32_t round) const {
         pertev::store_ray(rays + place, {ray.origin, 0.0f, ray.direction, kInfinity});
         starts[place] = {ray.start.instance, ray.start.primitive};
         keys[place] = key;
+        if (times != nullptr) times[place] = time;
         owners[round % 2][place] = tree;
     }
-    HD void queue_shadow(uint32_t place, const TreeShadowRay& shadow, TriangleId start, uint32_t key) const {
+    HD void queue_shadow(uint32_t place, const TreeShadowRay& shadow, TriangleId start, uint32_t key,
+                         float time) const {
         pertev::store_ray(shadow_rays + place, shadow.ray);
         shadow_starts[place] = {start.instance, start.primitive};
         shadow_targets[place] = {shadow.target.instance, shadow.target.primitive};
         shadow_keys[place] = key;
+        if (shadow_times != nullptr) shadow_times[place] = time;
         contributions[place] = {shadow.contribution.r, shadow.contribution.g, shadow.contribution.b, 0};
     }
 };
 
 /// Places the arrays of `capacity` trees with stacks of `entries` rays each one after the other from `memory` on, a
-/// multiple of 16. Returns the bytes that they take; with no memory that is all it does.
-inline std::size_t lay_out(TreesView& view, std::byte* memory, uint32_t capacity, uint32_t entries) {
+/// multiple of 16. Returns the bytes that they take; with no memory that is all it does. `has_times`: rays have a time.
+inline std::size_t lay_out(TreesView& view, std::byte* memory, uint32_t capacity, uint32_t entries, bool has_times) {
     std::size_t bytes = 0;
     const auto place = [&]<class T>(T*& array, std::size_t count) {
-        array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
+        array = memory != nullptr && count > 0 ? reinterpret_cast<T*>(memory + bytes) : nullptr;
         bytes += (count * sizeof(T) + 15) / 16 * 16;
     };
     const std::size_t stacked = std::size_t(capacity) * entries, shadows = std::size_t(capacity) * kShadowsAtOnce;
@@ -141,6 +152,7 @@ inline std::size_t lay_out(TreesView& view, std::byte* memory, uint32_t capacity
     place(view.rays, capacity);
     place(view.starts, capacity);
     place(view.keys, capacity);
+    place(view.times, has_times ? capacity : 0);
     place(view.owners[0], capacity);
     place(view.owners[1], capacity);
     place(view.hit_places, capacity);
@@ -149,6 +161,7 @@ inline std::size_t lay_out(TreesView& view, std::byte* memory, uint32_t capacity
     place(view.shadow_starts, shadows);
     place(view.shadow_targets, shadows);
     place(view.shadow_keys, shadows);
+    place(view.shadow_times, has_times ? shadows : 0);
     place(view.contributions, shadows);
     place(view.asked, capacity);
     place(view.counts, 1);

@@ -32,13 +32,15 @@ struct BeginTrees {
         state.pixel = tiled_pixel(samples.first_pixel + static_cast<uint32_t>(number % samples.pixels), camera.width,
                                   camera.height);
         state.rays = 1;
-        const Ray line = camera.ray(state.pixel, settings.sampler, sample_key(settings, state.pixel, state.sample));
+        const SampleKey key = sample_key(settings, state.pixel, state.sample);
+        const Ray line = camera.ray(state.pixel, settings.sampler, key);
         PendingRay ray;
         ray.origin = line.origin;
         ray.direction = line.direction;
         trees.states[i] = state;
         trees.store_ray(i, 0, ray);
-        trees.queue_ray(i, i, ray, tree_key(state, settings.seed, 0, false), 0);
+        trees.queue_ray(i, i, ray, tree_key(state, settings.seed, 0, false),
+                        camera.time(settings.sampler, key), 0);
     }
 };
 
@@ -83,7 +85,8 @@ private:
     }
     HD void shade(uint32_t tree, TreeState& state, const PendingRay& ray, const Hit& hit) const {
         const SceneView& scene = picture.scene;
-        const Surface surface = make_surface(scene, hit, ray.direction);
+        const float time = time_of(picture.camera, settings, state);
+        const Surface surface = make_surface_at(scene, hit, ray.direction, time);
         if (first_shadow == 0) {
             if (ray.depth == 0) {
                 add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
@@ -92,12 +95,13 @@ private:
                 const uint32_t light =
                     ray.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
                 add_emission(state, ray, surface.emission,
-                             light != kNoLight ? pdf_light_hit(scene.lights, light, ray.origin, surface.position)
+                             light != kNoLight ? pdf_light_hit_at(scene, light, hit.instance, ray.origin,
+                                                                  surface.position, time)
                                                : 0.0f);
             }
         }
         if (surface.is_unlit || ray.depth >= settings.max_depth) return;
-        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface};
+        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface, time};
         ask_for_lights(vertex);
         if (is_last) Algorithm::follow(vertex);
     }
@@ -110,7 +114,7 @@ private:
             TreeShadowRay shadow;
             if (!Algorithm::ask_for_light(vertex, number, shadow)) continue;
             const uint32_t place = atomic_add(&trees.counts->shadows, 1u);
-            trees.queue_shadow(place, shadow, vertex.surface.triangle, key);
+            trees.queue_shadow(place, shadow, vertex.surface.triangle, key, vertex.time);
             places[count++] = place;
         }
         vertex.state.shadows = count;
@@ -142,6 +146,7 @@ struct AddTreeLight {
 
 /// Takes the next ray of each tree off its stack; a tree that has none is a sample of the film.
 struct TakeNextRays {
+    CameraRays camera;
     RayTreeSettings settings;
     FilmView film;
     TreesView trees;
@@ -153,7 +158,8 @@ struct TakeNextRays {
         if (state.pending == 0) return add_radiance(film, state.pixel, state.radiance);
         const PendingRay ray = trees.load_ray(tree, --state.pending);
         const uint32_t key = tree_key(state, settings.seed, state.rays++, false);
-        trees.queue_ray(atomic_add(&trees.counts->next, 1u), tree, ray, key, round + 1);
+        const float time = trees.times != nullptr ? time_of(camera, settings, state) : kAtRest;
+        trees.queue_ray(atomic_add(&trees.counts->next, 1u), tree, ray, key, time, round + 1);
     }
 };
 

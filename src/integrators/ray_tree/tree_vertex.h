@@ -5,6 +5,7 @@
 
 #include "integrators/ray_tree/ray_tree_settings.h"
 #include "integrators/ray_tree/tree_memory.h"
+#include "render/moved_surface.h"
 #include "render/picture_view.h"
 #include "render/ray_origin.h"
 #include "render/surface.h"
@@ -35,6 +36,11 @@ HD inline uint32_t tree_key(const TreeState& tree, uint32_t seed, uint32_t numbe
     return coin_key({tree.pixel, tree.sample, seed}, number, is_shadow);
 }
 
+/// Of all rays of a tree, while the shutter is open.
+HD inline float time_of(const CameraRays& camera, const RayTreeSettings& settings, const TreeState& tree) {
+    return camera.time(settings.sampler, sample_key(settings, tree.pixel, tree.sample));
+}
+
 struct TreeVertex {
     const PictureView& picture;
     const RayTreeSettings& settings;
@@ -43,6 +49,7 @@ struct TreeVertex {
     TreeState& state;
     const PendingRay& ray; // that ends here
     const Surface& surface;
+    float time; // of all rays of the tree
 
     HD Vec3 wo() const { return -ray.direction; }
     HD uint32_t number() const { return state.rays - 1; }
@@ -65,10 +72,9 @@ struct TreeVertex {
         if (surface.bsdf.has_delta_only()) return false;
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
         LightSample sample;
-        if (!sample_light(picture.scene.lights, surface.position, sample_bits(settings.sampler, key(), of, Pair::Last),
-                          sample)) {
-            return false;
-        }
+        const SampleBits u = sample_bits(settings.sampler, key(), of, Pair::Last);
+        const LampsAt lamps = {picture.scene.motions, time};
+        if (!sample_light(picture.scene.lights, surface.position, u, sample, lamps)) return false;
         const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
         if (is_black(all.f) || is_hole(sample)) return false;
         Rgb f = all.f;
@@ -112,7 +118,8 @@ private:
     /// The ray to what was drawn of a light, `f_times_light` of which arrives if nothing is in between.
     HD bool ask_for(const LightSample& light, Rgb f_times_light, TreeShadowRay& shadow) const {
         if (is_black(f_times_light)) return false;
-        shadow.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+        const float lamp_error = lamp_error_at(picture.scene, light, time);
+        shadow.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
         shadow.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         shadow.contribution = ray.weight * f_times_light;
         return true;

@@ -79,6 +79,7 @@ TraceQuery SceneTracer::query_of(RayKind kind, const RayQueueView& rays) const {
         query.scene = scene_on_device_.data();
         query.passing = scene_.passing;
     }
+    if (scene_.motions.is_there()) query.moving = scene_on_device_.data();
     return query;
 }
 

@@ -1,0 +1,100 @@
+#pragma once
+
+// Rigid motion while a shutter is open: where a thing that turns and goes along is at a time, as a move of the place
+// that it has been given. Time goes from 0 (the shutter opens) to 1 (it closes). Between keys the pivot goes straight
+// and evenly; the turn is the normalised mean of both quaternions (nlerp), about one axis.
+//
+// The move at a time, forth and back, is one portable function: both devices compute it to the same bits. Lengths,
+// angles and the parameter of a ray stay what they are, up to rounding.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/scalar.h"
+#include "math/vec3.h"
+#include "math/vec4.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kNoMotion = 0xffffffffu;
+inline constexpr float kAtRest = -1; // for a time: everything is where it has been put
+
+struct MotionKey {
+    Vec4 turn; // unit quaternion (x, y, z, w); less than a quarter turn of four dimensions from the keys beside it
+    Vec3 place; // of the pivot, metres
+    float unused = 0;
+    bool operator==(const MotionKey&) const = default;
+};
+static_assert(sizeof(MotionKey) == 32);
+
+/// A motion at one time: p goes to turn(p - pivot) + place.
+struct RigidMotion {
+    Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // of the turn
+    Vec3 pivot = {0, 0, 0}, place = {0, 0, 0};
+
+    HD Vec3 turn(Vec3 v) const { return {dot(row0, v), dot(row1, v), dot(row2, v)}; }
+    HD Vec3 turn_back(Vec3 v) const { return v.x * row0 + v.y * row1 + v.z * row2; }
+    HD Vec3 turn_sizes(Vec3 v) const { return {dot(abs(row0), v), dot(abs(row1), v), dot(abs(row2), v)}; }
+    HD Vec3 move(Vec3 p) const { return turn(p - pivot) + place; }
+    HD Vec3 move_back(Vec3 p) const { return turn_back(p - place) + pivot; }
+
+    /// Bound of the rounding of move() and move_back() of `p`, of either side, in units of length, for all components:
+    /// rows are off by 6 units of 2^-24, a turn adds 3 and the sums 2, each of at most all lengths together.
+    HD float error(Vec3 p) const {
+        const auto size = [](Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); };
+        return 0x1p-20f * (size(p) + size(pivot) + size(place));
+    }
+};
+
+/// Of one thing. `keys` stand at the times 0, 1 / segments, ..., 1.
+HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 pivot, float time) {
+    const float at = time * static_cast<float>(segments);
+    const uint32_t first = static_cast<uint32_t>(to_int(at, 0, static_cast<int>(segments) - 1));
+    const float f = at - static_cast<float>(first);
+    const MotionKey &a = keys[first], &b = keys[first + 1];
+    const Vec4 q = (1.0f - f) * a.turn + f * b.turn;
+    // Twice over the squared length: the rows below are then those of the unit quaternion.
+    const float s = 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    const float xx = s * q.x * q.x, yy = s * q.y * q.y, zz = s * q.z * q.z;
+    const float xy = s * q.x * q.y, xz = s * q.x * q.z, yz = s * q.y * q.z;
+    const float xw = s * q.x * q.w, yw = s * q.y * q.w, zw = s * q.z * q.w;
+    return {{1.0f - (yy + zz), xy - zw, xz + yw},
+            {xy + zw, 1.0f - (xx + zz), yz - xw},
+            {xz - yw, yz + xw, 1.0f - (xx + yy)},
+            pivot,
+            (1.0f - f) * a.place + f * b.place};
+}
+
+/// The motion of one thing; without keys it stands still.
+struct MotionTrack {
+    const MotionKey* keys = nullptr;
+    Vec3 pivot = {0, 0, 0};
+    uint32_t segments = 0;
+
+    HD bool moves() const { return keys != nullptr; }
+    HD RigidMotion at(float time) const {
+        return moves() && time >= 0 ? motion_at(keys, segments, pivot, time) : RigidMotion{};
+    }
+};
+
+/// Those of a scene's instances. Plain pointers, host's or device's; null where nothing moves.
+struct MotionsView {
+    const MotionKey* keys = nullptr;        // [motions * (segments + 1)]
+    const Vec3* pivots = nullptr;           // [motions]
+    const uint32_t* of_instance = nullptr;  // [instances] number of its motion, or kNoMotion
+    uint32_t segments = 0;
+
+    HD bool is_there() const { return keys != nullptr; }
+    HD uint32_t of(uint32_t instance) const { return is_there() ? of_instance[instance] : kNoMotion; }
+    /// `time`: in [0, 1], or kAtRest.
+    HD RigidMotion at(uint32_t motion, float time) const {
+        return MotionTrack{keys + std::size_t(motion) * (segments + 1), pivots[motion], segments}.at(time);
+    }
+    HD RigidMotion of_instance_at(uint32_t instance, float time) const {
+        const uint32_t motion = of(instance);
+        return motion == kNoMotion ? RigidMotion{} : at(motion, time);
+    }
+};
+
+} // namespace pertev

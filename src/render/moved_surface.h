@@ -1,0 +1,51 @@
+#pragma once
+
+// Surfaces and lamps at the time of a ray, while a shutter is open: everything is found where it has been put, and then
+// moved (math/rigid_motion.h). So what does not move is what it is without a shutter, to the bit.
+
+#include "render/surface.h"
+
+namespace pertev {
+
+HD inline void move_surface(const RigidMotion& motion, Surface& surface) {
+    const float error = motion.error(surface.position);
+    surface.error = motion.turn_sizes(surface.error) + Vec3{error, error, error};
+    surface.position = motion.move(surface.position);
+    surface.geometric_normal = motion.turn(surface.geometric_normal);
+    Frame& frame = surface.frame;
+    frame = {motion.turn(frame.tangent), motion.turn(frame.bitangent), motion.turn(frame.normal)};
+}
+
+/// make_surface of a ray that has a time.
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+HD inline Surface make_surface_at(const SceneView& scene, const Hit& hit, Vec3 direction, float time) {
+    const uint32_t number = scene.motions.of(hit.instance);
+    const bool moves = number != kNoMotion && time >= 0;
+    const RigidMotion motion = moves ? scene.motions.at(number, time) : RigidMotion{};
+    Surface surface = make_surface<kKnown>(scene, hit, moves ? motion.turn_back(direction) : direction);
+    if (moves) move_surface(motion, surface);
+    return surface;
+}
+
+/// For sample_light: where the lamps are at a time.
+struct LampsAt {
+    const MotionsView& motions;
+    float time;
+
+    HD RigidMotion operator()(uint32_t instance) const { return motions.of_instance_at(instance, time); }
+};
+
+/// pdf_light_hit of a ray that has a time.
+HD inline float pdf_light_hit_at(const SceneView& scene, uint32_t light, uint32_t instance, Vec3 from_point,
+                                 Vec3 hit_point, float time) {
+    const RigidMotion motion = scene.motions.of_instance_at(instance, time);
+    return pdf_light_hit(scene.lights, light, motion.move_back(from_point), motion.move_back(hit_point));
+}
+
+/// What ray_to_light adds for a lamp that moves.
+HD inline float lamp_error_at(const SceneView& scene, const LightSample& light, float time) {
+    if (light.instance == kNoLight || scene.motions.of(light.instance) == kNoMotion) return 0;
+    return scene.motions.of_instance_at(light.instance, time).error(light.light_point);
+}
+
+} // namespace pertev

@@ -1,0 +1,254 @@
+// An open shutter. Pictures of what moves meanwhile are the same bytes for any number of threads, any body, any tracer;
+// each ray meets what it meets in a scene that stands still as it is at the ray's time; what does not move stays as it
+// is, to the bit. With --device cuda the GPU joins in.
+
+#include "session/shutter.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "base/parallel_for.h"
+#include "render/find_hits.h"
+#include "render/light_paths/light_path_expression.h"
+#include "render/tracer/walk_kernels.h"
+#include "scene/validate.h"
+#include "session/moving_scene.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/random.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr Shutter kHalfASecond = {-0.1, 0.4};
+
+/// The mixed scene, in which two spheres of one mesh, a lamp and a sheet go and turn. `moves`: or nothing does.
+Scene make_rushing_scene(bool moves = true) {
+    Scene scene = test::make_mixed_scene();
+    Messages messages;
+    validate(scene, "mixed", messages);
+    scene.nodes.resize(4);
+    const uint32_t instances[] = {1, 2, 5, 7};
+    scene.animations.emplace_back();
+    for (uint32_t node = 0; node < 4; ++node) {
+        Instance& instance = scene.instances[instances[node]];
+        instance.node = node;
+        instance.node_from_local = instance.world_from_local;
+        const float way = moves ? 1.0f : 0.0f, turn = moves ? 0.38268343f : 0.0f;
+        const auto n = static_cast<float>(node);
+        scene.animations[0].channels.push_back({node, AnimatedPart::Translation, Interpolation::Linear, {0, 1},
+                                                {0, 0, 0, way * (0.8f - 0.4f * n), 0.3f * way, 0.2f * way}});
+        scene.animations[0].channels.push_back({node, AnimatedPart::Rotation, Interpolation::Linear, {0, 1},
+                                                {0, 0, 0, 1, 0, turn, 0, moves ? 0.92387953f : 1.0f}});
+    }
+    validate(scene, "rushing", messages);
+    return scene;
+}
+
+/// The mixed scene's, which goes to the right and turns.
+Camera rushing_camera() {
+    Camera camera = test::mixed_scene_camera();
+    const Vec3 eye = camera.world_from_camera.translation;
+    camera.aperture_radius = 0.05f;
+    camera.focus_distance = 6;
+    camera.motion = {{{0, 0, 0, 1}, eye}, {{0, 0.02f, 0, 0.9998f}, eye + Vec3{0.3f, 0, 0}}};
+    return camera;
+}
+
+RenderSettings blurred_settings(IntegratorKind integrator) {
+    RenderSettings settings = test::layered_settings();
+    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.height = 21;
+    settings.samples = 4;
+    settings.integrator = integrator;
+    settings.path.max_depth = 5;
+    return settings;
+}
+
+Hash128 picture_of(Queue& queue, const PreparedScene& prepared, const Camera& camera, const RenderSettings& settings) {
+    Session session(queue, prepared, camera, settings);
+    session.render(settings.samples);
+    const RenderResult result = session.result();
+    CHECK(result.invalid_samples == 0);
+    return test::render_hash(result);
+}
+
+constexpr IntegratorKind kWithShutter[] = {IntegratorKind::Path, IntegratorKind::Distributed, IntegratorKind::Whitted,
+                                           IntegratorKind::Cast};
+
+} // namespace
+
+TEST_CASE("blurred pictures do not depend on threads, bodies, how many are in flight, or the device") {
+    Messages messages;
+    MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
+    REQUIRE(moving.prepared().motions != nullptr);
+    CHECK(moving.prepared().motions->pivots.size() == 4);
+    for (const IntegratorKind integrator : kWithShutter) {
+        CAPTURE(static_cast<int>(integrator));
+        Queue queue = Queue::make_cpu();
+        RenderSettings settings = blurred_settings(integrator);
+        const Camera camera = rushing_camera();
+        const Hash128 reference = picture_of(queue, moving.prepared(), camera, settings);
+        CHECK(picture_of(queue, moving.prepared(), test::mixed_scene_camera(), settings) != reference);
+
+        set_thread_count(1);
+        CHECK(picture_of(queue, moving.prepared(), camera, settings) == reference);
+        set_thread_count(5);
+        settings.pass_samples = 3;
+        CHECK(picture_of(queue, moving.prepared(), camera, settings) == reference);
+        set_thread_count(0);
+        settings.body = PathBody::Wavefront;
+        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
+            settings.batch = batch;
+            CHECK(picture_of(queue, moving.prepared(), camera, settings) == reference);
+            if (!test::cuda_requested()) continue;
+            Queue gpu = test::make_cuda_queue();
+            CHECK(picture_of(gpu, moving.prepared(), camera, settings) == reference);
+        }
+    }
+}
+
+TEST_CASE("every tracer finds the same in a scene that moves") {
+    Messages messages;
+    MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
+    RenderSettings settings = blurred_settings(IntegratorKind::Path);
+    settings.width = 24, settings.height = 16, settings.samples = 2;
+    Queue cpu = Queue::make_cpu();
+    const Hash128 wanted = picture_of(cpu, moving.prepared(), rushing_camera(), settings);
+    Queue queue = test::queue_asked_for();
+    Session session(queue, moving.prepared(), rushing_camera(), settings);
+    int pictures = 0, wrong = 0;
+    for (const StructureKind structure : all_structures()) {
+        for (const WalkKind walk : all_walks()) {
+            for (const Distribution distribution :
+                 {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
+                const Combination c = {structure, walk, {}, distribution};
+                if (why_no_tracer(c, queue.is_cuda())) continue;
+                settings.tracers = same_for_all(c);
+                session.set_settings(settings);
+                session.cut();
+                session.render(settings.samples);
+                ++pictures;
+                wrong += test::render_hash(session.result()) == wanted ? 0 : 1;
+            }
+        }
+    }
+    CHECK(pictures > 40);
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("a ray meets what it meets in the scene that stands still as it is at the ray's time") {
+    Messages messages;
+    const Scene rest = make_rushing_scene();
+    MovingScene moving(rest, 0.3, {}, messages, kHalfASecond);
+    Queue queue = Queue::make_cpu();
+    const auto hits_of = [&](const PreparedScene& prepared, const std::vector<Ray>& rays, float time) {
+        const SceneOnDevice scene(queue, prepared);
+        const SceneTracer tracer(queue, *prepared.structures, default_tracers(false));
+        std::vector<Hit> hits(rays.size());
+        const auto accept_of = [&](uint32_t) { return AcceptHit{scene.view(), {}, {}, 0, time}; };
+        find_hits(*tracer.host_trees(), static_cast<uint32_t>(rays.size()), RayOrder::Scattered,
+                  [&](uint32_t i) { return rays[i]; }, accept_of, hits.data());
+        return hits;
+    };
+    test::Random random(11);
+    int on_moving = 0, others = 0, wrong = 0;
+    for (const float time : {0.0f, 0.17f, 0.5f, 0.81f, 1.0f}) {
+        CAPTURE(time);
+        std::vector<Ray> rays;
+        for (int i = 0; i < 4000; ++i) {
+            Ray ray;
+            ray.origin = random.point(-4, 4);
+            ray.direction = random.direction();
+            rays.push_back(ray);
+        }
+        MovingScene still(rest, kHalfASecond.time_at(0.3, static_cast<double>(time)), {}, messages);
+        const std::vector<Hit> now = hits_of(moving.prepared(), rays, time);
+        const std::vector<Hit> then = hits_of(still.prepared(), rays, kAtRest);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const bool moves = moving.prepared().motions->of_instance[std::min<uint32_t>(now[i].instance, 8)] != kNoMotion;
+            if (now[i].instance != then[i].instance) {
+                ++wrong; // grazes an edge
+            } else if (now[i].instance != kNoHit && moves) {
+                ++on_moving;
+                wrong += abs(now[i].t - then[i].t) < 0.01f * (1 + then[i].t) ? 0 : 1;
+            } else if (now[i].instance != kNoHit) {
+                ++others;
+                CHECK(now[i] == then[i]);
+            }
+        }
+    }
+    CHECK(on_moving > 1500);
+    CHECK(others > 3000);
+    CHECK(wrong < on_moving / 100);
+}
+
+TEST_CASE("a shutter before which nothing moves changes nothing") {
+    Messages messages;
+    Queue queue = test::queue_asked_for();
+    const Scene scene = make_rushing_scene(false);
+    for (const IntegratorKind integrator : kWithShutter) {
+        const RenderSettings settings = blurred_settings(integrator);
+        MovingScene with(scene, 0.3, {}, messages, kHalfASecond), without(scene, 0.3, {}, messages);
+        CHECK(with.prepared().motions == nullptr);
+        CHECK(picture_of(queue, with.prepared(), test::mixed_scene_camera(), settings) ==
+              picture_of(queue, without.prepared(), test::mixed_scene_camera(), settings));
+    }
+}
+
+TEST_CASE("frames with a shutter are the same whatever frames came before") {
+    Messages messages;
+    Queue queue = test::queue_asked_for();
+    const RenderSettings settings = blurred_settings(IntegratorKind::Path);
+    MovingScene moving(make_rushing_scene(), 0, {}, messages, kHalfASecond);
+    Session session(queue, moving.prepared(), rushing_camera(), settings);
+    for (const double time_s : {0.2, 0.9, 5.0, 0.3}) { // at 5 s all stand still
+        CAPTURE(time_s);
+        session.update_scene(moving.prepared(), moving.set_time(time_s, messages));
+        CHECK((moving.prepared().motions == nullptr) == (time_s > 2));
+        session.render(settings.samples);
+        MovingScene fresh(make_rushing_scene(), time_s, {}, messages, kHalfASecond);
+        CHECK(test::render_hash(session.result()) ==
+              picture_of(queue, fresh.prepared(), rushing_camera(), settings));
+    }
+}
+
+TEST_CASE("integrators whose rays have no time refuse an open shutter by name") {
+    Messages messages;
+    MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
+    Queue queue = Queue::make_cpu();
+    for (const IntegratorKind integrator : {IntegratorKind::Hybrid, IntegratorKind::Raster, IntegratorKind::Light,
+                                            IntegratorKind::Bidirectional}) {
+        const RenderSettings settings = blurred_settings(integrator);
+        Session session(queue, moving.prepared(), test::mixed_scene_camera(), settings);
+        CHECK(test::bad_input_message([&] { session.render(1); }).find("--shutter") == 0);
+    }
+}
+
+TEST_CASE("blurred layers of light paths are the same on the host's loop and by stages, and leave the picture as it is") {
+    Messages messages;
+    MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
+    RenderSettings settings = blurred_settings(IntegratorKind::Path);
+    const Hash128 without = [&] {
+        Queue queue = Queue::make_cpu();
+        Session session(queue, moving.prepared(), rushing_camera(), settings);
+        session.render(settings.samples);
+        return test::render_hash({.picture = session.picture()});
+    }();
+    std::vector<LightPathExpression> expressions;
+    for (const char* text : {"direct=L[DG]E", "all=L.*E"}) expressions.push_back(parse_light_path(text));
+    settings.light_paths =
+        std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), moving.scene()));
+    Queue cpu = Queue::make_cpu();
+    const Hash128 loop = picture_of(cpu, moving.prepared(), rushing_camera(), settings);
+    settings.body = PathBody::Wavefront;
+    Queue queue = test::queue_asked_for();
+    CHECK(picture_of(queue, moving.prepared(), rushing_camera(), settings) == loop);
+    Session session(queue, moving.prepared(), rushing_camera(), settings);
+    session.render(settings.samples);
+    CHECK(test::render_hash({.picture = session.picture()}) == without);
+}

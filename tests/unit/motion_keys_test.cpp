@@ -1,0 +1,132 @@
+// Rigid motions while a shutter is open: keys that are fitted to places, where they lead between them, and the boxes of
+// all places taken.
+
+#include "math/motion_keys.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/support/random.h"
+
+using namespace pertev;
+
+namespace {
+
+Transform turned_about(Vec3 axis, float angle) {
+    const Vec3 half = std::sin(0.5f * angle) * normalize(axis);
+    return make_rotation(half.x, half.y, half.z, std::cos(0.5f * angle));
+}
+
+/// A box of one metre's size, put somewhere with a scale and a shear.
+PlacedBox skewed_box() {
+    Transform skew = make_scale({2, 0.5f, 1});
+    skew.row0.y = 0.4f;
+    const Transform place = compose(make_translation({3, -1, 2}), compose(turned_about({1, 2, 3}, 0.7f), skew));
+    return {place, {{-0.5f, -0.2f, -0.4f}, {0.6f, 0.3f, 0.4f}}};
+}
+
+MotionKeys keys_of(const FittedMotions& fitted) {
+    const Motion& motion = fitted.motions.front();
+    return {fitted.segments, motion.keys, {motion.pivot}, {0}};
+}
+
+double distance(Vec3 a, Vec3 b) { return static_cast<double>(length(a - b)); }
+
+} // namespace
+
+TEST_CASE("a motion leads a body to where it is at any time, and back") {
+    const PlacedBox box = skewed_box();
+    struct Case {
+        float turn, way;
+        uint32_t most_segments;
+    };
+    for (const Case c : {Case{0.05f, 0.1f, 1}, Case{1.2f, 2.0f, 16}, Case{6.2831853f, 0.0f, 64}}) {
+        CAPTURE(c.turn);
+        const auto place_at = [&](double time) {
+            const auto t = static_cast<float>(time);
+            const Transform about = compose(make_translation({c.way * t, 0.5f * c.way * t, 0}),
+                                            compose(make_translation({3, -1, 2}), turned_about({0, 1, 0.3f}, c.turn * t)));
+            return compose(about, compose(make_translation({-3, 1, -2}), box.world_from_local));
+        };
+        const FittedMotions fitted =
+            fit_motions({&box, 1}, [&](double time) { return std::vector{std::optional(place_at(time))}; });
+        CHECK(fitted.segments <= c.most_segments);
+        const MotionKeys keys = keys_of(fitted);
+        for (int i = 0; i <= 100; ++i) {
+            const float time = 0.01f * static_cast<float>(i);
+            const RigidMotion motion = keys.view().at(0, time);
+            const Transform wanted = place_at(static_cast<double>(time));
+            for (const Vec3 local : {box.box.lo, box.box.hi, Vec3{0.6f, -0.2f, 0.4f}}) {
+                const Vec3 rest = transform_point(box.world_from_local, local), now = motion.move(rest);
+                CHECK(distance(now, transform_point(wanted, local)) < 0.002);
+                CHECK(distance(motion.move_back(now), rest) < static_cast<double>(2 * motion.error(rest)));
+            }
+            const Vec3 along = {0.3f, -0.2f, 0.9f};
+            CHECK(distance(motion.turn_back(motion.turn(along)), along) < 1e-6);
+            CHECK(length(motion.turn(along)) == doctest::Approx(length(along)).epsilon(1e-6));
+        }
+        const RigidMotion at_rest = keys.view().at(0, kAtRest);
+        CHECK(at_rest.move({1, 2, 3}) == Vec3{1, 2, 3});
+    }
+}
+
+TEST_CASE("what stands still has no keys, and what is no rigid motion is left out") {
+    const PlacedBox box = skewed_box();
+    const FittedMotions still =
+        fit_motions({&box, 1}, [&](double) { return std::vector{std::optional(box.world_from_local)}; });
+    CHECK(still.segments == 1);
+    CHECK(still.motions.front().keys.empty());
+
+    const auto grown = [&](double time) {
+        const auto t = static_cast<float>(time);
+        return std::optional(compose(make_translation({t, 0, 0}), compose(box.world_from_local, make_scale({1 + t, 1, 1}))));
+    };
+    const FittedMotions fitted = fit_motions({&box, 1}, [&](double time) { return std::vector{grown(time)}; });
+    const RigidMotion end = keys_of(fitted).view().at(0, 1);
+    const Vec3 middle = box.box.centre();
+    CHECK(distance(end.move(transform_point(box.world_from_local, middle)), transform_point(*grown(1), middle)) < 1e-5);
+    const Vec3 a = transform_point(box.world_from_local, box.box.lo), b = transform_point(box.world_from_local, box.box.hi);
+    CHECK(distance(end.move(a), end.move(b)) == doctest::Approx(distance(a, b)).epsilon(1e-5)); // not grown
+
+    // Where there is no place at a time, it is as at the time before.
+    const FittedMotions gone = fit_motions({&box, 1}, [&](double time) {
+        return std::vector{time > 0.4 ? std::nullopt : std::optional(box.world_from_local)};
+    });
+    CHECK(gone.motions.front().keys.empty());
+}
+
+TEST_CASE("the swept box holds every place that a body takes") {
+    const PlacedBox box = skewed_box();
+    test::Random random(7);
+    for (int round = 0; round < 40; ++round) {
+        CAPTURE(round);
+        const Vec3 axis = {random.within(-1, 1), random.within(-1, 1), random.within(-1, 1)};
+        const float turn = random.within(0, 8);
+        const Vec3 way = {random.within(-3, 3), random.within(-3, 3), random.within(-3, 3)};
+        const FittedMotions fitted = fit_motions({&box, 1}, [&](double time) {
+            const auto t = static_cast<float>(time);
+            return std::vector{std::optional(
+                compose(make_translation(t * way), compose(turned_about(axis, turn * t), box.world_from_local)))};
+        });
+        const MotionKeys keys = keys_of(fitted);
+        Bounds3 rest;
+        for (int corner = 0; corner < 8; ++corner) {
+            rest.extend(transform_point(box.world_from_local, {corner & 1 ? box.box.hi.x : box.box.lo.x,
+                                                               corner & 2 ? box.box.hi.y : box.box.lo.y,
+                                                               corner & 4 ? box.box.hi.z : box.box.lo.z}));
+        }
+        const Bounds3 swept = swept_bounds(keys, 0, rest);
+        bool holds_all = true;
+        for (int i = 0; i < 4000; ++i) {
+            const Vec3 p = {random.within(rest.lo.x, rest.hi.x), random.within(rest.lo.y, rest.hi.y),
+                            random.within(rest.lo.z, rest.hi.z)};
+            const Vec3 at = keys.view().at(0, random.within(0, 1)).move(p);
+            Bounds3 with = swept;
+            with.extend(at);
+            holds_all = holds_all && with == swept;
+        }
+        CHECK(holds_all);
+        CHECK(max_component(swept.size()) < 4 * (max_component(abs(way)) + 3 * max_component(rest.size()) + 10));
+    }
+}
