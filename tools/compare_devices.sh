@@ -17,6 +17,8 @@ hash_of() { # device, spp, scene and its flags
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+here=$(cd "$(dirname "$0")" && pwd)
+python3 "$here/make_moving_box.py" "$work/box.gltf"
 for spp in "${counts[@]}"; do
     while read -r name arguments; do
         # shellcheck disable=SC2086 # the arguments are words
@@ -46,6 +48,9 @@ light-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator light --ape
 bidirectional $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator bidirectional
 bidirectional-sky $scenes/crytek-sponza/sponza.obj --integrator bidirectional --max-depth 6
 layers $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --lpe seen=LE --lpe diffuse=L.*DE --lpe glossy=L.*[GS]E
+blurred $work/box.gltf --time 1 --shutter 0.2
+blurred-distributed $work/box.gltf --time 1 --shutter=-0.1,0.1 --integrator distributed
+blurred-camera $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
 LIST
 done
 
@@ -56,8 +61,6 @@ frame_of() {
     "$pertev" bench sequence "$@" --device "$device" --size 320x240 -q --json 2>&1 |
         sed -n 's/.*"last_frame":"\([0-9a-f]*\)".*/\1/p'
 }
-here=$(cd "$(dirname "$0")" && pwd)
-python3 "$here/make_moving_box.py" "$work/box.gltf"
 while read -r name arguments; do
     # shellcheck disable=SC2086 # the arguments are words
     cpu=$(frame_of cpu $arguments) cuda=$(frame_of cuda $arguments)

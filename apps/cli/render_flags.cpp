@@ -191,8 +191,7 @@ void check_motion_flags(const RenderFlags& flags) {
     if (const auto open = shutter(flags)) {
         refuse(!flags.time_s && flags.frames.empty(),
                "--shutter: it is open about a time; say --time S, or --frames A-B");
-        refuse(open->close_s < open->open_s,
-               fmt::format("--shutter {}: it closes before it opens", flags.shutter));
+        refuse(open->close_s < open->open_s, fmt::format("--shutter {}: it closes before it opens", flags.shutter));
         refuse(flags.turntable > 0 && flags.frames.empty(),
                "--shutter: with --turntable it needs to know how long a turn takes; say --frames A-B and --fps");
     }
@@ -211,7 +210,8 @@ void check_motion_flags(const RenderFlags& flags) {
 std::optional<Shutter> shutter(const RenderFlags& flags) {
     if (flags.shutter.empty()) return std::nullopt;
     const std::size_t comma = flags.shutter.find(',');
-    const std::optional<float> close = number_in(comma == std::string::npos ? flags.shutter : flags.shutter.substr(comma + 1));
+    const std::optional<float> close =
+        number_in(comma == std::string::npos ? flags.shutter : flags.shutter.substr(comma + 1));
     const std::optional<float> open = comma == std::string::npos ? 0.0f : number_in(flags.shutter.substr(0, comma));
     if (open && close && abs(*open) <= 1e6f && abs(*close) <= 1e6f) {
         return Shutter{static_cast<double>(*open), static_cast<double>(*close)};
@@ -389,10 +389,12 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("NAME=EXPRESSION")
         ->allow_extra_args(false)
         ->group("Picture");
-    verb.add_option("--shutter", flags.shutter,
-                    "what moves is blurred: the shutter is open for so long after the\ntime of the picture or frame, or "
-                    "from OPEN to CLOSE, counted\nfrom it (path, direct, indirect, distributed, whitted, cast)")
+    verb.add_option(
+            "--shutter", flags.shutter,
+            "what moves is blurred: the shutter is open for so long after the\ntime of the picture or frame, or "
+            "from OPEN to CLOSE, counted\nfrom it (path, direct, indirect, distributed, whitted, cast)")
         ->type_name("[OPEN,]SECONDS")
+        ->check([](const std::string& text) { return text.empty() ? "expected SECONDS, or OPEN,CLOSE" : ""; })
         ->group("Motion");
     verb.add_option("--time-limit", flags.time_limit_s, "stop after this time, at a whole sample")
         ->type_name("SECONDS")

@@ -31,8 +31,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
     SequenceRecord::Settings settings;
     for (const auto& [name, value] : settings_metadata(record)) {
         // They stand there only where they are; a run without them must be told apart from one with them.
-        constexpr std::string_view kSometimes[] = {"pertev.denoise",   "pertev.ambient",    "pertev.shading",
-                                                   "pertev.wireframe", "pertev.lpe",        "pertev.lamp",
+        constexpr std::string_view kSometimes[] = {"pertev.denoise",   "pertev.ambient",     "pertev.shading",
+                                                   "pertev.wireframe", "pertev.lpe",         "pertev.lamp",
                                                    "pertev.quantity",  "pertev.false_color", "pertev.shutter"};
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));

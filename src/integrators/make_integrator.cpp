@@ -176,8 +176,8 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     case IntegratorKind::Bidirectional:
         return WalksIntegrator<BothDirections>::predicted_bytes(walk_settings(settings), all, settings.batch);
     }
-    return tables + PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.light_paths != nullptr,
-                                                    has_times);
+    return tables +
+           PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.light_paths != nullptr, has_times);
 }
 
 } // namespace pertev

@@ -59,7 +59,7 @@ std::array<double, 4> quaternion_of(const Matrix& m) {
     const double four[4] = {1 + x - y - z, 1 - x + y - z, 1 - x - y + z, 1 + x + y + z}; // squares, four times
     const auto largest = static_cast<std::size_t>(std::max_element(four, four + 4) - four);
     const double twice = std::sqrt(four[largest]), part = 1 / (2 * twice);
-    const double from_sums[3] = {m[1].z + m[2].y, m[2].x + m[0].z, m[0].y + m[1].x}; // 4 yz, 4 zx, 4 xy
+    const double from_sums[3] = {m[1].z + m[2].y, m[2].x + m[0].z, m[0].y + m[1].x};        // 4 yz, 4 zx, 4 xy
     const double from_differences[3] = {m[2].y - m[1].z, m[0].z - m[2].x, m[1].x - m[0].y}; // 4 xw, 4 yw, 4 zw
     std::array<double, 4> q{};
     q[largest] = twice / 2;
@@ -110,9 +110,9 @@ bool is_near(const PlacedBox& thing, const Motion& fitted, uint32_t segments, do
     const RigidMotion now = motion_at(fitted.keys.data(), segments, fitted.pivot, static_cast<float>(time));
     const std::optional<Transform> one[] = {wanted};
     const Motion exact = motion_through(thing, one); // the nearest rigid one
-    const RigidMotion target =
-        exact.keys.empty() ? RigidMotion{}
-                           : motion_at(std::array{exact.keys[0], exact.keys[0]}.data(), 1, exact.pivot, 0.0f);
+    const RigidMotion target = exact.keys.empty()
+                                   ? RigidMotion{}
+                                   : motion_at(std::array{exact.keys[0], exact.keys[0]}.data(), 1, exact.pivot, 0.0f);
     double size = 0, off = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Bounds3& b = thing.box;
@@ -138,7 +138,8 @@ FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& pla
             for (std::size_t i = 0; i < things.size(); ++i) of_thing[i].push_back(now[i]);
         }
         fitted.motions.clear();
-        for (std::size_t i = 0; i < things.size(); ++i) fitted.motions.push_back(motion_through(things[i], of_thing[i]));
+        for (std::size_t i = 0; i < things.size(); ++i)
+            fitted.motions.push_back(motion_through(things[i], of_thing[i]));
         if (segments == kMostMotionSegments) return fitted;
         bool is_good = true;
         for (uint32_t quarter = 0; quarter < 4 * segments && is_good; ++quarter) {

@@ -21,7 +21,7 @@ inline constexpr uint32_t kNoMotion = 0xffffffffu;
 inline constexpr float kAtRest = -1; // for a time: everything is where it has been put
 
 struct MotionKey {
-    Vec4 turn; // unit quaternion (x, y, z, w); less than a quarter turn of four dimensions from the keys beside it
+    Vec4 turn;  // unit quaternion (x, y, z, w); less than a quarter turn of four dimensions from the keys beside it
     Vec3 place; // of the pivot, metres
     float unused = 0;
     bool operator==(const MotionKey&) const = default;
@@ -80,9 +80,9 @@ struct MotionTrack {
 
 /// Those of a scene's instances. Plain pointers, host's or device's; null where nothing moves.
 struct MotionsView {
-    const MotionKey* keys = nullptr;        // [motions * (segments + 1)]
-    const Vec3* pivots = nullptr;           // [motions]
-    const uint32_t* of_instance = nullptr;  // [instances] number of its motion, or kNoMotion
+    const MotionKey* keys = nullptr;       // [motions * (segments + 1)]
+    const Vec3* pivots = nullptr;          // [motions]
+    const uint32_t* of_instance = nullptr; // [instances] number of its motion, or kNoMotion
     uint32_t segments = 0;
 
     HD bool is_there() const { return keys != nullptr; }

@@ -31,8 +31,8 @@ HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint3
     return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
 }
 
-/// Where a ray begins and where it goes, as an instance meets it that has moved. Out of line: no still instance pays for
-/// it.
+/// Where a ray begins and where it goes, as an instance meets it that has moved. Out of line: no still instance pays
+/// for it.
 struct MovedLine {
     Vec3 origin, direction;
 };

@@ -24,8 +24,8 @@ struct PrepareOptions {
     std::optional<BvhBuilder> builder;   // of the trees; none = that of `tracers`, else of default ones
     /// Where the cache holds a tree of a better TreeBuild than this one, take that.
     bool may_be_better = false;
-    bool keep_coordinates = false; // the world is the file's: for rays that are given in its coordinates
-    std::optional<Vec3> centre;    // of the moved world, in place of the scene's own (world_centre)
+    bool keep_coordinates = false;             // the world is the file's: for rays that are given in its coordinates
+    std::optional<Vec3> centre;                // of the moved world, in place of the scene's own (world_centre)
     std::shared_ptr<const MotionKeys> motions; // PreparedScene's
 };
 
@@ -41,10 +41,10 @@ struct PreparedScene {
     /// Of meshes whose vertices move, by Scene::shapes; those that are not on the host are at rest in all of the above.
     /// For whoever has such meshes (session/moving_scene.h); empty: no vertex moves.
     std::vector<MeshPose> poses;
-    std::vector<uint32_t> tree_of_mesh; // MeshPlacement's
-    std::vector<PlacedBvh> placed;      // what top_level is built of
+    std::vector<uint32_t> tree_of_mesh;        // MeshPlacement's
+    std::vector<PlacedBvh> placed;             // what top_level is built of
     std::shared_ptr<const MotionKeys> motions; // of instances while a shutter is open, moved world; null: none moves
-    double build_seconds = 0;           // placement, trees (built or read from the cache), structures asked for at once
+    double build_seconds = 0; // placement, trees (built or read from the cache), structures asked for at once
 };
 
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);

@@ -14,12 +14,12 @@ namespace pertev {
 /// What may change of a scene by itself. A set of them is an uint32_t.
 enum ScenePart : uint32_t {
     kPartGeometry = 1,  // meshes
-    kPartInstances = 2, // where they are and how they move, and the world's centre; of their materials, whether they have alpha and hide
-                        // their backs
-    kPartMaterials = 4, // all else of materials; what they emit is in the lights too
-    kPartTextures = 8,  // images
-    kPartLights = 16,   // near and far ones, and how often each is drawn, but for the environment's own
-    kPartTrees = 32,    // not here: a tracer's (render/tracer/)
+    kPartInstances = 2, // where they are and how they move, and the world's centre; of their materials, whether they
+                        // have alpha and hide their backs
+    kPartMaterials = 4,    // all else of materials; what they emit is in the lights too
+    kPartTextures = 8,     // images
+    kPartLights = 16,      // near and far ones, and how often each is drawn, but for the environment's own
+    kPartTrees = 32,       // not here: a tracer's (render/tracer/)
     kPartEnvironment = 64, // its pixels, and the tables that draw one; with another environment go the lights too
     kPartShapes = 128, // what the vertices of meshes that move are made of, which never changes; geometry goes with it
     kPartPoses = 256,  // PreparedScene::poses: how these vertices stand

@@ -80,15 +80,17 @@ void check_integrator(const RenderSettings& settings) {
 
 void check_shutter(const RenderSettings& settings) {
     if (!has_shutter(settings.integrator)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--shutter: rays have a time in --integrator path, direct, indirect, distributed, whitted "
-                                "and cast, not in {}",
-                                integrator_name(settings)));
+        throw Error(
+            ErrorCode::BadInput,
+            fmt::format("--shutter: rays have a time in --integrator path, direct, indirect, distributed, whitted "
+                        "and cast, not in {}",
+                        integrator_name(settings)));
     }
     if (settings.denoise == Denoise::None) return;
-    throw Error(ErrorCode::BadInput, fmt::format("--shutter: --denoise {} takes what a pixel sees for one surface, which "
-                                                 "it is not where something moves; leave out one of them",
-                                                 name_of(settings.denoise)));
+    throw Error(ErrorCode::BadInput,
+                fmt::format("--shutter: --denoise {} takes what a pixel sees for one surface, which "
+                            "it is not where something moves; leave out one of them",
+                            name_of(settings.denoise)));
 }
 
 void check_camera(const RenderSettings& settings, const Camera& camera) {

@@ -11,10 +11,10 @@
 namespace pertev {
 
 struct FrameSequence {
-    uint32_t first = 0, last = 0; // both are frames; first <= last
-    std::optional<double> fps;    // frames a second; none: all frames are of one time
-    std::optional<double> time_s; // that time; none: at rest
-    uint32_t turntable = 0;       // frames that the camera takes to go round once; 0: it does not
+    uint32_t first = 0, last = 0;   // both are frames; first <= last
+    std::optional<double> fps;      // frames a second; none: all frames are of one time
+    std::optional<double> time_s;   // that time; none: at rest
+    uint32_t turntable = 0;         // frames that the camera takes to go round once; 0: it does not
     std::optional<Shutter> shutter; // at each frame's time; none: a frame is of one moment
 
     uint32_t count() const { return last - first + 1; }

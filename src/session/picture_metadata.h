@@ -12,6 +12,7 @@
 #include "session/choose_camera.h"
 #include "session/open_scene.h"
 #include "session/render_settings.h"
+#include "session/shutter.h"
 
 namespace pertev {
 

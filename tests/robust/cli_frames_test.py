@@ -110,7 +110,7 @@ class MovingPictures(CliTest):
             self.assertNotEqual(self.hash_at(*moved, "--shutter", "0.5"), self.hash_at(*moved))
         self.succeed("render", "m.gltf", "-o", "x.exr", "--size", "8x8", "--spp", "1", "--device", "cpu", "--time", "1",
                      "--shutter=-0.25,0.5")
-        info = json.loads(self.succeed("info", "x.exr", "--json").stdout)
+        info = self.info("x.exr")
         self.assertEqual(info["pertev.shutter"], "-0.25,0.5")
         self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0.1")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-1", "--fps", "2", "--continue",

@@ -45,8 +45,9 @@ TEST_CASE("a motion leads a body to where it is at any time, and back") {
         CAPTURE(c.turn);
         const auto place_at = [&](double time) {
             const auto t = static_cast<float>(time);
-            const Transform about = compose(make_translation({c.way * t, 0.5f * c.way * t, 0}),
-                                            compose(make_translation({3, -1, 2}), turned_about({0, 1, 0.3f}, c.turn * t)));
+            const Transform about =
+                compose(make_translation({c.way * t, 0.5f * c.way * t, 0}),
+                        compose(make_translation({3, -1, 2}), turned_about({0, 1, 0.3f}, c.turn * t)));
             return compose(about, compose(make_translation({-3, 1, -2}), box.world_from_local));
         };
         const FittedMotions fitted =
@@ -80,13 +81,15 @@ TEST_CASE("what stands still has no keys, and what is no rigid motion is left ou
 
     const auto grown = [&](double time) {
         const auto t = static_cast<float>(time);
-        return std::optional(compose(make_translation({t, 0, 0}), compose(box.world_from_local, make_scale({1 + t, 1, 1}))));
+        return std::optional(
+            compose(make_translation({t, 0, 0}), compose(box.world_from_local, make_scale({1 + t, 1, 1}))));
     };
     const FittedMotions fitted = fit_motions({&box, 1}, [&](double time) { return std::vector{grown(time)}; });
     const RigidMotion end = keys_of(fitted).view().at(0, 1);
     const Vec3 middle = box.box.centre();
     CHECK(distance(end.move(transform_point(box.world_from_local, middle)), transform_point(*grown(1), middle)) < 1e-5);
-    const Vec3 a = transform_point(box.world_from_local, box.box.lo), b = transform_point(box.world_from_local, box.box.hi);
+    const Vec3 a = transform_point(box.world_from_local, box.box.lo),
+               b = transform_point(box.world_from_local, box.box.hi);
     CHECK(distance(end.move(a), end.move(b)) == doctest::Approx(distance(a, b)).epsilon(1e-5)); // not grown
 
     // Where there is no place at a time, it is as at the time before.

@@ -56,8 +56,7 @@ TopLevelBvh build_top_level_bvh(std::span<const PlacedBvh> instances) {
         const bool moves = placed.motion != kNoMotion;
         if (moves) world = swept(world, placed);
         references.push_back({world.bounds.lo, static_cast<uint32_t>(references.size()), world.bounds.hi});
-        top.instances.push_back(
-            {inverse(placed.world_from_local), placed.mesh_bvh, placed.instance, placed.motion});
+        top.instances.push_back({inverse(placed.world_from_local), placed.mesh_bvh, placed.instance, placed.motion});
         top.reach = max(top.reach, world.reach);
         top.growth = max(top.growth, 2 * condition_number(placed.world_from_local) + (moves ? 16.0f : 0.0f));
     }

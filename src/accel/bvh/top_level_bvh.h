@@ -17,8 +17,8 @@ inline constexpr int kMaxTopLevelDepth = 32; // inner nodes on any way down; 2^3
 
 struct alignas(16) InstanceRecord {
     Transform local_from_world;
-    uint32_t mesh_bvh = 0; // index into SceneBvhView::meshes
-    uint32_t instance = 0; // scene order
+    uint32_t mesh_bvh = 0;       // index into SceneBvhView::meshes
+    uint32_t instance = 0;       // scene order
     uint32_t motion = kNoMotion; // while the shutter is open: from where local_from_world has it
     uint32_t unused = 0;
 };

@@ -125,7 +125,8 @@ std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bo
                                             bool has_times) {
     constexpr std::size_t without = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
                                     sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
-    const std::size_t of_path = without + (has_layers ? LayerQueueView::kBytesOfPath : 0) + (has_times ? 2 * sizeof(float) : 0);
+    const std::size_t of_path =
+        without + (has_layers ? LayerQueueView::kBytesOfPath : 0) + (has_times ? 2 * sizeof(float) : 0);
     const Size size = size_for(samples, batch, on_cuda);
     return static_cast<std::size_t>(size.wavefronts) * (of_path * size.capacity + 2 * sizeof(RoundCounts)) +
            sizeof(RenderCounts);

@@ -110,11 +110,11 @@ private:
         Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
         Buffer<uint32_t> path_keys, shadow_keys;
         Buffer<Float4> contribution, hit_places;
-        Buffer<Float4> shadow_diffuse; // where frames split light
-        Buffer<Float4> shadow_sent;    // where frames tell their first bounce
+        Buffer<Float4> shadow_diffuse;          // where frames split light
+        Buffer<Float4> shadow_sent;             // where frames tell their first bounce
         Buffer<float> path_times, shadow_times; // where something moves while the shutter is open
-        Buffer<Float4> layer_diffuse;  // where there are layers
-        Buffer<Uint4> layer_parts;     // likewise
+        Buffer<Float4> layer_diffuse;           // where there are layers
+        Buffer<Uint4> layer_parts;              // likewise
         Buffer<uint32_t> hit_instances;
         Buffer<RoundCounts> counts; // of two rounds in turns
         Readback<RoundCounts> seen; // of the round given last, at its start

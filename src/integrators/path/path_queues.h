@@ -27,7 +27,9 @@ struct PathQueueView {
     float* times;    // RayQueueView's, as the keys; null unless something moves while the shutter is open
 
     /// Of the rays at places 0, 1, ..., or back from `last`.
-    RayQueueView query() const { return {.rays = rays, .starts = starts, .keys = keys, .times = times, .is_endless = true}; }
+    RayQueueView query() const {
+        return {.rays = rays, .starts = starts, .keys = keys, .times = times, .is_endless = true};
+    }
     RayQueueView query_back(uint32_t last) const {
         return {.rays = rays + last,
                 .starts = starts + last,

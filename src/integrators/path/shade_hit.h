@@ -229,10 +229,10 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     }
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
-        const float light_pdf = light == kNoLight ? 0.0f
-                                : moves           ? pdf_light_hit_at(scene, light, hit.instance, path.origin,
-                                                                     surface.position, path.time)
-                                        : pdf_light_hit(scene.lights, light, path.origin, surface.position);
+        const float light_pdf =
+            light == kNoLight ? 0.0f
+            : moves           ? pdf_light_hit_at(scene, light, hit.instance, path.origin, surface.position, path.time)
+                              : pdf_light_hit(scene.lights, light, path.origin, surface.position);
         if (leaves_light && path.depth == 1 && light_pdf > 0) {
             left.light[path.pixel] = {hit.instance, hit.primitive, hit.u, hit.v};
         } else {
@@ -248,8 +248,9 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     // With coat or sheen on top, what leaves it in one direction says little of another.
     const bool is_bounce = tells_bounce && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
     if (is_bounce) begin_bounce(left, path, hit, true);
-    wants_shadow = !(leaves_light && path.depth == 0) &&
-                   ask_for_light<kKnown, kMoves>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
+    wants_shadow =
+        !(leaves_light && path.depth == 0) &&
+        ask_for_light<kKnown, kMoves>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
     if (tells_bounce && wants_shadow && !is_bounce) {
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }

@@ -39,8 +39,7 @@ struct BeginTrees {
         ray.direction = line.direction;
         trees.states[i] = state;
         trees.store_ray(i, 0, ray);
-        trees.queue_ray(i, i, ray, tree_key(state, settings.seed, 0, false),
-                        camera.time(settings.sampler, key), 0);
+        trees.queue_ray(i, i, ray, tree_key(state, settings.seed, 0, false), camera.time(settings.sampler, key), 0);
     }
 };
 
@@ -95,9 +94,9 @@ private:
                 const uint32_t light =
                     ray.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
                 add_emission(state, ray, surface.emission,
-                             light != kNoLight ? pdf_light_hit_at(scene, light, hit.instance, ray.origin,
-                                                                  surface.position, time)
-                                               : 0.0f);
+                             light != kNoLight
+                                 ? pdf_light_hit_at(scene, light, hit.instance, ray.origin, surface.position, time)
+                                 : 0.0f);
             }
         }
         if (surface.is_unlit || ray.depth >= settings.max_depth) return;

@@ -148,9 +148,8 @@ public:
             scene_.top_nodes, scene_.top_root, boxes, limits_, alive_, counter_, [&](uint32_t link, unsigned mask) {
                 const InstanceRecord& record = scene_.instances[link & ~kLeafBit];
                 RayPacket local;
-                for_each(mask, [&](std::size_t k) {
-                    local[k] = ray_in_instance(record, rays_[k], visitors_[k].accept);
-                });
+                for_each(mask,
+                         [&](std::size_t k) { local[k] = ray_in_instance(record, rays_[k], visitors_[k].accept); });
                 walk_mesh(scene_.meshes[record.mesh_bvh], local, record.instance, mask);
             });
     }
