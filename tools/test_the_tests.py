@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The test of the tests: breaks the renderer in one known way at a time and sees which tests notice.
 
-The ways are those of tools/mutations.py. Works on a copy of the tree under build-mutations/, which holds only the test files that are named below, with a build
-folder of its own (with ccache it takes minutes). Each mutation replaces text that must be there exactly once, so a
-patch that no longer applies is found; then the tests named for it run, and each of them must fail. Without a mutation
-all of them must pass, and that is tried first.
+The ways are those of tools/mutations.py. Works on a copy of the tree under build-mutations/, which holds only the test
+files that they name, with a build folder of its own (with ccache it takes minutes). Each mutation replaces text that
+must be there exactly once, so a patch that no longer applies is found; then the tests named for it run, and each of
+them must fail. Without a mutation all of them must pass, and that is tried first.
 
 `tools/test_the_tests.py [NAME ...]` runs the mutations of these names only, `--list` names them all, `--check` tells in
 a moment whether all of them still apply. Prints a table, and exits 1 when a mutation went unnoticed by a test named for
