@@ -99,18 +99,20 @@ SurfaceSize size_of(const Scene& scene, const Instance& instance) {
     return size;
 }
 
-/// The material of an instance, its own.
-Material& own_material(Scene& scene, std::size_t index) {
+/// The material of an instance, its own. `users`: instances of each material.
+Material& own_material(Scene& scene, std::size_t index, std::vector<uint32_t>& users) {
     const uint32_t material = scene.instances[index].material;
-    const auto is_of_it = [&](const Instance& other) { return other.material == material; };
-    if (std::ranges::count_if(scene.instances, is_of_it) > 1) {
+    if (users[material] > 1) {
+        --users[material];
+        users.push_back(1);
         scene.materials.push_back(scene.materials[material]);
         scene.instances[index].material = static_cast<uint32_t>(scene.materials.size() - 1);
     }
     return scene.materials[scene.instances[index].material];
 }
 
-void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene, std::size_t index) {
+void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene, std::size_t index,
+                 std::vector<uint32_t>& users) {
     const Instance& instance = scene.instances[index];
     const Material& before = scene.materials[instance.material];
     const bool has_texture = before.emission_texture.image != kNoImage;
@@ -131,7 +133,7 @@ void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene,
         const double faces = before.two_sided_emission ? 2 : 1;
         nits = lamp.unit == LampUnit::Candela ? lamp.value / size.area : lumens(lamp) / (kPiDouble * size.area * faces);
     }
-    Material& material = own_material(scene, index);
+    Material& material = own_material(scene, index, users);
     material.emission = with_luminance(lamp, material.emission, nits / lumens_per_watt);
 }
 
@@ -166,6 +168,8 @@ LampStrength parse_lamp(std::string_view text) {
 }
 
 void set_lamps(Scene& scene, std::span<const LampStrength> lamps, double lumens_per_watt) {
+    std::vector<uint32_t> users(scene.materials.size());
+    for (const Instance& instance : scene.instances) ++users[instance.material];
     for (const LampStrength& lamp : lamps) {
         std::vector<Names> all; // of what gives light
         bool is_found = false;
@@ -177,7 +181,7 @@ void set_lamps(Scene& scene, std::span<const LampStrength> lamps, double lumens_
         };
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
             if (!scene.materials[scene.instances[i].material].is_lamp()) continue;
-            if (is_called_so(names_of(scene, scene.instances[i]))) set_surface(lamp, lumens_per_watt, scene, i);
+            if (is_called_so(names_of(scene, scene.instances[i]))) set_surface(lamp, lumens_per_watt, scene, i, users);
         }
         for (Light& light : scene.lights) {
             if (is_called_so(names_of(scene, light))) set_light(lamp, lumens_per_watt, light);
