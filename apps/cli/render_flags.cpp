@@ -1,6 +1,8 @@
 #include "apps/cli/render_flags.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <initializer_list>
 #include <limits>
 
@@ -189,11 +191,11 @@ void check_motion_flags(const RenderFlags& flags) {
     refuse(flags.time_s && !flags.frames.empty(), "--time: with --frames every frame has its own; say --fps");
     refuse(flags.fps > 0 && flags.frames.empty(), "--fps: of frames; say --frames A-B");
     if (const auto open = shutter(flags)) {
-        refuse(!flags.time_s && flags.frames.empty(),
-               "--shutter: it is open about a time; say --time S, or --frames A-B");
         refuse(open->close_s < open->open_s, fmt::format("--shutter {}: it closes before it opens", flags.shutter));
         refuse(flags.turntable > 0 && flags.frames.empty(),
                "--shutter: with --turntable it needs to know how long a turn takes; say --frames A-B and --fps");
+        refuse(!flags.time_s && flags.frames.empty(),
+               "--shutter: it is open about a time; say --time S, or --frames A-B");
     }
     refuse(flags.goes_on && !is_sequence, "--continue: of a sequence; say --frames A-B or --turntable N");
     refuse(flags.time_limit_s > 0 && is_sequence,
@@ -207,15 +209,24 @@ void check_motion_flags(const RenderFlags& flags) {
     }
 }
 
+namespace {
+
+/// The number that `text` is from its first character to its last, of a size up to a million.
+std::optional<double> seconds_in(std::string_view text) {
+    double value = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (fault != std::errc() || end != text.data() + text.size() || !(std::fabs(value) <= 1e6)) return std::nullopt;
+    return value;
+}
+
+} // namespace
+
 std::optional<Shutter> shutter(const RenderFlags& flags) {
     if (flags.shutter.empty()) return std::nullopt;
     const std::size_t comma = flags.shutter.find(',');
-    const std::optional<float> close =
-        number_in(comma == std::string::npos ? flags.shutter : flags.shutter.substr(comma + 1));
-    const std::optional<float> open = comma == std::string::npos ? 0.0f : number_in(flags.shutter.substr(0, comma));
-    if (open && close && abs(*open) <= 1e6f && abs(*close) <= 1e6f) {
-        return Shutter{static_cast<double>(*open), static_cast<double>(*close)};
-    }
+    const std::optional<double> close = seconds_in(std::string_view(flags.shutter).substr(comma + 1)); // npos + 1: 0
+    const auto open = comma == std::string::npos ? 0.0 : seconds_in(std::string_view(flags.shutter).substr(0, comma));
+    if (open && close) return Shutter{*open, *close};
     throw Error(ErrorCode::BadInput,
                 fmt::format("--shutter {}: expected SECONDS, or OPEN,CLOSE, both counted from the picture's time",
                             flags.shutter));

@@ -25,6 +25,12 @@ std::string hash_of_file(const std::string& file) {
     return hasher.result().hex();
 }
 
+/// The numbers of --shutter, however they were written.
+std::string shutter_text(const RenderFlags& flags) {
+    const std::optional<Shutter> open = shutter(flags);
+    return open ? fmt::format("{},{}", open->open_s, open->close_s) : "";
+}
+
 /// All that decides the pictures: what the first frame's metadata say, and how the others follow.
 SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequence& sequence,
                                      const PictureRecord& record) {
@@ -49,7 +55,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"hash of --camera-path", hash_of_file(flags.camera_path)},
                                      {"hash of the scene's file", hash_of_file(flags.scene.scene)},
                                      {"hash of --environment", hash_of_file(flags.scene.environment)},
-                                     {"--shutter", flags.shutter},
+                                     {"--shutter", shutter_text(flags)},
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
@@ -88,7 +94,11 @@ std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
 /// Lets the camera of `frame` move while the shutter is open.
 void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& camera, Camera& moved) {
     const FrameSequence& sequence = camera.sequence;
-    const PlacedBox about_eye = {moved.world_from_camera, {{-1, -1, -1}, {1, 1, 1}}}; // metres
+    // As large as what it looks at is far, or the scene is small: by that it may be off.
+    const Bounds3 bounds = bounds_of(moving.scene());
+    const float size = bounds.is_empty() ? 1.0f : 0.5f * max_component(bounds.size());
+    const float half = max(0x1p-30f, min(1.0f, min(moved.focus_distance, size)));
+    const PlacedBox about_eye = {moved.world_from_camera, {{-half, -half, -half}, {half, half, half}}};
     const FittedMotions fitted = fit_motions({&about_eye, 1}, [&](double share) {
         const double time_s = sequence.shutter->time_at(sequence.time_of(frame).value(), share);
         Scene cameras; // nothing else of a scene moves a camera

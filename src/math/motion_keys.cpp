@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "math/double_vec3.h"
 
@@ -123,32 +124,43 @@ bool is_near(const PlacedBox& thing, const Motion& fitted, uint32_t segments, do
         size = std::max(size, dot(from_pivot, from_pivot));
         off = std::max(off, dot(by, by));
     }
-    return off <= kTolerance * kTolerance * size;
+    const double rounding = 0x1p-21 * static_cast<double>(max_component(abs(now.place)));
+    return std::sqrt(off) <= kTolerance * std::sqrt(size) + rounding;
 }
 
 } // namespace
 
-FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& places_at) {
+FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& places_at, std::span<const double> looks) {
+    std::map<double, std::vector<std::optional<Transform>>> known; // by time: keys of few segments are keys of many
+    const auto places = [&](double time) -> const std::vector<std::optional<Transform>>& {
+        const auto [at, is_new] = known.try_emplace(time);
+        if (is_new) at->second = places_at(time);
+        return at->second;
+    };
     FittedMotions fitted;
-    for (fitted.segments = 1;; fitted.segments *= 2) {
+    const auto is_good_at = [&](double time) {
+        const auto& now = places(time);
+        for (std::size_t i = 0; i < things.size(); ++i) {
+            if (now[i] && !is_near(things[i], fitted.motions[i], fitted.segments, time, *now[i])) return false;
+        }
+        return true;
+    };
+    for (fitted.segments = kFewestMotionSegments;; fitted.segments *= 2) {
         const uint32_t segments = fitted.segments;
         std::vector<std::vector<std::optional<Transform>>> of_thing(things.size());
         for (uint32_t k = 0; k <= segments; ++k) {
-            const auto now = places_at(static_cast<double>(k) / segments);
+            const auto& now = places(static_cast<double>(k) / segments);
             for (std::size_t i = 0; i < things.size(); ++i) of_thing[i].push_back(now[i]);
         }
         fitted.motions.clear();
-        for (std::size_t i = 0; i < things.size(); ++i)
+        for (std::size_t i = 0; i < things.size(); ++i) {
             fitted.motions.push_back(motion_through(things[i], of_thing[i]));
+        }
         if (segments == kMostMotionSegments) return fitted;
-        bool is_good = true;
-        for (uint32_t quarter = 0; quarter < 4 * segments && is_good; ++quarter) {
-            if (quarter % 4 == 0) continue; // a key
-            const double time = quarter / (4.0 * segments);
-            const auto now = places_at(time);
-            for (std::size_t i = 0; i < things.size() && is_good; ++i) {
-                is_good = !now[i] || is_near(things[i], fitted.motions[i], segments, time, *now[i]);
-            }
+        bool is_good = std::ranges::all_of(looks, is_good_at);
+        for (uint32_t k = 0; k < segments && is_good; ++k) {
+            // No even parts of a segment: what comes back in such parts would be seen at its ends alone.
+            for (const double part : {0.21, 0.5, 0.83}) is_good = is_good && is_good_at((k + part) / segments);
         }
         if (is_good) return fitted;
     }

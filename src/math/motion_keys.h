@@ -14,7 +14,7 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMostMotionSegments = 64;
+inline constexpr uint32_t kFewestMotionSegments = 8, kMostMotionSegments = 64;
 
 /// Something whose motion is asked for: a box in its own space, and where it has been put.
 struct PlacedBox {
@@ -38,8 +38,10 @@ using PlacesAt = std::function<std::vector<std::optional<Transform>>(double time
 
 /// The rigid motions that take each thing from where it has been put to where it is. What is no rigid motion of it (its
 /// scale, its shear) stays as it has been put: the nearest rotation is taken. Segments are as many, a power of two, as
-/// keep all corners within 2^-11 of the box's size of where they are, but at most kMostMotionSegments.
-FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& places_at);
+/// keep all corners within 2^-11 of the box's size of where they are, at several times between the keys and at the
+/// times `looks`, but at most kMostMotionSegments.
+FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& places_at,
+                          std::span<const double> looks = {});
 
 /// The motions of a scene's instances.
 struct MotionKeys {
@@ -51,7 +53,8 @@ struct MotionKeys {
     MotionsView view() const { return {keys.data(), pivots.data(), of_instance.data(), segments}; }
 };
 
-/// Box of all places that `box`, put at `world_from_local`, takes with motion number `motion`, rounded outwards.
+/// Box of all places that what is in `box_in_world`, where it has been put, takes with motion number `motion`, rounded
+/// outwards.
 Bounds3 swept_bounds(const MotionKeys& motions, uint32_t motion, const Bounds3& box_in_world);
 
 } // namespace pertev

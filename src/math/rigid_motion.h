@@ -39,11 +39,12 @@ struct RigidMotion {
     HD Vec3 move(Vec3 p) const { return turn(p - pivot) + place; }
     HD Vec3 move_back(Vec3 p) const { return turn_back(p - place) + pivot; }
 
-    /// Bound of the rounding of move() and move_back() of `p`, of either side, in units of length, for all components:
-    /// rows are off by 6 units of 2^-24, a turn adds 3 and the sums 2, each of at most all lengths together.
+    /// Bound of the rounding of move() of `p` and of move_back() of what came of it, together, for all components,
+    /// metres: for each, rows are off by 6 units of 2^-24, a turn adds 3 and the sums 2, of at most all lengths
+    /// together.
     HD float error(Vec3 p) const {
         const auto size = [](Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); };
-        return 0x1p-20f * (size(p) + size(pivot) + size(place));
+        return 0x1p-19f * (size(p) + size(pivot) + size(place));
     }
 };
 

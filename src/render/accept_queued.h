@@ -75,6 +75,7 @@ struct AcceptQueued {
                                u, v);
     }
     HD Ray move_back(uint32_t motion, const Ray& ray) const {
+        if (query.moving == nullptr) return ray;
         const int64_t place = query.rays.place(i);
         const float* const time = query.rays.times != nullptr ? query.rays.times + place : nullptr;
         const MovedLine line = moved_back(query.moving, motion, time, query.rays.rays + place);

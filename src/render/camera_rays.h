@@ -41,6 +41,8 @@ struct CameraRays {
     HD float time(SamplerKind sampler, SampleKey key) const {
         return is_open ? sample_1d(sampler, key, kGroupLens, kNumberTime) : kAtRest;
     }
+    /// `axis` at the time of a ray.
+    HD Vec3 axis_at(float time) const { return motion.moves() ? motion.at(time).turn(axis) : axis; }
     HD bool has_lens() const { return view.aperture_radius > 0; }
 
 private:

@@ -13,9 +13,9 @@ struct RayLine {
     Vec3 origin, direction; // unit
 };
 
-/// `surface` is what `hit` made.
+/// `surface` is what `hit` made. `time`: of the ray, while the shutter is open.
 HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample, const RayLine& ray, const Hit& hit,
-                             const Surface& surface, const PictureView& picture) {
+                             const Surface& surface, const PictureView& picture, float time = kAtRest) {
     add_channel(film, pixel, kFilmHits, 1.0f);
     if ((film.aovs & kAovAlbedo) != 0) {
         add_channels(film, pixel, channel_offset(film.aovs, kAovAlbedo),
@@ -28,7 +28,7 @@ HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t samp
     }
     if ((film.aovs & kAovDepth) != 0) {
         add_channel(film, pixel, channel_offset(film.aovs, kAovDepth),
-                    dot(surface.position - ray.origin, picture.camera.axis));
+                    dot(surface.position - ray.origin, picture.camera.axis_at(time)));
     }
     if ((film.aovs & kAovPosition) != 0) { // in the file's coordinates: the film adds both without rounding
         const uint32_t channel = channel_offset(film.aovs, kAovPosition);

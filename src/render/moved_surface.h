@@ -16,16 +16,25 @@ HD inline void move_surface(const RigidMotion& motion, Surface& surface) {
     frame = {motion.turn(frame.tangent), motion.turn(frame.bitangent), motion.turn(frame.normal)};
 }
 
-/// make_surface of a ray that has a time.
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
-HD inline Surface make_surface_at(const SceneView& scene, const Hit& hit, Vec3 direction, float time) {
-    const uint32_t number = scene.motions.of(hit.instance);
-    const bool moves = number != kNoMotion && time >= 0;
-    const RigidMotion motion = moves ? scene.motions.at(number, time) : RigidMotion{};
-    Surface surface = make_surface<kKnown>(scene, hit, moves ? motion.turn_back(direction) : direction);
-    if (moves) move_surface(motion, surface);
-    return surface;
-}
+/// Where the instance of a hit is at the time of the ray. What it has met is made where it was put, of the ray that
+/// leads there, and then moved:
+///     const MovedHit moved(scene, hit, time);
+///     Surface surface = make_surface(scene, hit, moved.back(direction));
+///     moved.move(surface);
+struct MovedHit {
+    bool moves;
+    RigidMotion motion;
+
+    HD MovedHit(const SceneView& scene, const Hit& hit, float time) {
+        const uint32_t number = scene.motions.of(hit.instance);
+        moves = number != kNoMotion && time >= 0;
+        if (moves) motion = scene.motions.at(number, time);
+    }
+    HD Vec3 back(Vec3 direction) const { return moves ? motion.turn_back(direction) : direction; }
+    HD void move(Surface& surface) const {
+        if (moves) move_surface(motion, surface);
+    }
+};
 
 /// For sample_light: where the lamps are at a time.
 struct LampsAt {

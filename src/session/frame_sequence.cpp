@@ -11,7 +11,7 @@ bool names_frames(const std::string& pattern) { return pattern.find('#', pattern
 double FrameSequence::turn_at(uint32_t frame, double share) const {
     if (turntable == 0) return 0;
     const double of_frame = shutter && fps ? shutter->time_at(0, share) * *fps : 0;
-    const double turns = (frame + of_frame) / turntable;
+    const double turns = (frame % turntable + of_frame) / turntable;
     return turns - std::floor(turns);
 }
 

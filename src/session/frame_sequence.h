@@ -22,12 +22,12 @@ struct FrameSequence {
     std::optional<double> time_of(uint32_t frame) const { return fps ? std::optional(frame / *fps) : time_s; }
     /// Share of a turn, in [0, 1).
     double turn_of(uint32_t frame) const { return turntable == 0 ? 0 : double(frame % turntable) / turntable; }
+    /// The same after `share` in [0, 1] of the time that the shutter is open.
+    double turn_at(uint32_t frame, double share) const;
     /// Of the frame before, also of the first one: motion vectors of a frame depend on no other that is rendered.
     std::optional<double> time_before(uint32_t frame) const {
         return fps ? std::optional((static_cast<double>(frame) - 1) / *fps) : time_s;
     }
-    /// The same after `share` in [0, 1] of the time that the shutter is open.
-    double turn_at(uint32_t frame, double share) const;
     double turn_before(uint32_t frame) const { return turntable == 0 ? 0 : turn_of(frame % turntable + turntable - 1); }
 };
 

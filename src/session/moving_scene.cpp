@@ -1,7 +1,12 @@
 #include "session/moving_scene.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
 
 #include "render/place_meshes.h"
 #include "render/scene_on_device.h"
@@ -21,6 +26,25 @@ void add_moving(const std::shared_ptr<const MotionKeys>& now, const std::shared_
     std::ranges::sort(update.moved_instances);
     const auto copies = std::ranges::unique(update.moved_instances);
     update.moved_instances.erase(copies.begin(), copies.end());
+}
+
+/// Shares of the time that the shutter is open at which an animation has a key, the first of many, and halfway between
+/// these.
+std::vector<double> keys_within(const Scene& scene, double time_s, const Shutter& shutter) {
+    constexpr std::size_t kMost = 64;
+    const double open_s = shutter.time_at(time_s, 0), length_s = shutter.close_s - shutter.open_s;
+    std::set<double> shares;
+    for (const Animation& animation : scene.animations) {
+        for (const AnimationChannel& channel : animation.channels) {
+            for (const float key_s : channel.times) {
+                const double share = (static_cast<double>(key_s) - open_s) / length_s;
+                if (share > 0 && share < 1 && shares.size() < kMost) shares.insert(share);
+            }
+        }
+    }
+    std::vector<double> looks(shares.begin(), shares.end());
+    for (std::size_t i = 0; i + 1 < shares.size(); ++i) looks.push_back(0.5 * (looks[i] + looks[i + 1]));
+    return looks;
 }
 
 } // namespace
@@ -50,15 +74,23 @@ std::shared_ptr<const MotionKeys> MovingScene::motions_at(double time_s) {
         things.push_back({moved_to(instance.world_from_local, *options_.centre), box});
         instances.push_back(i);
     }
-    const FittedMotions fitted = fit_motions(things, [&](double share) {
-        const PosedScene::Places places = posed_.places_at(shutter_->time_at(time_s, share));
+    const auto places_at = [&](double share) {
+        const double then_s = shutter_->time_at(time_s, share);
+        const PosedScene::Places places = posed_.places_at(then_s);
         std::vector<std::optional<Transform>> of_things;
         for (const uint32_t i : instances) {
             const std::optional<Transform>& place = places.instances[i];
+            if (place && !lies_near(*place, bounds_of(now.meshes[now.instances[i].mesh]))) {
+                throw Error(ErrorCode::OverLimit,
+                            fmt::format("instance {} lies further out than 2^40 metres at {} s, while the shutter is "
+                                        "open; scale the scene down",
+                                        i, then_s));
+            }
             of_things.push_back(place ? std::optional(moved_to(*place, *options_.centre)) : std::nullopt);
         }
         return of_things;
-    });
+    };
+    const FittedMotions fitted = fit_motions(things, places_at, keys_within(now, time_s, *shutter_));
     auto motions = std::make_shared<MotionKeys>();
     motions->segments = fitted.segments;
     motions->of_instance.assign(now.instances.size(), kNoMotion);

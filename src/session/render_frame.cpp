@@ -46,6 +46,9 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
                     fmt::format("--integrator {}: frames are reconstructed of path's samples alone",
                                 integrator_name(settings_)));
     }
+    if (!camera_.motion.empty() || scene_.value().view().motions.is_there()) {
+        throw Error(ErrorCode::BadInput, "--shutter: frames that are reconstructed are of one moment each");
+    }
     RenderSettings of_light = settings_of_frames(settings_);
     of_light.width = scaled_side(settings_.width, settings);
     of_light.height = scaled_side(settings_.height, settings);

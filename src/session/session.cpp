@@ -260,7 +260,12 @@ MotionTrack Session::motion_of(const Camera& camera, Vec3 centre) {
 void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples) {
     const PictureView picture = view_of(camera, settings); // first: it checks that there is a scene
     check_camera(settings, camera);
-    if (picture.camera.is_open) check_shutter(settings);
+    if (picture.camera.is_open) {
+        check_shutter(settings);
+        if (camera.projection == Projection::Cosine) {
+            throw Error(ErrorCode::BadInput, "--shutter: light is measured at one moment");
+        }
+    }
     const IntegratorSettings& wanted = settings;
     const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
     if (!stays) {

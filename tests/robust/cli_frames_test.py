@@ -109,12 +109,13 @@ class MovingPictures(CliTest):
             moved = ["--time", "1", "--integrator", integrator]
             self.assertNotEqual(self.hash_at(*moved, "--shutter", "0.5"), self.hash_at(*moved))
         self.succeed("render", "m.gltf", "-o", "x.exr", "--size", "8x8", "--spp", "1", "--device", "cpu", "--time", "1",
-                     "--shutter=-0.25,0.5")
+                     "--shutter=-0.25,0.1")
         info = self.info("x.exr")
-        self.assertEqual(info["pertev.shutter"], "-0.25,0.5")
+        self.assertEqual(info["pertev.shutter"], "-0.25,0.1")
         self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0.1")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-1", "--fps", "2", "--continue",
-                    "--shutter", "0.2", says=["the frames there were made with", '--shutter "0.1"'])
+                    "--shutter", "0.2", says=["the frames there were made with", '--shutter "0,0.1"'])
+        self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0,0.1", "--continue")
 
     def test_a_shutter_that_cannot_be_is_refused(self):
         def refuse(*arguments, says):

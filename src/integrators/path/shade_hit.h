@@ -218,14 +218,15 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
         return false;
     }
     const bool moves = kMoves && scene.motions.is_there();
-    Surface surface = kMoves ? make_surface_at<kKnown>(scene, hit, path.direction, path.time)
-                             : make_surface<kKnown>(scene, hit, path.direction);
+    const MovedHit moved(scene, hit, kMoves ? path.time : kAtRest);
+    Surface surface = make_surface<kKnown>(scene, hit, kMoves ? moved.back(path.direction) : path.direction);
+    if (kMoves) moved.move(surface);
     events.meets(surface, path.depth);
     if (is_frame) {
         if (path.depth == 0) store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
         if (path.depth == 1) film.frame.gloss[path.pixel].w = hit.t;
     } else if (path.depth == 0) {
-        add_first_hit(film, path.pixel, path.sample, {path.origin, path.direction}, hit, surface, picture);
+        add_first_hit(film, path.pixel, path.sample, {path.origin, path.direction}, hit, surface, picture, path.time);
     }
     if (!is_black(surface.emission)) {
         const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;

@@ -85,10 +85,13 @@ private:
     HD void shade(uint32_t tree, TreeState& state, const PendingRay& ray, const Hit& hit) const {
         const SceneView& scene = picture.scene;
         const float time = time_of(picture.camera, settings, state);
-        const Surface surface = make_surface_at(scene, hit, ray.direction, time);
+        const MovedHit moved(scene, hit, time);
+        Surface surface = make_surface(scene, hit, moved.back(ray.direction));
+        moved.move(surface);
         if (first_shadow == 0) {
             if (ray.depth == 0) {
-                add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
+                add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture,
+                              time);
             }
             if (!is_black(surface.emission)) {
                 const uint32_t light =
