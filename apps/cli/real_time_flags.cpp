@@ -8,29 +8,34 @@
 #include "base/error.h"
 
 namespace pertev {
+namespace {
+
+constexpr const char* kGroup = "In real time";
+
+} // namespace
 
 void add_real_time_flags(CLI::App& verb, RenderFlags& flags) {
-    const std::string group = "In real time";
-    CLI::Option* real_time =
-        verb.add_flag(
-                "--real-time", flags.real_time,
-                "frames as pertev view shows them while it moves: one sample a\npixel each, reconstructed with the "
-                "frames before (--spp is 1)")
-            ->group(group);
-    add_reconstruction_flags(verb, flags.reconstruction, group);
-    const auto is_of_group = [&](const CLI::Option* option) {
-        return option->get_group() == group && option != real_time;
-    };
-    for (CLI::Option* option : verb.get_options()) {
-        if (is_of_group(option)) option->needs(real_time);
+    verb.add_flag("--real-time", flags.real_time,
+                  "frames as pertev view shows them while it moves: one sample a\npixel each, reconstructed with the "
+                  "frames before (--spp is 1);\nthe flags below are of such frames alone")
+        ->group(kGroup);
+    add_reconstruction_flags(verb, flags.reconstruction, kGroup);
+}
+
+void note_real_time_flags(const CLI::App& verb, RenderFlags& flags) {
+    if (flags.real_time && verb.count("--spp") == 0) flags.samples = 1;
+    for (const CLI::Option* option : verb.get_options()) {
+        if (option->get_group() == kGroup && option->count() > 0) flags.real_time_flag = option->get_name();
     }
 }
 
 void check_real_time_flags(const RenderFlags& flags) {
-    if (!flags.real_time) return;
     const auto refuse = [](bool is_wrong, const std::string& why) {
         if (is_wrong) throw Error(ErrorCode::BadInput, why);
     };
+    refuse(!flags.real_time && !flags.real_time_flag.empty(),
+           fmt::format("{}: of frames in real time; say --real-time", flags.real_time_flag));
+    if (!flags.real_time) return;
     refuse(!frame_sequence(flags),
            "--real-time: a frame is made of those before it; say --frames A-B or --turntable N");
     refuse(flags.samples != 1, fmt::format("--spp {}: a frame of --real-time has one sample a pixel", flags.samples));

@@ -9,6 +9,7 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/real_time_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
@@ -116,7 +117,7 @@ void add_render_command(CLI::App& app, int& status) {
     const auto flags = std::make_shared<RenderFlags>();
     add_render_flags(verb, *flags);
     verb.callback([&verb, flags, &status] {
-        if (flags->real_time && verb.count("--spp") == 0) flags->samples = 1;
+        note_real_time_flags(verb, *flags);
         status = render(*flags);
     });
 }

@@ -36,6 +36,7 @@ struct RenderFlags {
     uint32_t turntable = 0;
     bool goes_on = false; // --continue
     bool real_time = false;
+    std::string real_time_flag;         // one that was given of those that are of such frames alone; empty: none
     ReconstructionFlags reconstruction; // of frames in real time
     std::string integrator{integrator_name({})}, sampler{name_of(PathSettings{}.sampler)},
         filter{name_of(RenderSettings{}.filter)}, denoise{name_of(RenderSettings{}.denoise)};

@@ -160,8 +160,9 @@ class RealTime(CliTest):
                            (f"{motion} --transparent", "--transparent"), (f"{motion} --lpe d=LDE", "--lpe"),
                            (f"{motion} --aov motion", "--aov motion"),
                            (f"{motion} --false-color illuminance --false-color-range 1,2", "--false-color illuminance"),
-                           (f"{motion} --time-limit 1", "--time-limit"), ("--frames 0-1 --passes 5", "--passes requires"),
-                           ("--frames 0-1 --restir gi", "--restir requires --real-time")]:
+                           (f"{motion} --time-limit 1", "--time-limit"), ("--frames 0-1 --passes 5", "--passes: of frames in real time; say --real-time"),
+                           ("--frames 0-1 --restir gi", "--restir: of frames in real time"),
+                           ("--no-anti-alias", "--no-anti-alias: of frames in real time")]:
             with self.subTest(line=line):
                 self.refuse(2, "render", "m.gltf", "-o", "f-#.exr", "--size", "8x8", "--device", "cpu", *line.split(),
                             says=[says])
