@@ -10,7 +10,6 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
-#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_flags.h"
 #include "base/error.h"
 #include "base/limits.h"
@@ -29,7 +28,6 @@ struct FramesFlags {
     RenderFlags render;
     uint32_t frames = 60;
     bool still = false;
-    ReconstructionFlags reconstruction;
     std::string write;
     uint32_t reference = 0;
 };
@@ -60,8 +58,8 @@ struct FrameFigures {
 
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
-    const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
-    const RestirSettings restir = restir_settings(flags.reconstruction);
+    const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
+    const RestirSettings restir = restir_settings(flags.render.reconstruction);
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction;
     FrameFigures figures;
@@ -135,8 +133,8 @@ int bench_frames(const FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
-    const ReconstructionSettings& wanted = flags.reconstruction.settings;
-    const bool asks_for_more = flags.reconstruction.restir != name_of(RestirLight::Off) ||
+    const ReconstructionSettings& wanted = flags.render.reconstruction.settings;
+    const bool asks_for_more = flags.render.reconstruction.restir != name_of(RestirLight::Off) ||
                                wanted.resolution_scale != 1 || wanted.orders_samples;
     if (!makes_frames(settings.integrator) && asks_for_more) {
         throw Error(ErrorCode::BadInput,
@@ -161,7 +159,7 @@ int bench_frames(const FramesFlags& flags) {
             R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"reconstruction":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
             json_string(flags.render.scene.scene), json_string(queue->device_name()),
             json_string(flags.render.integrator), settings.width, settings.height, flags.render.max_depth, flags.frames,
-            flags.still, json_of(flags.reconstruction), json_number(figures.whole.median),
+            flags.still, json_of(flags.render.reconstruction), json_number(figures.whole.median),
             json_number(figures.whole.least), json_number(figures.whole.greatest),
             json_number(figures.reconstruction.median), rays_a_second, part(&Likeness::flip),
             part(&Likeness::flip_of_sample), part(&Likeness::rel_mse), part(&Likeness::rel_mse_of_sample),
@@ -173,7 +171,7 @@ int bench_frames(const FramesFlags& flags) {
         "frame (median; {:.3f} to {:.3f}), "
         "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
         flags.render.scene.scene, queue->device_name(), settings.width, settings.height, flags.render.integrator,
-        flags.render.max_depth, flags.frames, flags.still ? "still" : "moving", flags.reconstruction.restir,
+        flags.render.max_depth, flags.frames, flags.still ? "still" : "moving", flags.render.reconstruction.restir,
         figures.whole.median * 1e3, figures.whole.least * 1e3, figures.whole.greatest * 1e3, 1 / figures.whole.median,
         figures.reconstruction.median * 1e3, rays_a_second, hash));
     if (likeness) {
@@ -202,7 +200,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->check(whole_between(1, 100000))
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
-    add_reconstruction_flags(verb, flags->reconstruction, "Reconstruction");
+    add_reconstruction_flags(verb, flags->render.reconstruction, "Reconstruction");
     verb.add_option("--reference", flags->reference,
                     "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")
         ->type_name("SPP")

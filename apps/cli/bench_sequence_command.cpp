@@ -13,7 +13,6 @@
 #include "apps/cli/parse_values.h"
 #include "apps/cli/pfm_file.h"
 #include "apps/cli/ready_scene.h"
-#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "base/limits.h"
 #include "image/flip.h"
@@ -25,7 +24,6 @@ namespace {
 
 struct SequenceFlags {
     RenderFlags render;
-    ReconstructionFlags reconstruction;
     uint32_t reference = 0;
     std::string write, write_samples, peer, strips;
 };
@@ -107,8 +105,8 @@ Rgba8Image strip_of(const std::vector<Rgba8Image>& pictures) {
 
 Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
                ToneMap tone_map, Reporter& reporter) {
-    const ReconstructionSettings settings = reconstruction_settings(flags.reconstruction);
-    const RestirSettings restir = restir_settings(flags.reconstruction);
+    const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
+    const RestirSettings restir = restir_settings(flags.render.reconstruction);
     Scores scores;
     if (!flags.peer.empty()) scores.peer.emplace();
     const FrameCamera camera = {*ready.camera, ready.sequence};
@@ -117,10 +115,8 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         const uint32_t frame = ready.sequence.first + number;
         reporter.progress((number + 1.0) / ready.sequence.count(),
                           fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
-        go_to(ready.sequence.time_of(frame), *ready.moving, session, reporter.messages());
-        place_frame(frame, *ready.moving, camera, record);
-        session.set_camera(record.camera.camera);
-        session.render_frame(number, settings, restir);
+        go_to_frame(frame, camera, *ready.moving, session, record, reporter.messages());
+        session.render_frame(FrameSequence::sample_of(frame), settings, restir);
         const Image ours = session.frame().picture();
         const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
         if (!flags.write.empty()) {
@@ -193,10 +189,10 @@ int bench_sequence(const SequenceFlags& flags) {
         reporter.event(fmt::format(
             R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"max_depth":{},"reconstruction":{},"reference_spp":{},"reference_noise":{},"reference_flicker":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
             json_string(flags.render.scene.scene), json_string(ready->queue->device_name()), ready->settings.width,
-            ready->settings.height, ready->sequence.count(), flags.render.max_depth, json_of(flags.reconstruction),
-            flags.reference, json_number(scores.noise), json_number(scores.half.mean_flicker()), json_of(scores.ours),
-            json_of(scores.sample), scores.peer ? json_of(*scores.peer) : "null",
-            picture_hash(session.frame().picture()).hex()));
+            ready->settings.height, ready->sequence.count(), flags.render.max_depth,
+            json_of(flags.render.reconstruction), flags.reference, json_number(scores.noise),
+            json_number(scores.half.mean_flicker()), json_of(scores.ours), json_of(scores.sample),
+            scores.peer ? json_of(*scores.peer) : "null", picture_hash(session.frame().picture()).hex()));
         return 0;
     }
     reporter.answer(fmt::format("{} on {}: {}x{}, {} frames; last frame {}\n", flags.render.scene.scene,
@@ -227,7 +223,7 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
     add_light_path_flags(verb, flags->render, "Picture");
     verb.remove_option(verb.get_option("--spp")); // a frame has one
     verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
-    add_reconstruction_flags(verb, flags->reconstruction, "Reconstruction");
+    add_reconstruction_flags(verb, flags->render.reconstruction, "Reconstruction");
     verb.add_option("--reference", flags->reference,
                     "compare each frame with a picture of so many samples, by HDR-FLIP;\nits errors' mean change from "
                     "frame to frame is the flicker")

@@ -38,7 +38,8 @@ void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Message
     if (std::ranges::count(flags.aovs, "motion") > 0 && flags.frames.empty()) {
         messages.note("--aov motion: 0 without --frames, whose frames have one before them");
     }
-    if (!moving.is_animated() && has_time && flags.camera_path.empty() && flags.turntable == 0) {
+    const bool camera_moves = !flags.camera_path.empty() || flags.turntable > 0;
+    if (!moving.is_animated() && has_time && !camera_moves && !flags.real_time) { // which gather light at rest
         messages.warn(fmt::format("--{}: nothing moves in this scene (--time-limit ends a render after a time)",
                                   flags.time_s ? "time" : "frames"));
     }
@@ -82,6 +83,7 @@ PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready) {
                             .camera = {},
                             .settings = ready.settings,
                             .device = ready.queue->device_name(),
+                            .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
     record.scene.load_seconds = ready.load_s;

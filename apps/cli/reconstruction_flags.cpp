@@ -1,10 +1,8 @@
 #include "apps/cli/reconstruction_flags.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "apps/cli/flag_checks.h"
-#include "base/json_text.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -69,12 +67,7 @@ RestirSettings restir_settings(const ReconstructionFlags& flags) {
 }
 
 std::string json_of(const ReconstructionFlags& flags) {
-    const ReconstructionSettings settings = reconstruction_settings(flags);
-    return fmt::format(
-        R"({{"history":{},"passes":{},"limit_fireflies":{},"limit_history":{},"follow_light":{},"anti_alias":{},"resolution_scale":{},"sample_order":{},"restir":{},"restir_history":{}}})",
-        settings.history, settings.passes, settings.limit_fireflies, settings.limit_history, settings.follow_light,
-        settings.anti_alias, json_number(settings.resolution_scale), settings.orders_samples, json_string(flags.restir),
-        flags.sharing.history);
+    return json_of(reconstruction_settings(flags), restir_settings(flags));
 }
 
 } // namespace pertev

@@ -9,6 +9,7 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/real_time_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
@@ -46,13 +47,16 @@ void say_hidden_backs(double share, Messages& messages) {
 /// What is about to be rendered, and on what.
 void report_start(const RenderFlags& flags, const Scene& scene, const PreparedScene& prepared,
                   const RenderSettings& settings, const Queue& queue, double load_s, Reporter& reporter) {
-    const std::size_t bytes = predicted_bytes(prepared, settings, queue.is_cuda());
+    const std::size_t bytes =
+        flags.real_time ? predicted_frame_bytes(prepared, settings, reconstruction_settings(flags.reconstruction),
+                                                restir_settings(flags.reconstruction), queue.is_cuda())
+                        : predicted_bytes(prepared, settings, queue.is_cuda());
     reporter.say(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-                             "rendering {}x{}, {} spp on {}, which takes {:.0f} MiB there",
+                             "rendering {}x{}, {} spp{} on {}, which takes {:.0f} MiB there",
                              flags.scene.scene, counted(prepared.triangles, "triangle"),
                              counted(scene.instances.size(), "instance"), counted(prepared.lights.count(), "light"),
                              load_s, prepared.build_seconds, settings.width, settings.height, settings.samples,
-                             queue.device_name(), mebibytes(bytes)));
+                             flags.real_time ? " a frame, reconstructed," : "", queue.device_name(), mebibytes(bytes)));
     reporter.event(fmt::format(
         R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
         json_string(flags.scene.scene), prepared.triangles, scene.instances.size(), prepared.lights.count(), load_s,
@@ -98,6 +102,7 @@ int render(const RenderFlags& flags) {
     reporter.set_work("metering");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
     record.display = choose_display(flags, *session, reporter);
+    if (flags.real_time) record.frame = reconstructed_frame(flags, ready->sequence);
     if (frame_sequence(flags)) {
         const FrameCamera camera = {*ready->camera, ready->sequence};
         return render_frames(flags, camera, *ready->moving, record, *session, reporter);
@@ -111,7 +116,10 @@ void add_render_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("render", "Render a picture of a scene");
     const auto flags = std::make_shared<RenderFlags>();
     add_render_flags(verb, *flags);
-    verb.callback([flags, &status] { status = render(*flags); });
+    verb.callback([&verb, flags, &status] {
+        note_real_time_flags(verb, *flags);
+        status = render(*flags);
+    });
 }
 
 } // namespace pertev

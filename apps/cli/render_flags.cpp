@@ -12,6 +12,7 @@
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
+#include "apps/cli/real_time_flags.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "image/write_image.h"
@@ -421,6 +422,7 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->group("Quality");
     add_time_flags(verb, flags, false);
     add_motion_flags(verb, flags);
+    add_real_time_flags(verb, flags);
     verb.add_flag("--strict", flags.strict,
                   "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
                   "where a sample is "
@@ -446,6 +448,7 @@ void check_shown_picture_flags(const RenderFlags& flags) {
 void check_render_flags(const RenderFlags& flags, Messages& messages) {
     check_shown_picture_flags(flags);
     check_motion_flags(flags);
+    check_real_time_flags(flags);
     refuse(flags.denoise != name_of(Denoise::None) && flags.max_depth == 0,
            "--denoise: with --max-depth 0 no light is scattered, so that there is nothing to denoise");
     const std::optional<FrameSequence> frames = frame_sequence(flags);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/cli/choose_device.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/tracer_flags.h"
@@ -34,6 +35,9 @@ struct RenderFlags {
     double fps = 0; // 0: not given
     uint32_t turntable = 0;
     bool goes_on = false; // --continue
+    bool real_time = false;
+    std::string real_time_flag;         // one that was given of those that are of such frames alone; empty: none
+    ReconstructionFlags reconstruction; // of frames in real time
     std::string integrator{integrator_name({})}, sampler{name_of(PathSettings{}.sampler)},
         filter{name_of(RenderSettings{}.filter)}, denoise{name_of(RenderSettings{}.denoise)};
     std::string ambient; // empty: the integrator's own

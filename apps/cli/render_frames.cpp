@@ -13,6 +13,7 @@
 #include "base/message_text.h"
 #include "base/read_file.h"
 #include "base/stopwatch.h"
+#include "image/picture_hash.h"
 #include "session/sequence_record.h"
 
 namespace pertev {
@@ -39,7 +40,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
         // They stand there only where they are; a run without them must be told apart from one with them.
         constexpr std::string_view kSometimes[] = {"pertev.denoise",   "pertev.ambient",     "pertev.shading",
                                                    "pertev.wireframe", "pertev.lpe",         "pertev.lamp",
-                                                   "pertev.quantity",  "pertev.false_color", "pertev.shutter"};
+                                                   "pertev.quantity",  "pertev.false_color", "pertev.shutter",
+                                                   "pertev.frame",     "pertev.first_frame", "pertev.reconstruction"};
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
@@ -67,22 +69,39 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--shading", flags.shading},
                                      {"--wireframe", flags.wireframe ? "yes" : "no"},
                                      {"--denoise", picture.denoise == Denoise::None ? "" : flags.denoise},
+                                     {"--real-time", record.frame ? json_of(flags.reconstruction) : ""},
                                      {"--transparent", picture.transparent ? "yes" : "no"}});
     return settings;
 }
 
 /// What is said of a whole sequence.
 struct Tally {
-    uint32_t rendered = 0, kept = 0;
+    uint32_t rendered = 0, kept = 0, again = 0; // again: of those that were kept, rendered for the history of others
     uint64_t invalid_samples = 0;
     double update_s = 0;
 };
 
-bool show_progress(const RenderProgress& now, uint32_t frame, uint32_t number, uint32_t frames, Reporter& reporter) {
-    const double share = (number + static_cast<double>(now.samples_done) / now.samples) / frames;
-    reporter.progress(
-        share, fmt::format("frame {} ({} of {})  {}/{} spp", frame, number + 1, frames, now.samples_done, now.samples));
-    return !interrupted();
+std::string kept_text(const Tally& tally) {
+    if (tally.kept == 0) return "";
+    if (tally.again == 0) return fmt::format(", {} kept", tally.kept);
+    return fmt::format(", {} kept ({} of them rendered again for the history of others)", tally.kept, tally.again);
+}
+
+/// What every frame is rendered with, and for.
+struct SequenceRun {
+    const RenderFlags& flags;
+    const FrameCamera& camera;
+    MovingScene& moving;
+    PictureRecord& record;
+    Session& session;
+    Reporter& reporter;
+};
+
+void show_progress(const SequenceRun& run, uint32_t frame, double share, const std::string& detail) {
+    const FrameSequence& sequence = run.camera.sequence;
+    const uint32_t number = frame - sequence.first;
+    run.reporter.progress((number + share) / sequence.count(),
+                          fmt::format("frame {} ({} of {}){}", frame, number + 1, sequence.count(), detail));
 }
 
 std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
@@ -118,6 +137,47 @@ void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& m
     session.keep_as_before();
 }
 
+/// The frame's picture; of fewer samples than were asked for where it was interrupted. The scene is at its time.
+RenderResult picture_of(const SequenceRun& run, uint32_t frame) {
+    Session& session = run.session;
+    const uint32_t samples = run.record.settings.samples;
+    session.render(samples, [&](const RenderProgress& now) {
+        show_progress(run, frame, static_cast<double>(now.samples_done) / now.samples,
+                      fmt::format("  {}/{} spp", now.samples_done, now.samples));
+        return !interrupted();
+    });
+    return session.result();
+}
+
+/// The same of a frame in real time. `is_there`: it is rendered for the history of those after it.
+RenderResult frame_of(const SequenceRun& run, uint32_t frame, bool is_there) {
+    ReconstructedFrame& made = *run.record.frame;
+    made.number = frame;
+    show_progress(run, frame, 0, is_there ? " again" : "");
+    const Stopwatch watch;
+    run.session.render_frame(FrameSequence::sample_of(frame), made.reconstruction, made.restir);
+    RenderResult result = run.session.frame_result();
+    result.render_seconds = watch.seconds();
+    return result;
+}
+
+/// Frames from the first one on that must be rendered: all of those in real time up to the last one that is missing.
+uint32_t count_frames_to_make(const FrameSequence& sequence, const SequenceRecord& done, bool goes_on) {
+    uint32_t count = sequence.count();
+    while (goes_on && count > 0 && done.has(sequence.first + count - 1)) --count;
+    return count;
+}
+
+void say_history(const SequenceRun& run, const SequenceRecord& done, uint32_t frames) {
+    const uint32_t first = run.camera.sequence.first;
+    uint32_t there = 0;
+    while (there < frames && done.has(first + there)) ++there;
+    if (there == 0) return;
+    run.reporter.say(there == 1 ? fmt::format("renders frame {} again for the history of those after it", first)
+                                : fmt::format("renders frames {} to {} again for the history of those after them",
+                                              first, first + there - 1));
+}
+
 } // namespace
 
 void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
@@ -142,19 +202,37 @@ void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera,
     if (camera.sequence.shutter) move_in_shutter(frame, moving, camera, record.camera.camera);
 }
 
+void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
+                 PictureRecord& record, Messages& messages) {
+    go_to(camera.sequence.time_of(frame), moving, session, messages);
+    place_frame(frame, moving, camera, record);
+    session.set_camera(record.camera.camera);
+}
+
+ReconstructedFrame reconstructed_frame(const RenderFlags& flags, const FrameSequence& sequence) {
+    return {sequence.first, sequence.first, reconstruction_settings(flags.reconstruction),
+            restir_settings(flags.reconstruction)};
+}
+
 int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,
                   Session& session, Reporter& reporter) {
     const Stopwatch watch;
     const FrameSequence& sequence = camera.sequence;
+    const SequenceRun run = {flags, camera, moving, record, session, reporter};
     SequenceRecord done(flags.outputs, settings_of(flags, sequence, record));
     if (flags.goes_on) done.load();
+    const bool in_real_time = record.frame.has_value();
+    const uint32_t with_history = in_real_time ? count_frames_to_make(sequence, done, flags.goes_on) : 0;
+    if (in_real_time) session.cut();
+    if (flags.goes_on) say_history(run, done, with_history);
     reporter.set_work("rendering");
     Tally tally;
     std::string failures;
     for (uint32_t number = 0; number < sequence.count() && failures.empty() && !interrupted(); ++number) {
         const uint32_t frame = sequence.first + number;
         const std::optional<double> time_s = sequence.time_of(frame);
-        if (flags.goes_on && done.has(frame)) {
+        const bool is_there = flags.goes_on && done.has(frame);
+        if (is_there && number >= with_history) {
             ++tally.kept;
             reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true}})", frame));
             continue;
@@ -163,39 +241,41 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
         if ((record.settings.aovs & kAovMotion) != 0) {
             show_frame_before(frame, camera, moving, session, reporter.messages());
         }
-        go_to(time_s, moving, session, reporter.messages());
+        go_to_frame(frame, camera, moving, session, record, reporter.messages());
         const double update_s = update.seconds();
-        place_frame(frame, moving, camera, record);
-        session.set_camera(record.camera.camera);
-        session.render(record.settings.samples, [&](const RenderProgress& now) {
-            return show_progress(now, frame, number, sequence.count(), reporter);
-        });
-        RenderResult result = session.result();
+        RenderResult result = in_real_time ? frame_of(run, frame, is_there) : picture_of(run, frame);
         if (result.samples < record.settings.samples) break; // interrupted: not whole, and not written
+        const std::string hash = picture_hash(result.picture).hex();
+        if (in_real_time) done.check_picture(frame, hash);
+        if (is_there) {
+            ++tally.kept, ++tally.again;
+            reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true,"hash":"{}"}})", frame, hash));
+            continue;
+        }
         record.scene.build_seconds = update_s;
         const WrittenPicture written = write_picture(files_of(flags, frame), record, result);
         failures = report_files(written, reporter);
-        if (failures.empty()) done.add(frame);
+        if (failures.empty()) done.add(frame, hash);
         ++tally.rendered;
         tally.update_s += update_s;
         tally.invalid_samples += result.invalid_samples;
         reporter.event(fmt::format(
             R"({{"event":"frame","frame":{},"time":{},"hash":"{}","samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
-            frame, time_s ? fmt::format("{}", *time_s) : "null", written.hash, result.samples, update_s,
+            frame, time_s ? fmt::format("{}", *time_s) : "null", hash, result.samples, update_s,
             result.render_seconds));
     }
     reporter.end_progress();
     reporter.say_messages();
     const bool cut_short = failures.empty() && tally.rendered + tally.kept < sequence.count();
-    reporter.say(fmt::format(
-        "{} of {} written{} in {:.2f} s, of which {:.1f} ms a frame to move the scene; {}{}", tally.rendered,
-        counted(sequence.count(), "frame"), tally.kept > 0 ? fmt::format(", {} kept", tally.kept) : "", watch.seconds(),
-        1e3 * tally.update_s / std::max(tally.rendered, 1u), counted(tally.invalid_samples, "invalid sample"),
-        cut_short ? "; interrupted: the same command with --continue goes on" : ""));
+    reporter.say(fmt::format("{} of {} written{} in {:.2f} s, of which {:.1f} ms a frame to move the scene; {}{}",
+                             tally.rendered, counted(sequence.count(), "frame"), kept_text(tally), watch.seconds(),
+                             1e3 * tally.update_s / std::max(tally.rendered, 1u),
+                             counted(tally.invalid_samples, "invalid sample"),
+                             cut_short ? "; interrupted: the same command with --continue goes on" : ""));
     reporter.event(fmt::format(
-        R"({{"event":"sequence","frames":{},"written":{},"kept":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
-        sequence.count(), tally.rendered, tally.kept, watch.seconds(), tally.update_s, tally.invalid_samples,
-        cut_short));
+        R"({{"event":"sequence","frames":{},"written":{},"kept":{},"rendered_again":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
+        sequence.count(), tally.rendered, tally.kept, tally.again, watch.seconds(), tally.update_s,
+        tally.invalid_samples, cut_short));
     if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
     if (flags.strict && tally.invalid_samples > 0) throw not_finite(tally.invalid_samples);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;

@@ -24,9 +24,16 @@ CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::opti
 /// Gives `record` the camera and the time of `frame`; `moving` is at that time. Where there is a shutter the camera
 /// moves while it is open.
 void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record);
+/// Takes scene, camera and record to `frame`. Throws as go_to.
+void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
+                 PictureRecord& record, Messages& messages);
 
-/// `moving`, `session` and `record` are those of the first frame, exposed as all frames will be. Ctrl-C ends after the
-/// last whole frame. Returns the exit status. Throws Error.
+/// The first frame in real time of a sequence that these flags ask for.
+ReconstructedFrame reconstructed_frame(const RenderFlags& flags, const FrameSequence& sequence);
+
+/// `moving`, `session` and `record` are those of the first frame, exposed as all frames will be. Where record.frame is
+/// there, frames are in real time: the first one comes after a cut. Ctrl-C ends after the last whole frame. Returns the
+/// exit status. Throws Error.
 int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,
                   Session& session, Reporter& reporter);
 

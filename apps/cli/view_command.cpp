@@ -17,7 +17,6 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
-#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
@@ -38,7 +37,6 @@ constexpr auto kLongestEnd = std::chrono::milliseconds(800); // from Ctrl-C to t
 
 struct ViewFlags {
     RenderFlags render;
-    ReconstructionFlags reconstruction;
     std::string host = "127.0.0.1";
     uint32_t port = 8080;
     bool no_browser = false;
@@ -195,8 +193,8 @@ int view(const ViewFlags& flags) {
     start.view.dark = dark_integrators(ready->settings, ready->scene());
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
-    start.view.is_reconstructed = !flags.reconstruction.none;
-    ReconstructionFlags asked = flags.reconstruction;
+    start.view.is_reconstructed = !flags.render.reconstruction.none;
+    ReconstructionFlags asked = flags.render.reconstruction;
     asked.none = false; // so that the panel's denoiser brings them back
     start.view.reconstruction = reconstruction_settings(asked);
     start.view.restir = restir_settings(asked);
@@ -250,7 +248,7 @@ void add_view_command(CLI::App& app, int& status) {
         ->type_name("N")
         ->check(whole_between(0, kMaxPathDepth - 1))
         ->group(moving);
-    add_reconstruction_flags(verb, flags->reconstruction, moving);
+    add_reconstruction_flags(verb, flags->render.reconstruction, moving);
     add_time_flags(verb, flags->render, true);
     add_report_flags(verb, flags->render.report);
     verb.callback([flags, &verb, &status] {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "base/limits.h"
 #include "session/shutter.h"
 
 namespace pertev {
@@ -20,6 +21,8 @@ struct FrameSequence {
     uint32_t count() const { return last - first + 1; }
     /// Frame k of a moving scene is at k / fps seconds.
     std::optional<double> time_of(uint32_t frame) const { return fps ? std::optional(frame / *fps) : time_s; }
+    /// The sample that a frame in real time takes of each pixel: the frame's number, as long as there are so many.
+    static uint32_t sample_of(uint32_t frame) { return frame % kMaxSamplesPerPixel; }
     /// Share of a turn, in [0, 1).
     double turn_of(uint32_t frame) const { return turntable == 0 ? 0 : double(frame % turntable) / turntable; }
     /// The same after `share` in [0, 1] of the time that the shutter is open.

@@ -132,6 +132,11 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }
+    if (record.frame) {
+        append(metadata, {{"pertev.reconstruction", json_of(record.frame->reconstruction, record.frame->restir)},
+                          {"pertev.frame", static_cast<int32_t>(record.frame->number)},
+                          {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
+    }
     if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
     if (scene.shutter) {
         metadata.emplace_back("pertev.shutter", fmt::format("{},{}", scene.shutter->open_s, scene.shutter->close_s));

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "denoise/reconstruction_settings.h"
 #include "image/exr_file.h"
 #include "image/tone_map.h"
+#include "restir/restir_settings.h"
 #include "session/choose_camera.h"
 #include "session/open_scene.h"
 #include "session/render_settings.h"
@@ -39,6 +41,13 @@ struct CameraSource {
     float fov_deg = 0;              // 0: none was asked for
 };
 
+/// Of a frame in real time (Session::render_frame): what it is made of beside its sample.
+struct ReconstructedFrame {
+    uint32_t number = 0, cut = 0; // of the frame, and of the first one that it knows of
+    ReconstructionSettings reconstruction;
+    RestirSettings restir;
+};
+
 /// Numbers in place of tones (image/false_color.h).
 struct FalseColors {
     std::string quantity; // "luminance" or "illuminance"
@@ -59,7 +68,8 @@ struct PictureRecord {
     CameraSource camera;
     RenderSettings settings;
     std::string device;
-    std::optional<Display> display; // none: the picture is shown nowhere
+    std::optional<ReconstructedFrame> frame; // none: a picture of its samples alone
+    std::optional<Display> display;          // none: the picture is shown nowhere
 };
 
 /// Of a scene that open_scene() made of these options; without seconds.

@@ -55,6 +55,8 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     if (settings.orders_samples && restir.light == RestirLight::Off && of_light.path.sampler == SamplerKind::Sobol) {
         of_light.path.sampler = SamplerKind::SpaceTime;
     }
+    frame_number_ = number;
+    frame_sampler_ = of_light.path.sampler;
     const bool split_light = noisy_frame_ && noisy_frame_->splits_light();
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
     if (frame.splits_light() != split_light) reconstruction_.reset(); // what it knows is of other signals
@@ -146,6 +148,28 @@ RayCounts Session::frame_rays() const { return restir_ ? frame_rays_ + RayCounts
 Reconstruction& Session::frame() {
     PERTEV_CHECK(reconstruction_.has_value());
     return *reconstruction_;
+}
+
+RenderResult Session::frame_result() {
+    RenderResult result;
+    result.samples = 1;
+    result.rays = frame_rays();
+    result.invalid_samples = noisy_frame_.value().invalid_samples();
+    result.picture = frame().picture();
+    if (settings_.aovs == 0) return result;
+    RenderSettings of_layers = settings_of_frames(settings_);
+    of_layers.samples = 1;
+    of_layers.light_paths = nullptr;
+    of_layers.path.max_depth = 0;
+    of_layers.path.sampler = frame_sampler_;
+    of_layers.path.frame_width = settings_.width;
+    RenderResult seen = look_aside(camera_, of_layers, frame_number_);
+    result.layers = std::move(seen.layers);
+    result.ids = std::move(seen.ids);
+    if (frame_number_ == 0 || (settings_.aovs & kAovIds) == 0) return result;
+    of_layers.aovs = kAovIds; // they are sample 0's
+    result.ids = look_aside(camera_, of_layers).ids;
+    return result;
 }
 
 FrameTones Session::frame_tones() const {

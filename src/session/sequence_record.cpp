@@ -53,6 +53,9 @@ bool SequenceRecord::load() {
     for (const gltf::JsonValue& frame : file.root().elements_of("files")) {
         hashes_[std::string(frame.at("name").to_string())] = frame.at("hash").to_string();
     }
+    for (const gltf::JsonValue& frame : file.root().elements_of("pictures")) {
+        pictures_[static_cast<uint32_t>(frame.at("frame").to_unsigned())] = frame.at("hash").to_string();
+    }
     return true;
 }
 
@@ -67,16 +70,33 @@ bool SequenceRecord::has(uint32_t frame) const {
     return true;
 }
 
-void SequenceRecord::add(uint32_t frame) {
+void SequenceRecord::check_picture(uint32_t frame, const std::string& picture) const {
+    const auto known = pictures_.find(frame);
+    if (known == pictures_.end() || known->second == picture) return;
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("{}: frame {} is another picture now ({}) than when it was written ({}), so that those after "
+                    "it would not follow; make them anew without --continue, or elsewhere",
+                    path_.string(), frame, picture, known->second));
+}
+
+void SequenceRecord::add(uint32_t frame, const std::string& picture) {
+    pictures_[frame] = picture;
     for (const std::string& output : outputs_) {
         const std::string file = frame_file(output, frame);
         hashes_[file] = hash_of(file);
     }
     std::string text = fmt::format("{{\n  \"settings\": {},\n  \"files\": [", json_object(settings_));
-    bool is_first = true;
+    const char* comma = "";
     for (const auto& [file, hash] : hashes_) {
-        text += fmt::format("{}\n    {{\"name\": {}, \"hash\": \"{}\"}}", is_first ? "" : ",", json_string(file), hash);
-        is_first = false;
+        text += fmt::format("{}\n    {{\"name\": {}, \"hash\": \"{}\"}}", comma, json_string(file), hash);
+        comma = ",";
+    }
+    text += "\n  ],\n  \"pictures\": [";
+    comma = "";
+    for (const auto& [number, hash] : pictures_) {
+        text += fmt::format("{}\n    {{\"frame\": {}, \"hash\": \"{}\"}}", comma, number, hash);
+        comma = ",";
     }
     text += "\n  ]\n}\n";
     write_file_atomically(path_, std::as_bytes(std::span(text)));

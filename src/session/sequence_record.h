@@ -1,9 +1,10 @@
 #pragma once
 
 // Which frames of a sequence are done: a small JSON file beside them that holds what all of them were asked for with,
-// and of each file that was written whole the hash of its bytes. By it an interrupted sequence goes on: what is there
-// with the very bytes that were written is kept, all else is rendered, and since frames do not depend on each other the
-// pictures are those of an undisturbed run.
+// of each file that was written whole the hash of its bytes, and of each frame that of its picture. By it an
+// interrupted sequence goes on: what is there with the very bytes that were written is kept, all else is rendered.
+// Since pictures do not depend on each other they are those of an undisturbed run; frames in real time do, and those
+// before are rendered again for them, and compared with what is known of their pictures.
 
 #include <cstdint>
 #include <filesystem>
@@ -29,14 +30,18 @@ public:
     bool load();
     /// Whether all files of the frame are there, with the bytes that the record knows.
     bool has(uint32_t frame) const;
-    /// Notes the frame's files, which have just been written, and writes the record. Throws Error(BadInput, FileWrite).
-    void add(uint32_t frame);
+    /// Notes the frame's files, which have just been written, and the hash of its picture, and writes the record.
+    /// Throws Error(BadInput, FileWrite).
+    void add(uint32_t frame, const std::string& picture);
+    /// Throws Error(BadInput) where the record knows the frame with another picture than that of this hash.
+    void check_picture(uint32_t frame, const std::string& picture) const;
 
 private:
     std::vector<std::string> outputs_;
     Settings settings_;
     std::filesystem::path path_;
     std::map<std::string, std::string> hashes_; // by file name
+    std::map<uint32_t, std::string> pictures_;  // hashes by frame
 };
 
 } // namespace pertev

@@ -1,7 +1,6 @@
 #include "session/session.h"
 
 #include <algorithm>
-#include <set>
 
 #include "base/error.h"
 #include "base/limits.h"
@@ -41,33 +40,6 @@ std::vector<FilmLayer> layers_of(const Film& film, const RenderSettings& setting
         layers.push_back({settings.light_paths->expressions[i].name, {"R", "G", "B"}, film.light_layer(i, samples)});
     }
     return layers;
-}
-
-uint64_t triangles_of_instances(const Scene& scene) {
-    uint64_t count = 0;
-    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangle_count();
-    return count;
-}
-
-/// Of trees that are kept on the device for meshes whose vertices move, and of the top level over them.
-std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice& tracers, bool on_cuda) {
-    std::size_t bytes = 0;
-    std::set<TreeLayout> layouts;
-    for (const RayKind kind : kRayKinds) layouts.insert(layout_of(tracers[kind]));
-    const auto may_deform = [&](TreeLayout layout) { return can_deform(layout, on_cuda); };
-    if (scene.poses.empty() || !std::ranges::all_of(layouts, may_deform)) return 0;
-    for (const TreeLayout layout : layouts) {
-        bytes += scene.top_level.nodes.size() * sizeof(BvhNode) +
-                 scene.top_level.instances.size() * sizeof(InstanceRecord) +
-                 scene.trees.parts.size() * sizeof(CompressedBvhView) + 3 * 256;
-        if (layout != TreeLayout::Compressed) continue; // the host's other trees are not counted
-        for (std::size_t i = 0; i < scene.poses.size(); ++i) {
-            const uint32_t mesh = scene.scene->shapes[i].mesh;
-            if (scene.poses[i].is_on_host || scene.tree_of_mesh[mesh] == kBakedMesh) continue;
-            bytes += DeformingCompressed::predicted_bytes(scene.scene->meshes[mesh].triangle_count(), on_cuda);
-        }
-    }
-    return bytes;
 }
 
 } // namespace
@@ -404,10 +376,10 @@ float Session::meter(ToneMap tone_map) {
     });
 }
 
-RenderResult Session::look_aside(const Camera& camera, const RenderSettings& settings) {
+RenderResult Session::look_aside(const Camera& camera, const RenderSettings& settings, uint32_t first) {
     Film film(queue_, settings.width, settings.height, settings.aovs, light_layers_of(settings));
     begin(camera, settings, settings.samples);
-    integrator_->render(0, settings.samples, film.view());
+    integrator_->render(first, settings.samples, film.view());
     RenderResult result;
     result.samples = settings.samples;
     result.rays = integrator_->rays();
@@ -419,33 +391,6 @@ RenderResult Session::look_aside(const Camera& camera, const RenderSettings& set
 
 std::vector<RayWork> Session::count_camera_work() {
     return pertev::count_camera_work(queue_, *tracer_, view_of(camera_, settings_));
-}
-
-std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda) {
-    const TracerChoice tracers = tracers_of(settings, on_cuda, !scene.poses.empty());
-    std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, light_layers_of(settings));
-    const bool denoises = settings.denoise != Denoise::None;
-    const bool has_loop = can_walk_on_host(tracers, on_cuda);
-    if (denoises) {
-        const bool splits_light = materials_known(*scene.scene) == MaterialsKnown::Nothing;
-        film += NoisyFrame::predicted_bytes(settings.width, settings.height, splits_light) +
-                PictureDenoiser::predicted_bytes(settings.width, settings.height);
-        const uint64_t paths = std::min(uint64_t(settings.width) * settings.height, uint64_t(settings.batch));
-        if (splits_light && !(has_loop && settings.body == PathBody::Loop)) film += 3 * sizeof(Float4) * paths;
-    }
-    const std::size_t structures = on_cuda ? scene.structures->device_bytes(tracers) : 0;
-    const std::size_t raster = lists_tiles(settings.integrator)
-                                   ? CameraRaster::predicted_bytes(triangles_of_instances(*scene.scene), settings.width,
-                                                                   settings.height, on_cuda)
-                                   : 0;
-    const std::size_t motion = (settings.aovs & kAovMotion) != 0
-                                   ? motion_vector_bytes(settings.width, settings.height) +
-                                         scene.scene->instances.size() * sizeof(InstanceView)
-                                   : 0;
-    return predicted_bytes(scene) + structures + raster + motion + deforming_tree_bytes(scene, tracers, on_cuda) +
-           film +
-           predicted_bytes(settings, uint64_t(settings.width) * settings.height, denoises ? 1 : settings.samples,
-                           on_cuda, has_loop, scene.motions != nullptr);
 }
 
 } // namespace pertev

@@ -112,13 +112,18 @@ public:
     FrameTones frame_tones() const;
     /// Of the last render_frame. Another resolution_scale is a cut.
     Reconstruction& frame();
+    /// The last render_frame as a picture of one sample: the frame, and the layers that the settings ask for of that
+    /// sample alone (no motion); ids are of sample 0, as any picture's. Without times and shares. Throws as
+    /// render_frame.
+    RenderResult frame_result();
     /// Rays of the last render_frame.
     RayCounts frame_rays() const;
     /// Seconds that sharing light (ReSTIR) took of the last render_frame; 0 without.
     double sharing_seconds() const { return restir_ ? sharing_timer_.seconds() : 0; }
     /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this
-    /// depth, and `settings.samples` samples. The film stays as it is. Throws Error(OutOfMemory, DeviceFault).
-    RenderResult look_aside(const Camera& camera, const RenderSettings& settings);
+    /// depth, and `settings.samples` samples from number `first` on. The film stays as it is. Throws Error(OutOfMemory,
+    /// DeviceFault).
+    RenderResult look_aside(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
     /// Nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera rays; empty
     /// where that cannot be told (packets). Throws as look_aside.
     std::vector<RayWork> count_camera_work();
@@ -184,7 +189,9 @@ private:
     uint32_t number_of_light_ = 0;          // that frame's
     PathSettings path_of_light_;            // likewise
     RayCounts frame_rays_;
-    bool film_is_old_ = false; // holds samples of a picture that is no more asked for
+    uint32_t frame_number_ = 0;                          // of the last frame: its sample's
+    SamplerKind frame_sampler_ = PathSettings{}.sampler; // of that sample
+    bool film_is_old_ = false;                           // holds samples of a picture that is no more asked for
     std::unique_ptr<Integrator> integrator_;
     IntegratorSettings integrator_settings_; // that it has
     const std::atomic<bool>* abandon_ = nullptr;
@@ -192,5 +199,9 @@ private:
 
 /// Bytes of the device's memory that a session asks for by the time it has rendered `settings.samples` in one call.
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda);
+/// Likewise of one that has made frames in place of the film, but for what following light in a moving scene takes.
+std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettings& settings,
+                                  const ReconstructionSettings& reconstruction, const RestirSettings& restir,
+                                  bool on_cuda);
 
 } // namespace pertev

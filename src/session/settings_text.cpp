@@ -1,5 +1,8 @@
 #include "session/settings_text.h"
 
+#include <fmt/format.h>
+
+#include "base/json_text.h"
 #include "image/tone_map_image.h"
 
 namespace pertev {
@@ -178,6 +181,14 @@ std::string_view name_of(Denoise denoise) {
 
 std::optional<Denoise> denoise_named(std::string_view name) { return value_named(kDenoisers, name); }
 std::vector<std::string> denoise_names() { return names_of(kDenoisers); }
+
+std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir) {
+    return fmt::format(
+        R"({{"history":{},"passes":{},"limit_fireflies":{},"limit_history":{},"follow_light":{},"anti_alias":{},"resolution_scale":{},"sample_order":{},"restir":{},"restir_history":{}}})",
+        settings.history, settings.passes, settings.limit_fireflies, settings.limit_history, settings.follow_light,
+        settings.anti_alias, json_number(static_cast<double>(settings.resolution_scale)), settings.orders_samples,
+        json_string(name_of(restir.light)), restir.history);
+}
 
 std::vector<std::string> tone_map_names() { return names_of(kToneMaps); }
 

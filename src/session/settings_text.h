@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "denoise/reconstruction_settings.h"
 #include "restir/restir_settings.h"
 #include "session/render_settings.h"
 
@@ -40,6 +41,9 @@ std::vector<std::string> restir_names();
 std::string_view name_of(Denoise denoise);
 std::optional<Denoise> denoise_named(std::string_view name);
 std::vector<std::string> denoise_names();
+
+/// All that makes the bytes of a frame in real time, beside the picture's own settings, as a JSON object.
+std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir);
 
 /// Of image/tone_map_image.h, which has name_of and tone_map_named.
 std::vector<std::string> tone_map_names();

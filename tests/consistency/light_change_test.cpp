@@ -62,6 +62,83 @@ TEST_CASE("frames follow a lamp that dims, from the frame on in which it does") 
     CHECK(mean_of(last_frame(queue, false, true)) > 1.2 * expected); // what there is to follow
 }
 
+namespace {
+
+constexpr Vec3 kLampAtLeft = {-3, 2, 1}, kLampAtRight = {3, 2, 1};
+
+/// Two lamps, one over each half of what the camera sees; the left one times `left`.
+Scene scene_of_two(float left) {
+    Scene scene = lamp_scene();
+    scene.lights.resize(2, scene.lights[0]);
+    scene.lights[0].position = kLampAtLeft;
+    scene.lights[1].position = kLampAtRight;
+    scene.lights[0].intensity = left * scene.lights[0].intensity;
+    return scene;
+}
+
+/// Light of the left and of the right half of a picture.
+struct Halves {
+    double left = 0, right = 0;
+};
+
+Halves halves_of(const Image& picture) {
+    Halves halves;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const bool is_left = i / 3 % picture.width < picture.width / 2;
+        (is_left ? halves.left : halves.right) += static_cast<double>(picture.pixels[i]);
+    }
+    return halves;
+}
+
+/// Of the last frame of those in which the left lamp's light goes by `step` a frame while the right one's stays.
+Halves halves_of_two(Queue& queue, bool follows, float step) {
+    Messages messages;
+    Scene scene = scene_of_two(1);
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings;
+    settings.width = 64, settings.height = 48;
+    settings.path.max_depth = 3;
+    Session session(queue, prepared, mixed_scene_camera(), settings);
+    SceneUpdate update;
+    update.lights_changed = true;
+    for (uint32_t k = 0; k < kStill + kDimming; ++k) {
+        if (k >= kStill) scene.lights[0].intensity = step * scene.lights[0].intensity;
+        prepared = update_scene(prepared, scene, update, messages);
+        session.update_scene(prepared, parts_of(update));
+        session.render_frame(k, {.follow_light = follows});
+    }
+    return halves_of(session.frame().picture());
+}
+
+} // namespace
+
+TEST_CASE("of two lamps frames follow most of what the one that dims takes, and less of what it brings") {
+    Queue queue = queue_asked_for();
+    const auto reference = [&](float left) {
+        RenderSettings settings;
+        settings.width = 64, settings.height = 48;
+        settings.path.max_depth = 3;
+        settings.samples = 256;
+        return halves_of(render(queue, scene_of_two(left), mixed_scene_camera(), settings).picture);
+    };
+    for (const bool dims : {true, false}) {
+        CAPTURE(dims);
+        const float step = dims ? kStep : 1 / kStep;
+        const Halves expected = reference(std::pow(step, static_cast<float>(kDimming)));
+        const Halves followed = halves_of_two(queue, true, step), late = halves_of_two(queue, false, step);
+        MESSAGE("left ", expected.left, ": ", followed.left, ", late ", late.left, "; right ", expected.right, ": ",
+                followed.right, ", late ", late.right);
+        // Of the way from late to right: the lamps' shares change, and the same numbers draw the other one now and
+        // then.
+        const double followed_share = (followed.left - late.left) / (expected.left - late.left);
+        CHECK(followed_share > (dims ? 0.7 : 0.4));
+        CHECK(followed_share < 1.1);
+        // Where the other lamp shines as before.
+        CHECK(followed.right > (dims ? 0.85 * expected.right : late.right));
+        CHECK(followed.right < 1.05 * expected.right);
+    }
+}
+
 TEST_CASE("where light does not change, looking for a change leaves the frame as it is") {
     Queue queue = queue_asked_for();
     Hash128 with, without;

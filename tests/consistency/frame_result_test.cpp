@@ -1,0 +1,153 @@
+// A frame in real time as a picture: the same bytes by every body and on every device while scene and camera move, its
+// layers those of its own sample, its memory what is said beforehand.
+
+#include <doctest/doctest.h>
+
+#include "formats/read_gltf.h"
+#include "image/picture_hash.h"
+#include "render/update_scene.h"
+#include "scene/validate.h"
+#include "session/frame_sequence.h"
+#include "session/moving_scene.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+RenderSettings result_settings() {
+    RenderSettings settings;
+    settings.width = 60, settings.height = 40;
+    settings.path.max_depth = 3;
+    return settings;
+}
+
+/// The mixed scene, one of whose spheres goes aside for a second.
+Scene sliding_scene() {
+    Scene scene = make_mixed_scene();
+    scene.nodes.resize(1);
+    scene.instances[0].node = 0;
+    scene.instances[0].node_from_local = scene.instances[0].world_from_local;
+    scene.animations.emplace_back();
+    scene.animations[0].channels.push_back(
+        {0, AnimatedPart::Translation, Interpolation::Linear, {0, 1}, {0, 0, 0, 0.5f, 0.25f, 0}});
+    Messages messages;
+    validate(scene, "sliding", messages);
+    return scene;
+}
+
+/// Hashes of the frames of a sequence, all that a program needs to make them; `before`: frames of it that somebody else
+/// has rendered with the session, and that a cut makes forgotten.
+std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameSequence& sequence, const RenderSettings& settings,
+                                        const RestirSettings& restir, uint32_t before = 0) {
+    Messages messages;
+    MovingScene moving(sliding_scene(), sequence.time_of(sequence.first), {}, messages);
+    Session session(queue, moving.prepared(), mixed_scene_camera(), settings);
+    const auto make = [&](uint32_t frame) {
+        if (const uint32_t parts = moving.set_time(*sequence.time_of(frame), messages)) {
+            session.update_scene(moving.prepared(), parts);
+        }
+        session.render_frame(FrameSequence::sample_of(frame), {}, restir);
+    };
+    for (uint32_t k = 0; k < before; ++k) make(sequence.first + k);
+    make(sequence.first);
+    session.cut();
+    std::vector<Hash128> hashes;
+    for (uint32_t frame = sequence.first; frame <= sequence.last; ++frame) {
+        make(frame);
+        const RenderResult result = session.frame_result();
+        CHECK(picture_hash(result.picture) == picture_hash(session.frame().picture()));
+        CHECK(result.rays.camera == session.frame_rays().camera);
+        CHECK(result.samples == 1);
+        hashes.push_back(picture_hash(result.picture));
+    }
+    return hashes;
+}
+
+} // namespace
+
+TEST_CASE("frames of a moving sequence have the same bytes by every body, on every device, and after a cut") {
+    Queue cpu = Queue::make_cpu();
+    const FrameSequence sequence = {.first = 3, .last = 7, .fps = 8.0};
+    const RenderSettings settings = result_settings();
+    RenderSettings wavefront = settings;
+    wavefront.body = PathBody::Wavefront;
+    wavefront.batch = 700; // several rounds begin paths
+    for (const RestirLight light : {RestirLight::Off, RestirLight::Indirect}) {
+        const RestirSettings restir = {.light = light};
+        const std::vector<Hash128> expected = hashes_of_sequence(cpu, sequence, settings, restir);
+        CHECK(expected[3] != expected[4]);
+        CHECK(hashes_of_sequence(cpu, sequence, wavefront, restir) == expected);
+        CHECK(hashes_of_sequence(cpu, sequence, settings, restir, 4) == expected);
+        // A sequence that ends sooner has the same frames, one that begins later has not.
+        const FrameSequence shorter = {.first = 3, .last = 5, .fps = 8.0}, later = {.first = 4, .last = 7, .fps = 8.0};
+        const std::vector<Hash128> of_shorter = hashes_of_sequence(cpu, shorter, settings, restir);
+        CHECK(std::vector<Hash128>(expected.begin(), expected.begin() + 3) == of_shorter);
+        CHECK(hashes_of_sequence(cpu, later, settings, restir)[0] != expected[1]);
+        if (cuda_requested()) {
+            Queue cuda = make_cuda_queue();
+            CHECK(hashes_of_sequence(cuda, sequence, settings, restir) == expected);
+        }
+    }
+}
+
+TEST_CASE("layers of a frame are those of its own sample, whatever order samples are drawn in") {
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = queue_asked_for();
+    RenderSettings settings = result_settings();
+    settings.aovs = kAovAlbedo | kAovDepth | kAovIds;
+    Session session(queue, prepared, mixed_scene_camera(), settings);
+    constexpr uint32_t kNumber = 5;
+    session.render_frame(kNumber, {});
+    const RenderResult frame = session.frame_result();
+    REQUIRE(frame.layers.size() == 2);
+    REQUIRE(frame.ids.size() == std::size_t(60) * 40);
+    // What sample 5 adds to the five before it, by the film.
+    RenderSettings plain = settings_of_frames(settings);
+    const auto albedo_of = [&](uint32_t samples) {
+        plain.samples = samples;
+        return layer_named(session.look_aside(session.camera(), plain), "albedo");
+    };
+    plain.samples = 1;
+    const std::vector<PixelIds> ids = session.look_aside(session.camera(), plain).ids;
+    for (std::size_t i = 0; i < ids.size(); ++i) REQUIRE(frame.ids[i].primitive == ids[i].primitive);
+    const Image five = albedo_of(kNumber), six = albedo_of(kNumber + 1), &seen = layer_named(frame, "albedo");
+    for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+        REQUIRE(seen.pixels[i] == doctest::Approx(6 * six.pixels[i] - 5 * five.pixels[i]).epsilon(1e-4));
+    }
+    session.render_frame(kNumber + 1, {});
+    CHECK(picture_hash(layer_named(session.frame_result(), "albedo")) != picture_hash(seen));
+    // Samples that are drawn in another order lie elsewhere in their pixels.
+    session.render_frame(kNumber, of_samples_alone({.orders_samples = true}));
+    CHECK(picture_hash(layer_named(session.frame_result(), "albedo")) != picture_hash(seen));
+}
+
+TEST_CASE("the bytes that are predicted of frames are those that a session takes") {
+    Messages messages;
+    const Scene scene = make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = queue_asked_for();
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        for (const RestirLight light : {RestirLight::Off, RestirLight::Direct, RestirLight::Indirect}) {
+            for (const float scale : {1.0f, 0.5f}) {
+                CAPTURE(static_cast<int>(light));
+                CAPTURE(scale);
+                RenderSettings settings = result_settings();
+                settings.body = body;
+                const ReconstructionSettings reconstruction = {.resolution_scale = scale};
+                Session session(queue, prepared, mixed_scene_camera(), settings);
+                session.render_frame(0, reconstruction, {.light = light});
+                session.render_frame(1, reconstruction, {.light = light});
+                const std::size_t predicted =
+                    predicted_frame_bytes(prepared, settings, reconstruction, {.light = light}, queue.is_cuda());
+                CHECK(queue.allocated_bytes() >= predicted);
+                CHECK(queue.allocated_bytes() <= predicted + 8192); // a pixel filter's table, the scene's view
+            }
+        }
+    }
+}

@@ -1,0 +1,176 @@
+"""Sequences in real time, pertev render --real-time: frames that are made of those before them, stopped and continued."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+
+from cli_frames_test import moving_gltf
+from cli_run import PROGRAM, CliTest, main, write
+
+SMALL = ["--size", "32x24", "--max-depth", "4", "--device", "cpu"]
+LINE = ["--real-time", *SMALL]
+
+
+class RealTime(CliTest):
+    def setUp(self):
+        super().setUp()
+        write(self.path("m.gltf"), moving_gltf())
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def pictures(self, folder):
+        names = sorted(name for name in os.listdir(self.path(folder)) if not name.endswith(".json"))
+        return {name: self.read(f"{folder}/{name}") for name in names}
+
+    def render(self, folder, *arguments, scene="m.gltf", output="f-##.png"):
+        os.makedirs(self.path(folder), exist_ok=True)
+        return self.succeed("render", scene, "-o", f"{folder}/{output}", *LINE, "--json", *arguments)
+
+    def refuse_to_render(self, folder, *arguments, says):
+        return self.refuse(2, "render", "m.gltf", "-o", f"{folder}/f-##.png", *LINE, *arguments, says=says)
+
+    def test_frames_are_those_of_bench_sequence_to_the_byte(self):
+        for number, flags in enumerate([[], ["--restir", "gi", "--no-follow-light"],
+                                        ["--resolution-scale", "0.5", "--passes", "2"], ["--integrator", "hybrid"]]):
+            for scene, motion in [("m.gltf", ["--frames", "0-3", "--fps", "4"]), ("cornell-box", ["--turntable", "90", "--frames", "0-3"])]:
+                with self.subTest(scene=scene, flags=flags):
+                    ours, theirs = f"a{scene}{number}", f"b{scene}{number}"
+                    os.mkdir(self.path(theirs))
+                    said = self.render(ours, *motion, *flags, scene=scene, output="frame-####.png")
+                    bench = self.succeed("bench", "sequence", scene, *SMALL, *motion, *flags, "--write", theirs, "--json")
+                    frames = said.events("frame")
+                    self.assertEqual(frames[-1]["hash"], bench.events("sequence_errors")[0]["last_frame"])
+                    self.assertEqual(self.pictures(ours), self.pictures(theirs))
+                    self.assertEqual([event["samples"] for event in frames], [1] * 4)
+                    self.assertEqual(len({event["hash"] for event in frames}), 4)
+
+    def test_a_frame_knows_those_before_it_back_to_the_first_and_has_a_sample_of_its_own(self):
+        def hashes(*arguments, **options):
+            return [event["hash"] for event in self.render("x", *arguments, **options).events("frame")]
+
+        whole = hashes("--frames", "0-3", "--fps", "4")
+        self.assertEqual(hashes("--frames", "0-1", "--fps", "4"), whole[:2])
+        later = hashes("--frames", "2-3", "--fps", "4")
+        self.assertNotEqual(later[0], whole[2])
+        self.assertEqual(hashes("--frames", "2-2", "--fps", "4"), later[:1])
+        # Frames of a scene at rest differ by their samples, that of the first one too.
+        still = hashes("--frames", "0-2", scene="cornell-box")
+        self.assertEqual(len(set(still)), 3)
+        self.assertNotEqual(hashes("--frames", "2-2", scene="cornell-box")[0], still[0])
+
+    def test_one_exposure_of_the_first_frame_serves_all(self):
+        said = self.render("auto", "--frames", "0-3", "--fps", "1")
+        self.assertEqual(len(said.events("exposure")), 1)
+        stops = said.events("exposure")[0]["stops"]
+        self.render("fixed", "--frames", "0-3", "--fps", "1", "--exposure", stops)
+        self.assertEqual(self.pictures("fixed"), self.pictures("auto"))
+        single = self.succeed("render", "m.gltf", "-o", "x.png", *SMALL, "--spp", "1", "--time", "0", "--json")
+        self.assertEqual(single.events("exposure")[0]["stops"], stops)
+
+    def test_what_is_there_is_kept_and_rendered_again_for_the_history_of_the_rest(self):
+        motion = ["--fps", "4", "--restir", "gi"]
+        self.render("whole", "--frames", "0-5", *motion)
+        expected = self.pictures("whole")
+        self.render("parts", "--frames", "0-2", *motion)
+        made = {name: os.stat(self.path(f"parts/{name}")).st_mtime_ns for name in self.pictures("parts")}
+        said = self.render("parts", "--frames", "0-5", "--continue", *motion)
+        self.assertEqual(self.pictures("parts"), expected)
+        for name, when in made.items():
+            self.assertEqual(os.stat(self.path(f"parts/{name}")).st_mtime_ns, when)
+        end = said.events("sequence")[0]
+        self.assertEqual((end["frames"], end["written"], end["kept"], end["rendered_again"]), (6, 3, 3, 3))
+
+        os.remove(self.path("parts/f-01.png"))  # what comes after it need not be rendered
+        end = self.render("parts", "--frames", "0-5", "--continue", *motion).events("sequence")[0]
+        self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (1, 5, 1))
+        self.assertEqual(self.pictures("parts"), expected)
+        end = self.render("parts", "--frames", "0-5", "--continue", *motion).events("sequence")[0]
+        self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (0, 6, 0))
+        os.remove(self.path("parts/f-05.png"))
+        said = self.succeed("render", "m.gltf", "-o", "parts/f-##.png", *LINE, "--frames", "0-5", "--continue", *motion)
+        self.assertIn("renders frames 0 to 4 again for the history of those after them", said.stderr)
+
+    def test_frames_that_have_become_others_are_refused(self):
+        motion = ["--fps", "4", "--frames", "0-3"]
+        self.render("x", *motion)
+        os.remove(self.path("x/f-03.png"))
+        record = json.loads(self.read("x/f-##.json"))
+        self.assertEqual([entry["frame"] for entry in record["pictures"]], [0, 1, 2, 3])
+        record["pictures"][2]["hash"] = "0" * 32
+        write(self.path("x/f-##.json"), json.dumps(record))
+        self.refuse_to_render("x", *motion, "--continue", says=["x/f-##.json: frame 2 is another picture now", "0" * 32])
+        self.assertFalse(os.path.exists(self.path("x/f-03.png")))
+
+    def test_other_settings_of_the_reconstruction_are_refused(self):
+        motion = ["--fps", "4", "--frames", "0-1"]
+        self.render("x", *motion)
+        for flags in (["--passes", "4"], ["--history", "8"], ["--restir", "di"], ["--restir-history", "3"],
+                      ["--resolution-scale", "0.5"], ["--no-anti-alias"], ["--no-firefly-limit"], ["--no-history-limit"],
+                      ["--no-follow-light"], ["--sample-order"], ["--no-reconstruction"]):
+            self.refuse_to_render("x", *motion, "--continue", *flags, says=["--real-time", "--continue"])
+        self.refuse(2, "render", "m.gltf", "-o", "x/f-##.png", *SMALL, "--spp", "1", *motion, "--continue",
+                    says=['made with --real-time "{'])
+        self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['made with pertev.time "0"'])
+
+    def test_ctrl_c_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
+        os.mkdir(self.path("x")), os.mkdir(self.path("anew"))
+        arguments = ["render", "m.gltf", "-o", "x/f-##.png", "--real-time", "--size", "320x240", "--device", "cpu",
+                     "--exposure", "0", "--frames", "0-29", "--fps", "20"]
+        program = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, env=self.environment,
+                                   stdin=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        while program.poll() is None and not os.path.exists(self.path("x/f-02.png")):
+            time.sleep(0.01)
+        program.send_signal(signal.SIGINT)
+        said = program.communicate(timeout=300)[1].decode()
+        self.assertEqual(program.returncode, 75, said)
+        self.assertIn("interrupted: the same command with --continue goes on", said)
+        there = self.pictures("x")
+        self.assertEqual(list(there), [f"f-{k:02}.png" for k in range(len(there))])
+        self.assertLess(len(there), 30)
+        end = self.succeed(*arguments, "--continue", "--json").events("sequence")[0]
+        self.assertEqual((end["kept"], end["rendered_again"], end["written"]), (len(there), len(there), 30 - len(there)))
+        arguments[3] = "anew/f-##.png"
+        self.succeed(*arguments)
+        self.assertEqual(self.pictures("x"), self.pictures("anew"))
+
+    def test_an_exr_holds_the_frame_its_sample_s_layers_and_how_it_was_made(self):
+        said = self.render("x", "--frames", "3-4", "--fps", "4", "--restir", "di", "--passes", "2", "--aov", "albedo,ids",
+                           output="f-#.exr")
+        info = self.info("x/f-4.exr")
+        self.assertEqual(info["pertev.hash"], said.events("frame")[1]["hash"])
+        self.assertEqual((info["pertev.frame"], info["pertev.first_frame"], info["pertev.spp"]), (4, 3, 1))
+        made = json.loads(info["pertev.reconstruction"])
+        self.assertEqual((made["restir"], made["passes"], made["history"], made["anti_alias"]), ("di", 2, 32, True))
+        self.assertIn("albedo.R", info["channels"])
+        self.assertIn('"0":', info["pertev.instances"])
+        self.assertEqual(self.info("x/f-3.exr")["pertev.time"], 0.75)
+        self.succeed("render", "m.gltf", "-o", "x.exr", *SMALL, "--spp", "1")
+        self.assertNotIn("pertev.reconstruction", self.info("x.exr"))
+
+    def test_what_frames_cannot_be_is_refused(self):
+        motion = "--frames 0-1 --real-time"
+        for line, says in [("--real-time", "--frames A-B or --turntable N"), ("--real-time --time 1", "--frames A-B"),
+                           (f"{motion} --spp 4", "--spp 4: a frame of --real-time has one sample"),
+                           (f"{motion} --spp 64", "--spp 64"), (f"{motion} --denoise svgf", "--denoise svgf"),
+                           (f"{motion} --transparent", "--transparent"), (f"{motion} --lpe d=LDE", "--lpe"),
+                           (f"{motion} --aov motion", "--aov motion"),
+                           (f"{motion} --false-color illuminance --false-color-range 1,2", "--false-color illuminance"),
+                           (f"{motion} --time-limit 1", "--time-limit"), ("--frames 0-1 --passes 5", "--passes: of frames in real time; say --real-time"),
+                           ("--frames 0-1 --restir gi", "--restir: of frames in real time"),
+                           ("--no-anti-alias", "--no-anti-alias: of frames in real time")]:
+            with self.subTest(line=line):
+                self.refuse(2, "render", "m.gltf", "-o", "f-#.exr", "--size", "8x8", "--device", "cpu", *line.split(),
+                            says=[says])
+        for name in ("cast", "whitted", "distributed", "raster", "light", "bidirectional"):
+            self.refuse(2, "render", "m.gltf", "-o", "f-#.png", *LINE, "--frames", "0-1", "--integrator", name,
+                        says=["--real-time: frames are reconstructed of the samples of --integrator path", f"not of {name}'s"])
+        self.assertEqual(self.render("one", "--frames", "0-0", "--spp", "1").events("frame")[0]["samples"], 1)
+
+
+if __name__ == "__main__":
+    main()

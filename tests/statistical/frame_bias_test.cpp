@@ -1,0 +1,233 @@
+// Parts of frames that bend the mean, each alone: by how much (docs/real_time.md, "What bends the mean"). A still
+// camera's frames are compared with frames of the same samples without the part, so that most of the noise is in both.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "formats/read_scene.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+using namespace pertev::test;
+
+namespace {
+
+constexpr uint32_t kBiasWidth = 64, kBiasHeight = 48, kBiasBlocks = 4; // along each side
+constexpr uint32_t kSettled = 16, kCounted = 48;                       // frames before those that count, and these
+
+RenderSettings bias_settings() {
+    RenderSettings settings;
+    settings.width = kBiasWidth, settings.height = kBiasHeight;
+    settings.path.max_depth = 4;
+    return settings;
+}
+
+struct BiasScene {
+    std::string name;
+    Scene scene;
+    Camera camera;
+};
+
+std::vector<BiasScene> bias_scenes() {
+    Messages messages;
+    std::vector<BiasScene> all = {{"mixed", make_mixed_scene(), mixed_scene_camera()}};
+    Scene box = read_scene("cornell-box", {}, messages);
+    const Camera camera = box.cameras.at(0);
+    all.push_back({"cornell-box", std::move(box), camera});
+    return all;
+}
+
+Image mean_of_frames(Session& session, const ReconstructionSettings& settings, const RestirSettings& restir = {},
+                     uint32_t settled = kSettled, uint32_t counted = kCounted) {
+    session.cut();
+    Image mean;
+    for (uint32_t k = 0; k < settled + counted; ++k) {
+        session.render_frame(k, settings, restir);
+        if (k < settled) continue;
+        const Image picture = session.frame().picture();
+        if (k == settled) mean = Image{picture.width, picture.height, 3, std::vector<float>(picture.pixels.size())};
+        for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+            mean.pixels[i] += picture.pixels[i] / static_cast<float>(counted);
+        }
+    }
+    return mean;
+}
+
+/// How far a mean is from another, as shares of the other's light. Lamps that are seen are left out: a few pixels of
+/// them would be all that is measured.
+struct Bias {
+    double whole = 0;      // of the picture's mean; below 0: darker
+    double of_block = 0;   // greatest size, of a sixteenth of the picture that has at least a tenth of the mean
+    double of_pixels = 0;  // mean of the sizes of the pixels' differences
+    double with_lamps = 0; // as `whole`, lamps included
+};
+
+Bias bias_of(const Image& mean, const Image& expected) {
+    std::vector<double> ours(kBiasBlocks * kBiasBlocks), theirs(ours.size());
+    const auto lamp = static_cast<float>(4 * mean_of(expected)); // radiance
+    double sum = 0, expected_sum = 0, sizes = 0;
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+        const auto pixel = static_cast<uint32_t>(i / 3);
+        if (expected.pixels[3 * pixel + 1] > lamp) continue;
+        const uint32_t x = pixel % mean.width, y = pixel / mean.width;
+        const uint32_t block = y * kBiasBlocks / mean.height * kBiasBlocks + x * kBiasBlocks / mean.width;
+        const double a = static_cast<double>(mean.pixels[i]), b = static_cast<double>(expected.pixels[i]);
+        ours[block] += a, theirs[block] += b;
+        sum += a, expected_sum += b;
+        sizes += std::abs(a - b);
+    }
+    Bias bias = {sum / expected_sum - 1, 0, sizes / expected_sum, mean_of(mean) / mean_of(expected) - 1};
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+        if (theirs[i] < 0.1 * expected_sum / static_cast<double>(ours.size())) continue;
+        bias.of_block = std::max(bias.of_block, std::abs(ours[i] / theirs[i] - 1));
+    }
+    return bias;
+}
+
+/// Everything that is no mean over time is off.
+ReconstructionSettings history_alone() {
+    ReconstructionSettings settings = of_samples_alone({});
+    settings.history = 32;
+    return settings;
+}
+
+void say_bias(const std::string& scene, const std::string& part, const Bias& bias) {
+    MESSAGE(scene, ", ", part, ": whole ", bias.whole, ", block ", bias.of_block, ", pixels ", bias.of_pixels,
+            ", with lamps ", bias.with_lamps);
+}
+
+struct Part {
+    std::string name;
+    ReconstructionSettings with;
+    Bias most;
+};
+
+/// Bounds the bias of each part in each scene. `without`: settings that differ by the part alone from `with`.
+void bound_bias(const ReconstructionSettings& without, const std::vector<Part>& parts) {
+    for (const BiasScene& s : bias_scenes()) {
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        Session session(queue, prepared, s.camera, bias_settings());
+        const Image expected = mean_of_frames(session, without);
+        for (const Part& part : parts) {
+            const Bias bias = bias_of(mean_of_frames(session, part.with), expected);
+            CAPTURE(s.name);
+            CAPTURE(part.name);
+            say_bias(s.name, part.name, bias);
+            CHECK(std::abs(bias.whole) <= part.most.whole);
+            CHECK(bias.of_block <= part.most.of_block);
+            CHECK(bias.of_pixels <= part.most.of_pixels);
+            CHECK(bias.with_lamps <= part.most.whole); // their edges may lose light, but bring none
+        }
+    }
+}
+
+ReconstructionSettings with_passes(uint32_t passes) {
+    ReconstructionSettings settings = history_alone();
+    settings.passes = passes;
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("the wavelet filter blurs, and leaves the light that there is") {
+    bound_bias(history_alone(), {{"1 pass", with_passes(1), {0.01, 0.08, 0.055}},
+                                 {"5 passes", with_passes(5), {0.015, 0.14, 0.18}},
+                                 {"8 passes", with_passes(8), {0.03, 0.22, 0.18}}});
+}
+
+TEST_CASE("anti-aliasing and a lower resolution take little of the light, each alone") {
+    ReconstructionSettings smooth = with_passes(5), coarse = smooth, coarser = smooth;
+    smooth.anti_alias = true;
+    coarse.resolution_scale = 0.5f;
+    coarser.resolution_scale = 0.25f;
+    bound_bias(with_passes(5), {{"anti_alias", smooth, {0.04, 0.21, 0.055}},
+                                {"half the resolution", coarse, {0.035, 0.2, 0.15}},
+                                {"a quarter of it", coarser, {0.08, 0.65, 0.24}}});
+}
+
+namespace {
+
+/// Waves in both directions, steep ones, as a normal map.
+TextureImage wavy_normals() {
+    TextureImage image;
+    image.name = "waves";
+    image.rgba8 = {16, 16, {}};
+    for (uint32_t i = 0; i < 256; ++i) {
+        const float x = std::sin(static_cast<float>(i % 16) * 0.7854f),
+                    y = std::sin(static_cast<float>(i / 16) * 0.3927f);
+        const Vec3 n = normalize(Vec3{0.8f * x, 0.8f * y, 1});
+        for (const float c : {n.x, n.y, n.z, 1.0f}) {
+            image.rgba8.pixels.push_back(static_cast<uint8_t>(std::lround(127.5f + 127.5f * c)));
+        }
+    }
+    return image;
+}
+
+/// The mixed scene with reflecting layers on diffuse surfaces everywhere, waves on all that has texture coordinates,
+/// looked at from just over its floor. Its spheres have interpolated normals.
+BiasScene bent_normals() {
+    BiasScene bent = {"bent normals", make_mixed_scene(), {}};
+    bent.scene.images.push_back(wavy_normals());
+    for (Material& material : bent.scene.materials) {
+        if (material.is_lamp()) continue;
+        material.kind = MaterialKind::MetallicRoughness;
+        material.metallic = 0;
+        material.roughness = 0.3f;
+        material.normal_texture = {.image = 1, .m00 = 4, .m11 = 4};
+    }
+    bent.camera.world_from_camera = look_at({0.3f, 0.25f, 5}, {0, 0.3f, 0}, {0, 1, 0});
+    bent.camera.fov_y = 0.7f;
+    return bent;
+}
+
+} // namespace
+
+TEST_CASE("shared bounces at bent normals seen at grazing angles send nearly the light that they should") {
+    const BiasScene bent = bent_normals();
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(bent.scene, {}, messages);
+    Queue queue = queue_asked_for();
+    RenderSettings settings = bias_settings();
+    settings.width = 32, settings.height = 24;
+    Session session(queue, prepared, bent.camera, settings);
+    const auto frames = static_cast<uint32_t>(effort(192, 8192));
+    const Image expected = mean_of_frames(session, of_samples_alone({}), {}, 0, frames);
+    for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
+        const RestirSettings restir = {.light = light, .radius = 6, .history = 0};
+        const Bias bias = bias_of(mean_of_frames(session, of_samples_alone({}), restir, 0, frames), expected);
+        say_bias(bent.name, light == RestirLight::Direct ? "di" : "gi", bias);
+        CHECK(std::abs(bias.whole) < 0.01);
+        CHECK(bias.of_block < 0.04);
+    }
+}
+
+TEST_CASE("with a clamp shared bounces send as much as clamped paths do") {
+    for (const BiasScene& s : bias_scenes()) {
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
+        Queue queue = queue_asked_for();
+        RenderSettings settings = bias_settings();
+        settings.width = 32, settings.height = 24;
+        const auto frames = static_cast<uint32_t>(effort(96, 4096));
+        const auto mean_with = [&](float clamp, RestirLight light) {
+            settings.path.clamp = clamp;
+            Session session(queue, prepared, s.camera, settings);
+            const RestirSettings restir = {.light = light, .radius = 6, .history = 0};
+            return mean_of(mean_of_frames(session, of_samples_alone({}), restir, 0, frames));
+        };
+        constexpr float kClamp = 0.1f;
+        const double all = mean_with(0, RestirLight::Off), clamped = mean_with(kClamp, RestirLight::Off);
+        const double direct = mean_with(kClamp, RestirLight::Direct), shared = mean_with(kClamp, RestirLight::Indirect);
+        MESSAGE(s.name, ": all ", all, ", clamped ", clamped, ", di ", direct, ", gi ", shared);
+        CHECK(clamped < 0.97 * all);
+        CHECK(direct == doctest::Approx(clamped).epsilon(0.02)); // which scatters once, and is not clamped
+        CHECK(shared == doctest::Approx(clamped).epsilon(0.02)); // as what they send was clamped before
+    }
+}

@@ -1,0 +1,292 @@
+// Stages of the reconstruction on a few pixels: what they take from which neighbours, by object, normal, plane, light
+// and variance; what a history is held within.
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "denoise/anti_alias.h"
+#include "denoise/compare_light.h"
+#include "denoise/enlarge_picture.h"
+#include "denoise/limit_history.h"
+#include "denoise/wavelet_pass.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kStageSide = 16, kStageHalf = kStageSide / 2, kStagePixels = kStageSide * kStageSide;
+constexpr uint32_t kLeftOfBorder =
+    kStageHalf * kStageSide + kStageHalf - 1; // of the middle row, the last pixel of the left half
+
+CameraView stage_camera(uint32_t side) {
+    Camera camera;
+    camera.world_from_camera = look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0});
+    return make_camera_view(camera, side, side);
+}
+
+/// A wall that faces the camera at 5 m, all of one object. Its right half can be made another in one way at a time.
+struct Wall {
+    std::vector<Float4> guide = std::vector<Float4>(kStagePixels, pack({{0, 0, 1}, 1, 5, 7}));
+
+    void set_right(const Guide& g) {
+        for (uint32_t i = 0; i < kStagePixels; ++i) {
+            if (i % kStageSide >= kStageHalf) guide[i] = pack(g);
+        }
+    }
+};
+
+const Vec3 kTurned = normalize(Vec3{1, 0, 0.5f});
+
+/// A value on the left and another one on the right, with one variance.
+std::vector<Float4> halves(float left, float right, float variance) {
+    std::vector<Float4> values;
+    for (uint32_t i = 0; i < kStagePixels; ++i)
+        values.push_back(with_w(grey(i % kStageSide < kStageHalf ? left : right), variance));
+    return values;
+}
+
+struct Filtered {
+    std::vector<Float4> diffuse, gloss;
+};
+
+Filtered filter_once(Wall& wall, std::vector<Float4> diffuse, std::vector<Float4> gloss, int step) {
+    Filtered out = {std::vector<Float4>(kStagePixels), std::vector<Float4>(kStagePixels)};
+    const WaveletPass pass = {wall.guide.data(),
+                              {diffuse.data(), gloss.data()},
+                              {out.diffuse.data(), out.gloss.data()},
+                              stage_camera(kStageSide),
+                              kStageSide,
+                              kStageSide,
+                              step,
+                              8,
+                              true};
+    for (uint32_t i = 0; i < kStagePixels; ++i) pass(i);
+    return out;
+}
+
+constexpr float kNoisy = 1e4f, kExact = 0; // variances
+
+} // namespace
+
+TEST_CASE("a pass of the filter mixes light of one surface, but not over edges of object, normal, plane or light") {
+    Wall one;
+    const auto mixed = [&](Wall& wall, float variance) {
+        return filter_once(wall, halves(1, 3, variance), halves(1, 3, variance), 1);
+    };
+    const Filtered plain = mixed(one, kNoisy);
+    CHECK(plain.diffuse[kLeftOfBorder].x ==
+          doctest::Approx(1.5).epsilon(0.01)); // a quarter of a tent's weight lies beyond
+    CHECK(plain.gloss[kLeftOfBorder].x > 1.3f);
+    CHECK(plain.diffuse[kLeftOfBorder - 2].x == doctest::Approx(1));
+    const Filtered exact = mixed(one, kExact);
+    CHECK(exact.diffuse[kLeftOfBorder].x == doctest::Approx(1));
+    CHECK(exact.gloss[kLeftOfBorder].x == doctest::Approx(1));
+    for (const Guide& other : {Guide{{0, 0, 1}, 1, 5, 8}, Guide{kTurned, 1, 5, 7}, Guide{{0, 0, 1}, 1, 8, 7}}) {
+        CAPTURE(other.depth);
+        CAPTURE(other.object);
+        Wall wall;
+        wall.set_right(other);
+        const Filtered apart = mixed(wall, kNoisy);
+        CHECK(apart.diffuse[kLeftOfBorder].x == doctest::Approx(1));
+        CHECK(apart.gloss[kLeftOfBorder].x == doctest::Approx(1));
+        CHECK(apart.diffuse[kLeftOfBorder + 1].x == doctest::Approx(3));
+    }
+}
+
+TEST_CASE("a pass of the filter mixes gloss of like widths alone, and sharp gloss only from near by") {
+    Wall wall;
+    wall.set_right({{0, 0, 1}, 0.2f, 5, 7});
+    const Filtered apart = filter_once(wall, halves(1, 3, kNoisy), halves(1, 3, kNoisy), 1);
+    CHECK(apart.gloss[kLeftOfBorder].x == doctest::Approx(1));
+    CHECK(apart.diffuse[kLeftOfBorder].x > 1.3f);
+    const auto mixed_from = [&](float alpha, int step) {
+        for (Float4& g : wall.guide) g = pack({{0, 0, 1}, alpha, 5, 7});
+        return filter_once(wall, halves(1, 3, kNoisy), halves(1, 3, kNoisy), step).gloss[kLeftOfBorder].x;
+    };
+    CHECK(mixed_from(0.5f, 4) > 1.3f);
+    CHECK(mixed_from(0.001f, 4) == doctest::Approx(1));
+    CHECK(mixed_from(0.001f, 1) > 1.1f);
+}
+
+TEST_CASE("variances go by squares of the weights, and lead by their mean about a pixel") {
+    Wall wall;
+    const Filtered even = filter_once(wall, halves(1, 1, 2), halves(1, 1, 2), 2);
+    CHECK(even.diffuse[kLeftOfBorder].w ==
+          doctest::Approx(2 * 2.25 / 16)); // weights 1, four of a half, four of a quarter; of 4
+    // A pixel that believes itself to be exact, among others that are not.
+    std::vector<Float4> light = halves(1, 3, kNoisy);
+    light[kLeftOfBorder].w = kExact;
+    CHECK(filter_once(wall, light, light, 1).diffuse[kLeftOfBorder].x > 1.3f);
+}
+
+namespace {
+
+struct Held {
+    Float4 diffuse, gloss, diffuse_out, gloss_out; // of the pixel that is asked about
+};
+
+/// Long means of 3 at one pixel over `frames`, where recent means are `left` and `right`; single frames stray by
+/// `deviation`.
+Held hold(Wall& wall, float left, float right, float deviation, float frames, bool limits) {
+    std::vector<Float4> diffuse(kStagePixels, Float4{1, 1, 1, frames}), gloss = diffuse,
+                                                                        recent = halves(left, right, 0);
+    for (Float4& r : recent) r.w = r.x;
+    std::vector<Vec2> squares(kStagePixels, Vec2{1, 1});
+    diffuse[kLeftOfBorder] = gloss[kLeftOfBorder] = {3, 3, 3, frames};
+    squares[kLeftOfBorder] = {9 + deviation * deviation, 9 + deviation * deviation};
+    std::vector<Float4> diffuse_out(kStagePixels), gloss_out(kStagePixels);
+    const LimitHistory stage = {
+        {wall.guide.data(), diffuse.data(), gloss.data(), squares.data(), recent.data(), nullptr},
+        {diffuse_out.data(), gloss_out.data()},
+        kStageSide,
+        kStageSide,
+        limits,
+        true};
+    for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
+    return {diffuse[kLeftOfBorder], gloss[kLeftOfBorder], diffuse_out[kLeftOfBorder], gloss_out[kLeftOfBorder]};
+}
+
+} // namespace
+
+TEST_CASE("long means are held within recent ones of the same surface and what single frames stray by") {
+    Wall wall;
+    const Held held = hold(wall, 1, 1, 0, 32, true);
+    CHECK(held.diffuse.x == doctest::Approx(1));
+    CHECK(held.gloss.x == doctest::Approx(1));
+    CHECK(held.diffuse_out.x == held.diffuse.x);
+    CHECK(hold(wall, 1, 1, 0, 32, false).diffuse.x == 3);
+    CHECK(hold(wall, 1, 1, 0, 3, true).diffuse.x == 3); // too few frames to be held
+    CHECK(hold(wall, 1, 1, 2, 32, true).diffuse.x == doctest::Approx(2).epsilon(0.01));
+    CHECK(hold(wall, 1, 1, 2, 32, true).gloss.x == doctest::Approx(2).epsilon(0.01));
+    CHECK(hold(wall, 1, 9, 0, 32, true).diffuse.x == 3); // neighbours differ by more
+    for (const Guide& other : {Guide{{0, 0, 1}, 1, 5, 8}, Guide{kTurned, 1, 5, 7}}) {
+        Wall apart;
+        apart.set_right(other);
+        CHECK(hold(apart, 1, 9, 0, 32, true).diffuse.x == doctest::Approx(1));
+    }
+}
+
+TEST_CASE("variance is that over time, or over neighbours where few frames know the place") {
+    Wall wall;
+    CHECK(hold(wall, 3, 3, 2, 32, false).diffuse_out.w == doctest::Approx(4 * 4.0 / 32));
+    CHECK(hold(wall, 3, 3, 2, 32, false).gloss_out.w == doctest::Approx(4 * 4.0 / 32));
+    // Of thirteen neighbours in a chessboard five stand to the right of the border: 4 (1 + 1) of 0, 5 of 2.
+    const float spread = hold(wall, 0, 2, 0, 1, false).diffuse_out.w;
+    CHECK(spread > 4 * 0.8f);
+    CHECK(spread < 4 * 1.01f);
+    CHECK(hold(wall, 0, 2, 0, 2, false).diffuse_out.w == doctest::Approx(spread / 2));
+    Wall lonely;
+    lonely.guide[kLeftOfBorder] = pack({{0, 0, 1}, 1, 5, 9});
+    CHECK(hold(lonely, 0, 2, 0, 1, false).diffuse_out.w > 1e6f); // unknown
+}
+
+namespace {
+
+/// The pixel asked about, of a picture whose middle is `own` among `around`, and a history of `old` that lies to the
+/// left of column kStageHalf + 2.
+float shown_after(float own, float around, float old, bool is_near_moving) {
+    std::vector<Float4> picture(kStagePixels, Float4{around, 0, 0, 5}), before(kStagePixels, Float4{0, 0, 0, 0}),
+        shown(kStagePixels);
+    std::vector<Vec2> was_at;
+    for (uint32_t i = 0; i < kStagePixels; ++i) {
+        was_at.push_back({static_cast<float>(i % kStageSide) + 0.5f, static_cast<float>(i / kStageSide) + 0.5f});
+        if (i % kStageSide < kStageHalf + 2) before[i].x = old;
+    }
+    picture[kLeftOfBorder].x = own;
+    if (is_near_moving) { // the pixel to the right is before it, and was further to the right
+        picture[kLeftOfBorder + 1].w = 2;
+        was_at[kLeftOfBorder + 1].x += 6;
+    }
+    const AntiAlias stage = {picture.data(), was_at.data(), before.data(), shown.data(), kStageSide, kStageSide, true};
+    for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
+    return shown[kLeftOfBorder].x;
+}
+
+} // namespace
+
+TEST_CASE("shown colours are means over time held within those around, and edges move with what is nearest") {
+    // Around .5 with one of .9: mean .5444, deviation .1257.
+    CHECK(shown_after(0.9f, 0.5f, 0.5f, false) == doctest::Approx(0.5 + 0.1 * 0.4));
+    CHECK(shown_after(0.9f, 0.5f, 0.1f, false) == doctest::Approx(0.4187 + 0.1 * (0.9 - 0.4187)).epsilon(0.001));
+    CHECK(shown_after(0.5f, 0.5f, 0.9f, false) == doctest::Approx(0.5));
+    // Where the nearest pixel came from there is no history but black.
+    CHECK(shown_after(0.9f, 0.5f, 0.5f, true) == doctest::Approx(0.4187 + 0.1 * (0.9 - 0.4187)).epsilon(0.001));
+}
+
+namespace {
+
+/// Light on the fine picture's pixel asked about, of a coarse one of half its sides whose left is 1 and whose right 3.
+/// `right`: what the coarse picture shows there. The fine pixel lies just left of the border.
+float enlarged(const Guide& right, uint32_t fine_object = 7) {
+    constexpr uint32_t kCoarse = kStageSide / 2;
+    std::vector<Float4> guide, diffuse;
+    for (uint32_t i = 0; i < kCoarse * kCoarse; ++i) {
+        const bool is_left = i % kCoarse < kCoarse / 2;
+        guide.push_back(is_left ? pack({{0, 0, 1}, 1, 5, 7}) : pack(right));
+        diffuse.push_back(with_w(grey(is_left ? 1.0f : 3.0f), 0));
+    }
+    std::vector<Float4> light(kStagePixels, Float4{0, 0, 0, 1}), black(kStagePixels, Float4{0, 0, 0, 0}),
+        place(kStagePixels, Float4{float_of(fine_object), 0, 0, 0}), normal(kStagePixels, Float4{0, 0, 1, 5}),
+        white(kStagePixels, Float4{1, 1, 1, 1}), picture(kStagePixels);
+    NoisyFrameView features;
+    features.light = light.data(), features.emission = black.data(), features.place = place.data();
+    features.normal = normal.data(), features.albedo = white.data(), features.gloss = black.data();
+    const EnlargePicture stage = {
+        features,
+        {{diffuse.data(), nullptr}, guide.data(), stage_camera(kCoarse), kCoarse, kCoarse, false},
+        stage_camera(kStageSide),
+        kStageSide,
+        kStageSide,
+        {},
+        {},
+        {},
+        nullptr,
+        picture.data(),
+        false};
+    stage(kLeftOfBorder);
+    return light_of_shown(rgb_of(picture[kLeftOfBorder])).g;
+}
+
+} // namespace
+
+TEST_CASE("a pixel takes enlarged light from coarse pixels of its object, normal and plane") {
+    CHECK(enlarged({{0, 0, 1}, 1, 5, 7}) > 1.2f); // all is one surface
+    CHECK(enlarged({{0, 0, 1}, 1, 5, 8}) == doctest::Approx(1));
+    CHECK(enlarged({kTurned, 1, 5, 7}) < 1.01f);
+    CHECK(enlarged({{0, 0, 1}, 1, 9, 7}) < 1.05f);
+    CHECK(enlarged({{0, 0, 1}, 1, 5, 8}, 9) > 1.2f); // none shows it: all are the best guess
+}
+
+TEST_CASE("a change of light is known where both pictures show the same surface, and spreads over that alone") {
+    std::vector<Float4> light(4, Float4{2, 2, 2, 1}), black(4, Float4{0, 0, 0, 0}), white(4, Float4{1, 1, 1, 1}),
+        place(4, Float4{float_of(7), 0, 0, 0}), normal(4, Float4{0, 0, 1, 5});
+    std::vector<Float4> other_place = place, other_normal = normal, guide(4), was(4), is(4);
+    other_place[1].x = float_of(8);
+    other_normal[2].w = 9;
+    NoisyFrameView after;
+    after.light = light.data(), after.emission = black.data(), after.place = place.data();
+    after.normal = normal.data(), after.albedo = white.data(), after.gloss = black.data();
+    NoisyFrameView before = after;
+    before.place = other_place.data(), before.normal = other_normal.data();
+    const CompareLight compare = {before, after, guide.data(), was.data(), is.data()};
+    for (uint32_t i = 0; i < 4; ++i) compare(i);
+    CHECK(object_of(guide[0]) == 7);
+    CHECK(object_of(guide[1]) == kNoHit);
+    CHECK(object_of(guide[2]) == kNoHit);
+    CHECK(is[0].x == 2);
+
+    for (const Guide& right :
+         {Guide{{0, 0, 1}, 1, 5, 7}, Guide{{0, 0, 1}, 1, 5, 8}, Guide{kTurned, 1, 5, 7}, Guide{{0, 0, 1}, 1, 8, 7}}) {
+        Wall wall;
+        wall.set_right(right);
+        const std::vector<Float4> from = halves(1, 3, 0);
+        std::vector<Float4> was_out(kStagePixels), is_out(kStagePixels);
+        const SpreadLight spread = {wall.guide.data(), from.data(), from.data(), was_out.data(),
+                                    is_out.data(),     kStageSide,  kStageSide,  1};
+        for (uint32_t i = 0; i < kStagePixels; ++i) spread(i);
+        const bool is_one = right.object == 7 && right.depth == 5 && right.normal.z == 1;
+        CHECK(is_out[kLeftOfBorder].x == doctest::Approx(is_one ? 1.5 : 1.0));
+        CHECK(was_out[kLeftOfBorder].x == is_out[kLeftOfBorder].x);
+    }
+}
