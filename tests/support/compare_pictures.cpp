@@ -29,7 +29,9 @@ PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, co
     for (uint32_t seed = 0; seed < renders; ++seed) {
         settings.path.seed = first_seed + seed;
         const RenderResult result = render_picture(queue, prepared, camera, settings);
-        std::vector<double> values(result.picture.pixels.begin(), result.picture.pixels.end());
+        const Image& picture =
+            settings.light_paths ? layer_named(result, settings.light_paths->expressions.front().name) : result.picture;
+        std::vector<double> values(picture.pixels.begin(), picture.pixels.end());
         values.resize(count);
         for (std::size_t i = 0; i < 3 * pixels; ++i) {
             values[3 * pixels + i % 3] += values[i] / static_cast<double>(pixels);

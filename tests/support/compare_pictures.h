@@ -18,6 +18,7 @@ struct PictureEstimate {
     std::size_t pixel_values() const { return mean.size() - 3; }
 };
 
+/// Of the first layer of light paths, where the settings ask for some, in place of the picture.
 /// Renders with seeds first_seed, first_seed + 1, ... and independent numbers.
 PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                                  RenderSettings settings, uint32_t renders, uint32_t first_seed);
