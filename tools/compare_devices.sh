@@ -43,6 +43,9 @@ hybrid $scenes/crytek-sponza/sponza.obj --integrator hybrid
 raster $scenes/crytek-sponza/sponza.obj --integrator raster --ambient 0.5
 raster-gouraud $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator raster --shading gouraud
 wireframe $scenes/sibenik/sibenik.obj --integrator raster --wireframe --ambient 1
+reyes $scenes/sibenik/sibenik.obj --integrator reyes --ambient 0.5
+reyes-fine $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator reyes --shading-rate 0.5
+reyes-displaced $scenes/crytek-sponza/sponza.obj --integrator reyes --ambient 0.5 --displacement bricks=$scenes/crytek-sponza/textures/bricks.jpg,0.05,0.5
 light $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator light
 light-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator light --aperture 0.05
 bidirectional $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator bidirectional

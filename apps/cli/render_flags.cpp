@@ -17,6 +17,7 @@
 #include "base/limits.h"
 #include "image/write_image.h"
 #include "session/check_integrator.h"
+#include "session/height_maps.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -111,6 +112,12 @@ void check_display_flags(const RenderFlags& flags) {
                                                             "--transparent");
 }
 
+std::vector<HeightMapText> height_maps(const RenderFlags& flags) {
+    std::vector<HeightMapText> maps;
+    for (const std::string& text : flags.displacements) maps.push_back(parse_height_map(text));
+    return maps;
+}
+
 /// All settings but the size. Throws Error where they do not go together.
 RenderSettings light_settings(const RenderFlags& flags) {
     RenderSettings settings; // CLI11 has checked all names
@@ -132,16 +139,21 @@ RenderSettings light_settings(const RenderFlags& flags) {
     settings.look.is_wireframe = flags.wireframe;
     set_integrator(settings, flags.integrator);
     check_integrator(settings);
+    if (flags.shading_rate > 0) settings.shading_rate = flags.shading_rate;
+    height_maps(flags);
+    const bool is_reyes = settings.integrator == IntegratorKind::Reyes;
+    refuse(flags.shading_rate > 0 && !is_reyes, "--shading-rate: of --integrator reyes");
+    refuse(!flags.displacements.empty() && !is_reyes,
+           fmt::format("--displacement: --integrator reyes alone displaces surfaces, {} does not", flags.integrator));
     const bool is_raster = settings.integrator == IntegratorKind::Raster;
     refuse(!flags.shading.empty() && !is_raster,
            fmt::format("--shading: of --integrator raster; {} shades every sample", flags.integrator));
     refuse(flags.wireframe && !is_raster, "--wireframe: of --integrator raster");
     refuse(flags.wireframe && !flags.shading.empty(), "--shading: with --wireframe nothing is shaded");
-    refuse(
-        settings.ambient && !needs_punctual_lights(settings.integrator),
-        fmt::format(
-            "--ambient: a light of --integrator cast, whitted and raster; {} finds what comes from all around itself",
-            flags.integrator));
+    refuse(settings.ambient && !needs_punctual_lights(settings.integrator),
+           fmt::format("--ambient: a light of --integrator cast, whitted, raster and reyes; {} finds what comes from "
+                       "all around itself",
+                       flags.integrator));
     refuse(settings.path.clamp > 0 && !makes_frames(settings.integrator),
            fmt::format("--clamp: of --integrator path and hybrid, not of {}", flags.integrator));
     return settings;
@@ -286,8 +298,8 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->capture_default_str()
         ->group(group);
     verb.add_option("--integrator", flags.integrator,
-                    "path, or its parts direct and indirect; hybrid, cast,\nwhitted, distributed, raster; light, "
-                    "bidirectional\n(docs/transport.md)")
+                    "path, or its parts direct and indirect; hybrid, cast,\nwhitted, distributed, raster, reyes; "
+                    "light, bidirectional\n(docs/transport.md)")
         ->type_name("NAME")
         ->check(one_of(integrator_names()))
         ->capture_default_str()
@@ -297,9 +309,10 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->check(whole_between(0, kMaxPathDepth - 1))
         ->capture_default_str()
         ->group(group);
-    verb.add_option("--ambient", flags.ambient,
-                    "of cast, whitted and raster: radiance from all around that\ndiffuse surfaces reflect (cast 0, the "
-                    "others the\nenvironment's mean)")
+    verb.add_option(
+            "--ambient", flags.ambient,
+            "of cast, whitted, raster and reyes: radiance from all around\nthat diffuse surfaces reflect (cast 0, "
+            "the others the\nenvironment's mean)")
         ->type_name("R,G,B")
         ->group(group);
     verb.add_option("--shading", flags.shading,
@@ -308,6 +321,17 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->check(one_of(shading_names()))
         ->group(group);
     verb.add_flag("--wireframe", flags.wireframe, "of raster: the triangles' edges alone")->group(group);
+    verb.add_option("--shading-rate", flags.shading_rate,
+                    "of reyes: no edge of a micropolygon is longer in the picture,\nfrom 1/8 to 64 (1)")
+        ->type_name("PIXELS")
+        ->check(number_between(kLeastShadingRate, kMostShadingRate))
+        ->group(group);
+    verb.add_option("--displacement", flags.displacements,
+                    "of reyes: the heights in a picture move surfaces of this\nmaterial along their normals by SCALE "
+                    "(height - MIDDLE), in the\nmesh's own unit; MIDDLE is 0 without; may be given again")
+        ->type_name("MATERIAL=FILE,SCALE[,MIDDLE]")
+        ->allow_extra_args(false)
+        ->group(group);
     verb.add_option("--seed", flags.seed, "of the random numbers")
         ->type_name("N")
         ->check(whole_between(0, UINT32_MAX))
@@ -491,6 +515,7 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
         settings.light_paths =
             std::make_shared<const LightPathLayers>(put_to_scene(settings.light_paths->expressions, scene));
     }
+    settings.heights = read_height_maps(height_maps(flags), scene);
     if (!flags.size.empty()) {
         std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
     } else {

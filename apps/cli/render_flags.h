@@ -43,6 +43,8 @@ struct RenderFlags {
     std::string ambient; // empty: the integrator's own
     std::string shading; // empty: raster's own
     bool wireframe = false;
+    float shading_rate = 0;                 // 0: not given
+    std::vector<std::string> displacements; // --displacement
     float filter_radius = 0, clamp = 0;
     uint32_t max_depth = PathSettings{}.max_depth, seed = PathSettings{}.seed;
     MachineFlags machine;
@@ -64,7 +66,7 @@ std::optional<Shutter> shutter(const RenderFlags& flags);
 /// --camera-path, --turntable. `plays`: without a time, time runs.
 void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
-/// --ambient, --shading, --wireframe, --seed, --filter, --filter-radius.
+/// --ambient, --shading, --wireframe, --shading-rate, --displacement, --seed, --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
 
 /// Of --iso, --f-number and --shutter-time; none: they are not given.

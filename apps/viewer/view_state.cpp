@@ -171,7 +171,8 @@ std::vector<ViewSetting> make_settings() {
         "integrator", "Light", "Light",
         "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on; hybrid: path, by "
         "rasterisation first; cast, whitted and distributed: trees of rays, without most of what surfaces send on; "
-        "raster: no rays at all; light: particles from the lights, without what mirrors and glass show; bidirectional: "
+        "raster: no rays at all; reyes: nor any, of micropolygons; light: particles from the lights, without what "
+        "mirrors and glass show; bidirectional: "
         "all light, from both ends",
         integrator_names(), [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
@@ -257,7 +258,7 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
     numeric(
         "aperture", "Radius of the lens, m", "Camera",
-        "0: all is sharp. The larger, the more is blurred that is not in focus. hybrid and raster have none",
+        "0: all is sharp. The larger, the more is blurred that is not in focus. hybrid, raster and reyes have none",
         Kind::Number, 0, 1e6, 0.005, [](const ViewState& s) { return s.lens.aperture_radius; },
         [](ViewState& s, float v) { s.lens.aperture_radius = rasterises_camera(s.picture.integrator) ? 0.0f : v; });
     numeric(

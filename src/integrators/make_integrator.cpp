@@ -5,6 +5,7 @@
 #include "integrators/path/path_integrator.h"
 #include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
+#include "integrators/reyes/reyes_integrator.h"
 #include "integrators/subpaths/walks_integrator.h"
 
 namespace pertev {
@@ -44,6 +45,20 @@ RasterSettings raster_settings(const IntegratorSettings& settings) {
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
 }
 
+bool same_heights(const IntegratorSettings& a, const IntegratorSettings& b) {
+    return a.heights == b.heights || (a.heights && b.heights && *a.heights == *b.heights);
+}
+
+ReyesSettings reyes_settings(const IntegratorSettings& settings) {
+    return {.shading_rate = settings.shading_rate,
+            .heights = settings.heights,
+            .max_depth = settings.path.max_depth,
+            .sampler = settings.path.sampler,
+            .seed = settings.path.seed,
+            .has_ambient = settings.ambient.has_value(),
+            .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
+}
+
 template <class Algorithm>
 std::unique_ptr<Integrator> make_ray_tree(Queue& queue, const IntegratorSettings& settings) {
     return std::make_unique<RayTreeIntegrator<Algorithm>>(queue, tree_settings(settings),
@@ -59,7 +74,9 @@ void set_tree_settings(Integrator& integrator, const IntegratorSettings& setting
 
 bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path || kind == IntegratorKind::Hybrid; }
 
-bool rasterises_camera(IntegratorKind kind) { return kind == IntegratorKind::Hybrid || kind == IntegratorKind::Raster; }
+bool rasterises_camera(IntegratorKind kind) {
+    return kind == IntegratorKind::Hybrid || kind == IntegratorKind::Raster || kind == IntegratorKind::Reyes;
+}
 
 bool lists_tiles(IntegratorKind kind) { return kind == IntegratorKind::Hybrid; }
 
@@ -77,6 +94,7 @@ uint32_t most_depth(IntegratorKind kind) {
     case IntegratorKind::Path:
     case IntegratorKind::Hybrid:
     case IntegratorKind::Raster:
+    case IntegratorKind::Reyes:
     case IntegratorKind::Light:
         break;
     case IntegratorKind::Cast:
@@ -90,12 +108,18 @@ uint32_t most_depth(IntegratorKind kind) {
 }
 
 bool needs_punctual_lights(IntegratorKind kind) {
-    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted || kind == IntegratorKind::Raster;
+    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted || kind == IntegratorKind::Raster ||
+           kind == IntegratorKind::Reyes;
+}
+
+uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
+    return settings.integrator == IntegratorKind::Reyes ? ReyesIntegrator::samples_at_once(pixels) : 1;
 }
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
-           a.light_paths == b.light_paths && a.irradiance == b.irradiance;
+           a.shading_rate == b.shading_rate && same_heights(a, b) && a.light_paths == b.light_paths &&
+           a.irradiance == b.irradiance;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
@@ -111,6 +135,8 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
         return make_ray_tree<Distributed>(queue, settings);
     case IntegratorKind::Raster:
         return std::make_unique<RasterIntegrator>(queue, raster_settings(settings));
+    case IntegratorKind::Reyes:
+        return std::make_unique<ReyesIntegrator>(queue, reyes_settings(settings));
     case IntegratorKind::Light:
         return make_walks<ParticlesAlone>(queue, settings);
     case IntegratorKind::Bidirectional:
@@ -144,6 +170,9 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::Raster:
         static_cast<RasterIntegrator&>(integrator).set_settings(raster_settings(to));
         break;
+    case IntegratorKind::Reyes:
+        static_cast<ReyesIntegrator&>(integrator).set_settings(reyes_settings(to));
+        break;
     case IntegratorKind::Light:
         set_walk_settings<ParticlesAlone>(integrator, to);
         break;
@@ -157,6 +186,9 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
                             bool walks_itself, bool has_times) {
     if (settings.integrator == IntegratorKind::Raster) return RasterIntegrator::predicted_bytes(pixels);
+    if (settings.integrator == IntegratorKind::Reyes) {
+        return ReyesIntegrator::predicted_bytes(reyes_settings(settings), pixels, samples);
+    }
     const std::size_t tables = settings.light_paths ? LightPathsOnDevice::predicted_bytes(*settings.light_paths) : 0;
     if (walks_itself && settings.body == PathBody::Loop) return tables;
     const uint64_t all = pixels * samples;
@@ -164,6 +196,7 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     case IntegratorKind::Path:
     case IntegratorKind::Hybrid:
     case IntegratorKind::Raster:
+    case IntegratorKind::Reyes:
         break;
     case IntegratorKind::Cast:
         return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);

@@ -9,6 +9,7 @@
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/raster/raster_settings.h"
+#include "integrators/reyes/reyes_settings.h"
 #include "math/rgb.h"
 #include "render/light_paths/light_path_layers.h"
 
@@ -21,6 +22,7 @@ enum class IntegratorKind : uint8_t {
     Whitted,       // integrators/whitted/whitted.h
     Distributed,   // integrators/distributed/distributed.h
     Raster,        // integrators/raster/raster_integrator.h
+    Reyes,         // integrators/reyes/reyes_integrator.h
     Light,         // integrators/light/light.h
     Bidirectional, // integrators/bidirectional/bidirectional.h
 };
@@ -29,10 +31,12 @@ struct IntegratorSettings {
     IntegratorKind integrator = IntegratorKind::Path;
     PathSettings path; // of which all integrators have max_depth, sampler and seed
 
-    // Of Cast, Whitted and Raster: radiance from all around that diffuse surfaces reflect, W/(sr m2). None: Whitted and
-    // Raster take the mean of the environment.
+    // Of Cast, Whitted, Raster and Reyes: radiance from all around that diffuse surfaces reflect, W/(sr m2). None: all
+    // but Cast take the mean of the environment.
     std::optional<Rgb> ambient;
-    RasterLook look; // of Raster
+    RasterLook look;                           // of Raster
+    float shading_rate = 1;                    // of Reyes: no edge of a micropolygon is longer, pixels
+    std::shared_ptr<const HeightMaps> heights; // of Reyes: what displaces surfaces; null: nothing
 
     // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;
@@ -62,6 +66,9 @@ bool has_shutter(IntegratorKind kind);
 uint32_t most_depth(IntegratorKind kind);
 /// Whether point, spot and directional lights alone light surfaces.
 bool needs_punctual_lights(IntegratorKind kind);
+
+/// Samples of each pixel that together take hardly longer than one.
+uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels);
 
 /// Whether both give the same samples.
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);

@@ -34,7 +34,7 @@ bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
     return wants_lights && settings.path.max_depth > 0 && !has_punctual_light(scene) && !is_all_unlit(scene);
 }
 bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
-    return (settings.integrator == IntegratorKind::Whitted || settings.integrator == IntegratorKind::Raster) &&
+    return needs_punctual_lights(settings.integrator) && settings.integrator != IntegratorKind::Cast &&
            scene.environment;
 }
 

@@ -3,6 +3,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/json_text.h"
 #include "base/version.h"
@@ -128,6 +129,14 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     if (settings.integrator == IntegratorKind::Raster) {
         metadata.emplace_back("pertev.shading", std::string(name_of(settings.look.shading)));
         metadata.emplace_back("pertev.wireframe", static_cast<int32_t>(settings.look.is_wireframe));
+    }
+    if (settings.integrator == IntegratorKind::Reyes) {
+        metadata.emplace_back("pertev.shading_rate", settings.shading_rate);
+        std::set<std::string> heights; // of several materials where a name stands for more than one
+        if (settings.heights) {
+            for (const HeightMap& map : *settings.heights) heights.insert(map.text);
+        }
+        if (!heights.empty()) metadata.emplace_back("pertev.displacement", fmt::format("{}", fmt::join(heights, "\n")));
     }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));

@@ -18,14 +18,17 @@ namespace pertev {
 namespace {
 
 /// Samples of the next pass: aims at a third of a second, so that progress moves and Ctrl-C is heard, at no cost that
-/// shows. Never past the time that is left. `done` samples took `seconds`, `left` are to come.
+/// shows; all that go at once, where there is no limit of time. Never past the time that is left. `done` samples took
+/// `seconds`, `left` are to come.
 uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
     if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
-    if (done == 0) return 1;
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    const uint32_t at_once = settings.time_limit_s > 0 ? 1 : samples_at_once(settings, pixels);
+    if (done == 0) return std::min(left, at_once);
     const double a_sample = std::max(seconds / done, 1e-9);
     double budget = 1.0 / 3;
     if (settings.time_limit_s > 0) budget = std::min(budget, settings.time_limit_s - seconds);
-    return std::min(left, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0)));
+    return std::min(left, std::max(at_once, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0))));
 }
 
 bool same_film(const Film& film, const RenderSettings& settings) {

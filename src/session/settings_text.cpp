@@ -10,10 +10,10 @@ namespace {
 
 // A switch names each value, so that the compiler tells of one that was forgotten; these list them.
 constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
-constexpr IntegratorKind kIntegrators[] = {IntegratorKind::Hybrid,       IntegratorKind::Cast, // beside Path
-                                           IntegratorKind::Whitted,      IntegratorKind::Distributed,
-                                           IntegratorKind::Raster,       IntegratorKind::Light,
-                                           IntegratorKind::Bidirectional};
+constexpr IntegratorKind kIntegrators[] = {IntegratorKind::Hybrid,  IntegratorKind::Cast, // beside Path
+                                           IntegratorKind::Whitted, IntegratorKind::Distributed,
+                                           IntegratorKind::Raster,  IntegratorKind::Reyes,
+                                           IntegratorKind::Light,   IntegratorKind::Bidirectional};
 constexpr RasterShading kShadings[] = {RasterShading::Flat, RasterShading::Gouraud, RasterShading::Phong};
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
@@ -48,6 +48,8 @@ std::string_view name_of(IntegratorKind integrator) {
         return "distributed";
     case IntegratorKind::Raster:
         return "raster";
+    case IntegratorKind::Reyes:
+        return "reyes";
     case IntegratorKind::Light:
         return "light";
     case IntegratorKind::Bidirectional:
@@ -82,6 +84,7 @@ std::string_view integrator_name(const RenderSettings& settings) {
     case IntegratorKind::Whitted:
     case IntegratorKind::Distributed:
     case IntegratorKind::Raster:
+    case IntegratorKind::Reyes:
     case IntegratorKind::Light:
     case IntegratorKind::Bidirectional:
         break;

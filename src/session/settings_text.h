@@ -15,7 +15,7 @@
 namespace pertev {
 
 /// The integrator, "path" by name of the part of the light that it shows: "path", "direct" or "indirect"; "hybrid",
-/// "cast", "whitted", "distributed", "raster", "light", "bidirectional".
+/// "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional".
 std::string_view integrator_name(const RenderSettings& settings);
 /// False, and nothing done, where there is no such integrator.
 bool set_integrator(RenderSettings& settings, std::string_view name);

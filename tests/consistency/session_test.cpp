@@ -227,3 +227,24 @@ TEST_CASE("an integrator that knows nothing of the path tracer renders through t
     CHECK(picture.at(0, 4)[0] < 0.4f);  // left
     CHECK(picture.at(7, 0)[1] > 0.55f); // up
 }
+
+TEST_CASE("a picture whose time ran out again and again is that of one render, whatever the integrator") {
+    Queue queue = test::queue_asked_for();
+    const Scene scene = test::make_mixed_scene();
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    for (const IntegratorKind integrator :
+         {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Distributed, IntegratorKind::Raster,
+          IntegratorKind::Reyes, IntegratorKind::Light, IntegratorKind::Bidirectional}) {
+        CAPTURE(static_cast<int>(integrator));
+        RenderSettings settings;
+        settings.width = 24, settings.height = 16;
+        settings.integrator = integrator;
+        Session whole(queue, prepared, test::mixed_scene_camera(), settings);
+        CHECK(whole.render(3) == 3);
+        settings.time_limit_s = 1e-9;
+        Session broken_off(queue, prepared, test::mixed_scene_camera(), settings);
+        for (int i = 0; i < 3; ++i) CHECK(broken_off.render(100) == 1);
+        CHECK(picture_hash(broken_off.picture()) == picture_hash(whole.picture()));
+    }
+}

@@ -11,7 +11,7 @@ class WhatIsRefused(CliTest):
     def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
         for flag in ["--foo", "--spp 0", "--spp -1", "--spp 1.5", "--spp 4294967297", "--fov nan", "--fov 0",
                      "--fov 180", "--aperture -1", "--aperture nan", "--focus 0", "--focus inf", "--clamp nan",
-                     "--clamp 0", "--time-limit 0", "--time-limit nan", "--time nan", "--time inf", "--fps 0", "--turntable 0", "--environment-scale nan", "--environment-scale -1",
+                     "--clamp 0", "--shading-rate 0.1", "--shading-rate 65", "--time-limit 0", "--time-limit nan", "--time nan", "--time inf", "--fps 0", "--turntable 0", "--environment-scale nan", "--environment-scale -1",
                      "--environment-rotation inf", "--exposure much", "--exposure inf", "--seed -1",
                      "--seed 4294967296", "--threads 0", "--filter-radius nan", "--filter-radius 1e9",
                      "--view-height inf", "--max-depth -1", "--tone-map x", "--sampler x", "--filter x",
@@ -68,6 +68,14 @@ class WhatIsRefused(CliTest):
                 ("--shading flat", 2, "--shading: of --integrator raster; path shades every sample"),
                 ("--integrator cast --ambient 1 --wireframe", 2, "--wireframe: of --integrator raster"),
                 ("--integrator raster --ambient 1 --wireframe --shading flat", 2, "--shading: with --wireframe nothing is shaded"),
+                ("--integrator reyes --ambient 1 --aperture 0.1 --focus 1", 2, "--integrator reyes: a rasteriser sees through a pinhole"),
+                ("--integrator reyes", 2, "this scene has lamps alone"),
+                ("--integrator reyes --denoise svgf", 2, "--denoise svgf: reconstructs pictures of --integrator path and hybrid, not of reyes"),
+                ("--integrator raster --ambient 1 --shading-rate 2", 2, "--shading-rate: of --integrator reyes"),
+                ("--displacement white=x.png,1", 2, "--displacement: --integrator reyes alone displaces surfaces, path does not"),
+                ("--integrator reyes --ambient 1 --displacement white=x.png", 2, "--displacement white=x.png: expected MATERIAL=FILE,SCALE or"),
+                ("--integrator reyes --ambient 1 --displacement nobody=x.png,1", 2, "no material of the scene is called so"),
+                ("--integrator reyes --ambient 1 --displacement *=x.png,1", 2, "without texture coordinates"),
                 ("--integrator cast", 2, "this scene has lamps alone: --integrator distributed or path knows all lights")]:
             with self.subTest(flags=flags):
                 outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])

@@ -3,10 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/compare_pictures.h"
+#include "tests/support/flat_lamps.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -140,5 +144,62 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
         } else {
             CHECK(same < 1e-6);
         }
+    }
+}
+
+TEST_CASE("distributed gives the light paths that it follows as bright as path tracing does") {
+    Queue queue = test::queue_asked_for();
+    for (const Case& c : cases()) {
+        CAPTURE(c.name);
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
+        RenderSettings settings = settings_of(c);
+        settings.samples = 48;
+        settings.light_paths = std::make_shared<const LightPathLayers>(
+            put_to_scene({parse_light_path("followed=L.?[GS]*E")}, c.scene)); // integrators/distributed/distributed.h
+        const test::PictureEstimate path = test::estimate_picture(queue, prepared, c.camera, settings, 24, 1000);
+        settings.light_paths = nullptr;
+        const test::PictureEstimate all = test::estimate_picture(queue, prepared, c.camera, settings, 24, 500);
+        settings.integrator = IntegratorKind::Distributed;
+        const test::PictureEstimate distributed = test::estimate_picture(queue, prepared, c.camera, settings, 24, 1);
+        CHECK(test::p_value(distributed, path) > 0.001);
+        CHECK(test::p_value(test::brightened(distributed, 1.05, 5e-3), path) < 1e-4); // the test can see
+        CHECK(test::p_value(distributed, all) < 1e-4);                                // and there is more light
+    }
+}
+
+TEST_CASE("light and bidirectional show a floor under a flat lamp as bright as the closed form, to 1 %") {
+    constexpr double kHalf = 0.3; // of the patch of floor that is seen, metres
+    Queue queue = test::queue_asked_for();
+    const auto mean_of = [&](const Mesh& lamp, IntegratorKind integrator, uint32_t samples) {
+        Scene scene;
+        test::add(scene, test::floor_at(0, 50), test::white(1));
+        test::add(scene, lamp, {.name = "lamp", .base_color = {0, 0, 0}, .emission = {4, 4, 4}});
+        RenderSettings settings;
+        settings.width = settings.height = 32;
+        settings.samples = samples;
+        settings.filter = PixelFilter::Box;
+        settings.integrator = integrator;
+        const Camera camera = test::camera_down({0.4f, 0.1f, 0.2f}, 2 * float(kHalf));
+        return test::mean_of(test::render(queue, scene, camera, settings).picture);
+    };
+    const auto over_patch = [&](const auto& factor) { // Simpson's rule, either way
+        double sum = 0;
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                sum += (i == 1 ? 4 : 1) * (j == 1 ? 4 : 1) * factor(0.4 + kHalf * (i - 1), 0.2 + kHalf * (j - 1));
+            }
+        }
+        return sum / 36;
+    };
+    const Mesh rectangle = test::sheet({0, 2, 0}, {1.5f, 0, 0}, {0, 0, 1}), disc = test::disc(1.5f, 1);
+    const double under_rectangle =
+        4 * over_patch([](double x, double z) { return test::rectangle_factor(1.5, 1, 2, x, z); });
+    const double under_disc =
+        4 * over_patch([](double x, double z) { return test::disc_factor(1, 1.5, std::sqrt(x * x + z * z)); });
+    for (const auto& [integrator, samples] :
+         {std::pair(IntegratorKind::Light, 2048u), std::pair(IntegratorKind::Bidirectional, 64u)}) {
+        CHECK(mean_of(rectangle, integrator, samples) == doctest::Approx(under_rectangle).epsilon(0.01));
+        CHECK(mean_of(disc, integrator, samples) == doctest::Approx(under_disc).epsilon(0.01));
     }
 }

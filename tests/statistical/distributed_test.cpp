@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tests/support/compare_pictures.h"
+#include "tests/support/flat_lamps.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
@@ -16,8 +17,6 @@
 using namespace pertev;
 
 namespace {
-
-constexpr double kPiD = 3.141592653589793;
 
 RenderSettings distributed_settings(uint32_t side, uint32_t samples) {
     RenderSettings settings;
@@ -40,36 +39,17 @@ double floor_radiance(const Mesh& lamp, Vec3 at) {
     return static_cast<double>(result.picture.at(0, 0)[0]);
 }
 
-/// Share of a surface's view that a parallel rectangle takes which has a corner above it, sides over its height.
-double corner_factor(double x, double y) {
-    const double sx = std::sqrt(1 + x * x), sy = std::sqrt(1 + y * y);
-    return (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy)) / (2 * kPiD);
-}
-
-Mesh disc(float height, float radius) {
-    constexpr uint32_t kCorners = 256;
-    Mesh mesh;
-    mesh.positions.push_back({0, height, 0});
-    for (uint32_t i = 0; i < kCorners; ++i) {
-        const double angle = 2 * kPiD * i / kCorners;
-        mesh.positions.push_back(
-            {radius * static_cast<float>(std::cos(angle)), height, radius * static_cast<float>(std::sin(angle))});
-        mesh.indices.insert(mesh.indices.end(), {0, 1 + i, 1 + (i + 1) % kCorners}); // its front down
-    }
-    return mesh;
-}
-
 } // namespace
 
 TEST_CASE("irradiance under a rectangular lamp is that of the closed form") {
     const Mesh lamp = test::sheet({0, 2, 0}, {1.5f, 0, 0}, {0, 0, 1});
-    CHECK(floor_radiance(lamp, {0, 0, 0}) == doctest::Approx(4 * 4 * corner_factor(0.75, 0.5)).epsilon(2e-3));
-    CHECK(floor_radiance(lamp, {1.5f, 0, 1}) == doctest::Approx(4 * corner_factor(1.5, 1)).epsilon(2e-3));
+    CHECK(floor_radiance(lamp, {0, 0, 0}) == doctest::Approx(4 * 4 * test::corner_factor(0.75, 0.5)).epsilon(2e-3));
+    CHECK(floor_radiance(lamp, {1.5f, 0, 1}) == doctest::Approx(4 * test::corner_factor(1.5, 1)).epsilon(2e-3));
 }
 
 TEST_CASE("irradiance under a disc is that of the closed form") {
-    CHECK(floor_radiance(disc(2, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 4)).epsilon(2e-3));
-    CHECK(floor_radiance(disc(0.5f, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 0.25)).epsilon(2e-3));
+    CHECK(floor_radiance(test::disc(2, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 4)).epsilon(2e-3));
+    CHECK(floor_radiance(test::disc(0.5f, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 0.25)).epsilon(2e-3));
 }
 
 namespace {

@@ -56,7 +56,9 @@ PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, co
     settings.path.sampler = SamplerKind::Independent;
     return estimate_of(renders, [&](uint32_t number) {
         settings.path.seed = first_seed + number;
-        return render_picture(queue, prepared, camera, settings).picture;
+        RenderResult result = render_picture(queue, prepared, camera, settings);
+        if (!settings.light_paths) return result.picture;
+        return layer_named(result, settings.light_paths->expressions.front().name);
     });
 }
 

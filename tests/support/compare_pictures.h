@@ -22,6 +22,7 @@ struct PictureEstimate {
 /// Of pictures render(0), ..., render(renders - 1), which are independent.
 PictureEstimate estimate_of(uint32_t renders, const std::function<Image(uint32_t)>& render);
 
+/// Of the first layer of light paths, where the settings ask for some, in place of the picture.
 /// Renders with seeds first_seed, first_seed + 1, ... and independent numbers.
 PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                                  RenderSettings settings, uint32_t renders, uint32_t first_seed);

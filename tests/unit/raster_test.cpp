@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/parallel_for.h"
-#include "integrators/raster/scan_row.h"
+#include "render/raster/scan_row.h"
 #include "session/check_integrator.h"
 #include "session/session.h"
 #include "tests/support/flat_scenes.h"

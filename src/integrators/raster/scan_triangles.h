@@ -8,9 +8,9 @@
 #include "device/atomic_add.h"
 #include "device/atomic_min.h"
 #include "integrators/raster/raster_settings.h"
-#include "integrators/raster/scan_row.h"
 #include "render/accept_hit.h"
 #include "render/picture_view.h"
+#include "render/raster/scan_row.h"
 
 namespace pertev {
 

@@ -9,7 +9,7 @@
 
 #include "integrators/raster/scan_triangles.h"
 #include "render/first_hit.h"
-#include "render/surface.h"
+#include "render/raster/local_light.h"
 
 namespace pertev {
 
@@ -23,18 +23,15 @@ struct ShadePixels {
                    column = static_cast<int32_t>(pixel % pass.camera.width);
         const Vec2 place = pass.place_in_picture(column, row);
         const Ray ray = make_camera_ray(pass.picture.camera.view, place, {});
-        if (nearest == kNoDepth) return add_radiance(film, pixel, background(pixel, ray));
+        if (nearest == kNoDepth) {
+            add_no_first_hit(film, pixel, pass.sample);
+            return add_radiance(film, pixel, seen_background(pass.picture, ray.direction));
+        }
         const auto depth = float_of(static_cast<uint32_t>(nearest >> 32));
         add_radiance(film, pixel, shade(pixel, static_cast<uint32_t>(nearest), depth, place, ray));
     }
 
 private:
-    HD Rgb background(uint32_t pixel, const Ray& ray) const {
-        add_no_first_hit(film, pixel, pass.sample);
-        const LightSetView& lights = pass.picture.scene.lights;
-        if (!lights.has_environment() || pass.picture.hide_background) return {};
-        return environment_radiance(lights.environment, ray.direction);
-    }
     HD Rgb shade(uint32_t pixel, uint32_t number, float depth, Vec2 place, const Ray& ray) const {
         const SceneView& scene = pass.picture.scene;
         TriangleCorners corners = {};
@@ -64,7 +61,8 @@ private:
                 surface.frame = make_frame(surface.geometric_normal);
                 surface.tilt = 0;
             }
-            sum += (k < 3 ? of_corner[k] : 1.0f) * lit(surface, -direction);
+            sum += (k < 3 ? of_corner[k] : 1.0f) *
+                   local_light(scene.lights, surface, -direction, {pass.settings.ambient, pass.settings.max_depth});
         }
         return sum;
     }
@@ -73,20 +71,6 @@ private:
         const MeshView& mesh = pass.picture.scene.meshes[instance.mesh];
         const TriangleIndices i = triangle_indices(mesh, hit.primitive);
         return transform_point(instance.world_from_local, interpolate(mesh.positions, i, hit.u, hit.v));
-    }
-    /// Of a surface without shadows, towards `wo` (unit).
-    HD Rgb lit(const Surface& surface, Vec3 wo) const {
-        Rgb sum = surface.emission;
-        if (surface.is_unlit || pass.settings.max_depth == 0) return sum;
-        sum += surface.bsdf.diffuse_albedo() * pass.settings.ambient;
-        if (surface.bsdf.has_delta_only()) return sum;
-        const LightSetView& lights = pass.picture.scene.lights;
-        for (uint32_t k = 0; k < lights.punctual_count; ++k) {
-            LightSample sample;
-            if (!sample_punctual_light(lights.punctual[k], 1.0f, surface.position, sample)) continue;
-            sum += surface.evaluate(wo, sample.wi, kAllLobeClasses).f * sample.radiance;
-        }
-        return sum;
     }
 };
 

@@ -46,6 +46,12 @@ struct SeenPlane {
     }
 };
 
+HD inline SeenPlane plane_of(const PinholePoint (&corners)[3], bool is_perspective) {
+    const auto point = [](const PinholePoint& p) { return DoubleVec3{p.x, p.y, p.depth}; };
+    const DoubleVec3 a = point(corners[0]), normal = cross(point(corners[1]) - a, point(corners[2]) - a);
+    return {normal.x, normal.y, normal.z, dot(normal, a), is_perspective};
+}
+
 struct ProjectedTriangle {
     int32_t x[kMostCorners], y[kMostCorners]; // 1/256 pixels from the picture's upper left corner
     int count;                                // of a convex polygon's corners
@@ -89,9 +95,7 @@ HD inline bool project_triangle(const Pinhole& camera, const PinholePoint (&corn
         out.nearest = i == 0 ? p.depth : min(out.nearest, p.depth);
         out.farthest = i == 0 ? p.depth : max(out.farthest, p.depth);
     }
-    const auto point = [](const PinholePoint& p) { return DoubleVec3{p.x, p.y, p.depth}; };
-    const DoubleVec3 a = point(corners[0]), normal = cross(point(corners[1]) - a, point(corners[2]) - a);
-    out.plane = {normal.x, normal.y, normal.z, dot(normal, a), camera.is_perspective};
+    out.plane = plane_of(corners, camera.is_perspective);
     return true;
 }
 

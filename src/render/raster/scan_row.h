@@ -6,7 +6,7 @@
 //
 // Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for the edge functions.
 
-#include "integrators/raster/project_triangle.h"
+#include "render/raster/project_triangle.h"
 
 namespace pertev {
 
@@ -39,24 +39,37 @@ HD inline PixelSpan rows_of(const ProjectedTriangle& t, SamplePlace place, uint3
     return {max(row(top - 1) + 1, 0), min(row(bottom), static_cast<int32_t>(height) - 1)};
 }
 
+/// The triangle of corners 0, k and k + 1, wound so that its area is positive. False where it has none.
+struct WoundTriangle {
+    int64_t x[3], y[3];
+
+    HD bool begin(const ProjectedTriangle& t, int k) {
+        x[0] = t.x[0], x[1] = t.x[k], x[2] = t.x[k + 1];
+        y[0] = t.y[0], y[1] = t.y[k], y[2] = t.y[k + 1];
+        const int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
+        if (area < 0) { // the other way round
+            const int64_t column = x[1], row = y[1];
+            x[1] = x[2], y[1] = y[2];
+            x[2] = column, y[2] = row;
+        }
+        return area != 0;
+    }
+};
+
+/// Whether a triangle has the samples on an edge that goes by (dx, dy): a left one, or an upper one.
+HD inline bool has_edge(int64_t dx, int64_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
+
 /// Pixels of row `y` whose samples lie in the triangle of corners 0, k and k + 1.
 HD inline PixelSpan span_of(const ProjectedTriangle& t, int k, int32_t y, SamplePlace place, uint32_t width) {
-    int64_t px[3] = {t.x[0], t.x[k], t.x[k + 1]}, py[3] = {t.y[0], t.y[k], t.y[k + 1]};
-    const int64_t area = (px[1] - px[0]) * (py[2] - py[0]) - (py[1] - py[0]) * (px[2] - px[0]);
     PixelSpan span = {0, -1};
-    if (area == 0) return span;
-    if (area < 0) { // the other way round
-        const int64_t x = px[1], row = py[1];
-        px[1] = px[2], py[1] = py[2];
-        px[2] = x, py[2] = row;
-    }
+    WoundTriangle wound;
+    if (!wound.begin(t, k)) return span;
     int64_t first = 0, last = static_cast<int64_t>(width) - 1;
     const int64_t at_y = int64_t(y) * kSubpixels + place.y;
     for (int i = 0; i < 3; ++i) {
-        const int64_t x0 = px[i], y0 = py[i], dx = px[(i + 1) % 3] - x0, dy = py[(i + 1) % 3] - y0;
-        const bool has_edge = dy < 0 || (dy == 0 && dx > 0); // left, or upper
+        const int64_t x0 = wound.x[i], y0 = wound.y[i], dx = wound.x[(i + 1) % 3] - x0, dy = wound.y[(i + 1) % 3] - y0;
         // Inside: at - 256 dy pixel >= 0.
-        const int64_t at = dx * (at_y - y0) + dy * (x0 - place.x) - (has_edge ? 0 : 1);
+        const int64_t at = dx * (at_y - y0) + dy * (x0 - place.x) - (has_edge(dx, dy) ? 0 : 1);
         if (dy > 0) {
             last = min(last, floor_divide(at, kSubpixels * dy));
         } else if (dy < 0) {
@@ -68,6 +81,22 @@ HD inline PixelSpan span_of(const ProjectedTriangle& t, int k, int32_t y, Sample
     span.first = static_cast<int32_t>(min(first, int64_t(width)));
     span.last = static_cast<int32_t>(max(last, int64_t(-1)));
     return span;
+}
+
+/// Whether the polygon has the one sample at `at`, from the picture's upper left corner: what span_of says of it.
+HD inline bool has_sample(const ProjectedTriangle& t, SamplePlace at) {
+    for (int k = 1; k + 1 < t.count; ++k) {
+        WoundTriangle wound;
+        if (!wound.begin(t, k)) continue;
+        bool is_inside = true;
+        for (int i = 0; i < 3; ++i) {
+            const int64_t dx = wound.x[(i + 1) % 3] - wound.x[i], dy = wound.y[(i + 1) % 3] - wound.y[i];
+            const int64_t side = dx * (at.y - wound.y[i]) - dy * (at.x - wound.x[i]);
+            is_inside = is_inside && side >= (has_edge(dx, dy) ? 0 : 1);
+        }
+        if (is_inside) return true;
+    }
+    return false;
 }
 
 } // namespace pertev

@@ -1,0 +1,128 @@
+#pragma once
+
+// A triangle of the scene as a surface to dice: where a point of it lies, before and after it is displaced, and which
+// edges on it are too long.
+//
+// No cracks: a point is named by its weights, multiples of 2^-23, whose sums and differences are exact. On an edge one
+// weight is 0, so its place there is a sum of two products and the same bits in both triangles that share the edge, and
+// so are its normal and its height where they share those of the corners. Whether an edge is halved depends on its two
+// ends alone, and treats them alike.
+
+#include "integrators/reyes/displacement.h"
+#include "render/raster/project_triangle.h"
+#include "render/textured_factor.h"
+
+namespace pertev {
+
+/// Weights of a triangle's second and third corner, and where that is in the camera's space.
+struct DicedPoint {
+    Vec2 at;
+    PinholePoint base, place; // before and after it is displaced
+};
+
+struct DicedTriangle {
+    TriangleCorners corners;
+    const InstanceView* placed;
+    const MeshView* mesh;
+    const DisplacementView* displacement; // null: none
+    TriangleIndices indices;
+    Vec3 flat_normal;                   // by the winding, mesh space; where the mesh has no normals
+    DoubleVec3 row_x, row_y, row_depth; // of camera-from-mesh
+    double reach;                       // no point is moved by more in any coordinate of the camera's space, metres
+
+    /// False where it is hidden.
+    HD bool begin(const Pinhole& camera, const SceneView& scene, const DisplacementsView& displacements,
+                  uint32_t number) {
+        if (!triangle_corners(camera, scene, number, corners)) return false;
+        placed = scene.instances + corners.instance;
+        mesh = scene.meshes + placed->mesh;
+        indices = triangle_indices(*mesh, corners.primitive);
+        displacement = displacements.find(placed->material);
+        reach = 0;
+        if (displacement == nullptr) return true;
+        const Transform& m = placed->world_from_local;
+        const auto through = [&](DoubleVec3 row) {
+            const DoubleVec3 a = to_double(m.row0), b = to_double(m.row1), c = to_double(m.row2);
+            return DoubleVec3{row.x * a.x + row.y * b.x + row.z * c.x, row.x * a.y + row.y * b.y + row.z * c.y,
+                              row.x * a.z + row.y * b.z + row.z * c.z};
+        };
+        row_x = through(camera.row_x), row_y = through(camera.row_y), row_depth = through(camera.row_depth);
+        reach = static_cast<double>(displacement->reach) * static_cast<double>(row_norm(m)) * camera.error_scale *
+                (1 + 0x1p-20);
+        const Vec3 a = mesh->positions[indices.a];
+        const Vec3 ab = mesh->positions[indices.b] - a, ac = mesh->positions[indices.c] - a;
+        const float size = max(max_component(abs(ab)), max_component(abs(ac)));
+        flat_normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+        return true;
+    }
+
+    /// How a point is moved, mesh space.
+    HD DoubleVec3 moved(Vec2 at) const {
+        const Vec3 normal = mesh->normals != nullptr ? interpolate(mesh->normals, indices, at.x, at.y) : flat_normal;
+        const DoubleVec3 n = to_double(normal);
+        const double square = dot(n, n);
+        if (!(square > 0)) return {0, 0, 0};
+        const Vec2 uv = mesh->uv[0] != nullptr ? interpolate(mesh->uv[0], indices, at.x, at.y) : Vec2{0, 0};
+        const double by = static_cast<double>(displacement->at(uv)) / ::sqrt(square);
+        return {by * n.x, by * n.y, by * n.z};
+    }
+
+    HD DicedPoint point(bool is_perspective, Vec2 at) const {
+        const auto u = static_cast<double>(at.x), v = static_cast<double>(at.y), w = 1 - u - v;
+        const PinholePoint &a = corners.p[0], &b = corners.p[1], &c = corners.p[2];
+        const auto mix = [&](double of_a, double of_b, double of_c) { return w * of_a + u * of_b + v * of_c; };
+        DicedPoint point;
+        point.at = at;
+        point.base = {mix(a.x, b.x, c.x), mix(a.y, b.y, c.y), 1, mix(a.depth, b.depth, c.depth)};
+        point.place = point.base;
+        if (displacement != nullptr) {
+            const DoubleVec3 by = moved(at);
+            point.place.x += dot(row_x, by), point.place.y += dot(row_y, by), point.place.depth += dot(row_depth, by);
+        }
+        if (is_perspective) point.base.w = point.base.depth, point.place.w = point.place.depth;
+        return point;
+    }
+
+    /// Whether the edge is to be halved: it is longer than `rate`, pixels, by way of its middle, or its length cannot
+    /// be told, as it goes through the plane of the eye.
+    HD bool is_long(const Pinhole& camera, double rate, const DicedPoint& a, const DicedPoint& b) const {
+        const float u = 0.5f * (a.at.x + b.at.x) * 0x1p23f, v = 0.5f * (a.at.y + b.at.y) * 0x1p23f;
+        if (!(floor(u) == u && floor(v) == v)) return false; // its middle would have no exact weights
+        if (is_long(camera, rate, a.base, b.base)) return true;
+        if (displacement == nullptr) return false;
+        const PinholePoint middle = point(camera.is_perspective, 0.5f * (a.at + b.at)).place; // it may bulge
+        return is_long(camera, 0.5 * rate, a.place, middle) || is_long(camera, 0.5 * rate, middle, b.place);
+    }
+
+    /// Whether nothing of the triangle between the points can be in the picture.
+    HD bool is_outside(const Pinhole& camera, const DicedPoint (&p)[3]) const {
+        const double beyond = camera.filter_radius + 2; // pixels
+        const double x = camera.x_of(camera.width + beyond), y = camera.y_of(camera.height + beyond);
+        const double per_w = camera.is_perspective ? reach : 0;
+        const double off_x = reach + per_w * x, off_y = reach + per_w * y;
+        bool is_near = true, is_left = true, is_right = true, is_up = true, is_down = true;
+        for (const DicedPoint& point : p) {
+            const PinholePoint& q = point.base;
+            is_near = is_near && q.depth < kNearest - reach;
+            is_left = is_left && q.x < -x * q.w - off_x;
+            is_right = is_right && q.x > x * q.w + off_x;
+            is_up = is_up && q.y < -y * q.w - off_y;
+            is_down = is_down && q.y > y * q.w + off_y;
+        }
+        return is_near || is_left || is_right || is_up || is_down;
+    }
+
+private:
+    HD bool is_long(const Pinhole& camera, double rate, const PinholePoint& a, const PinholePoint& b) const {
+        if (camera.is_perspective && (a.depth < kNearest || b.depth < kNearest)) {
+            if (a.depth < kNearest && b.depth < kNearest) return false;
+            const double size = ::fabs(a.x - b.x) + ::fabs(a.y - b.y) + ::fabs(a.depth - b.depth);
+            return size > max(kNearest, 0x1p-6 * reach);
+        }
+        const double dx = camera.column_of(a.x / a.w) - camera.column_of(b.x / b.w);
+        const double dy = camera.row_of(a.y / a.w) - camera.row_of(b.y / b.w);
+        return dx * dx + dy * dy > rate * rate;
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,78 @@
+#pragma once
+
+// Hiding: which samples a micropolygon covers, and of which it is the nearest. By the edge rule of the rasteriser
+// (render/raster/scan_row.h), so of micropolygons that share an edge just one has a sample on it.
+//
+// Two passes over all micropolygons: the first finds the least (depth, triangle) of a sample, the second the least of
+// that triangle's micropolygons with this depth. Both are minima, so no order of threads shows.
+
+#include "device/atomic_min.h"
+#include "integrators/reyes/diced_triangle.h"
+#include "integrators/reyes/piece.h"
+#include "integrators/reyes/sample_lists.h"
+#include "render/accept_hit.h"
+#include "render/raster/local_light.h"
+
+namespace pertev {
+
+/// What all stages of a pass know.
+struct ReyesPass {
+    Pinhole camera;
+    PictureView picture;
+    DisplacementsView displacements;
+    double rate; // ReyesSettings::shading_rate
+    LocalLight light;
+    uint32_t seed;
+    SampleLists samples;
+};
+
+/// Of a displaced surface the micropolygon's own winding tells its front.
+HD inline bool is_hidden_back(const InstanceView& placed, const SeenPlane& plane) {
+    if (placed.hides_back == 0) return false;
+    const double away = plane.is_perspective ? plane.constant : plane.depth; // of the normal from the eye
+    return placed.is_mirrored != 0 ? away < 0 : away > 0;
+}
+
+enum class HidingPass : uint8_t { FindNearest, FindMicropolygon };
+
+template <HidingPass kPass>
+HD void hide_micropolygon(const ReyesPass& pass, const DicedTriangle& triangle, const Piece& piece,
+                          const DicedPoint (&points)[3]) {
+    const PinholePoint corners[3] = {points[0].place, points[1].place, points[2].place};
+    ProjectedTriangle projected;
+    if (!project_triangle(pass.camera, corners, projected)) return;
+    if (is_hidden_back(*triangle.placed, projected.plane)) return;
+    int32_t left = projected.x[0], right = left, top = projected.y[0], bottom = top;
+    for (int i = 1; i < projected.count; ++i) {
+        left = min(left, projected.x[i]), right = max(right, projected.x[i]);
+        top = min(top, projected.y[i]), bottom = max(bottom, projected.y[i]);
+    }
+    const SampleLists& samples = pass.samples;
+    const Vec2 middle = middle_of(piece);
+    for (int32_t row = samples.row_of(top); row <= samples.row_of(bottom); ++row) {
+        for (int32_t column = samples.column_of(left); column <= samples.column_of(right); ++column) {
+            for (uint32_t i = samples.head(column, row); i != kNoSample; i = samples.next[i]) {
+                const SamplePlace at = samples.places[i];
+                if (at.x < left || at.x > right || !has_sample(projected, at)) continue;
+                constexpr double kStep = 1.0 / kSubpixels;
+                const double x = pass.camera.x_of(kStep * at.x), y = pass.camera.y_of(kStep * at.y);
+                const double depth = clamp(projected.plane.depth_at(x, y), projected.nearest, projected.farthest);
+                const uint64_t key = uint64_t(bits_of(static_cast<float>(depth))) << 32 | piece.triangle;
+                if (kPass == HidingPass::FindMicropolygon && key != samples.nearest[i]) continue;
+                if (triangle.placed->has_alpha != 0) {
+                    const SampleKey sample = {i % samples.pixels(), samples.first + i / samples.pixels(), pass.seed};
+                    const AcceptHit accept = {pass.picture.scene, {}, {}, coin_key(sample, 0, false)};
+                    const TriangleCorners& of = triangle.corners;
+                    if (!accept.passes_alpha(of.instance, of.primitive, middle.x, middle.y)) continue;
+                }
+                if (kPass == HidingPass::FindNearest) {
+                    atomic_min(samples.nearest + i, key);
+                } else {
+                    atomic_min(samples.ways + i, piece.way);
+                }
+            }
+        }
+    }
+}
+
+} // namespace pertev

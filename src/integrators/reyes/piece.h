@@ -1,0 +1,80 @@
+#pragma once
+
+// A piece of a triangle on its way to micropolygons. What is too long in the picture is halved at its middle, edge by
+// edge, so a piece goes on as two, three or four. What has no long edge is a micropolygon.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/vec2.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kMostLevels = 31; // of halving, two bits each of Piece::way
+inline constexpr uint64_t kNoWay = ~uint64_t(0);
+
+struct Piece {
+    Vec2 corners[3];   // weights of the triangle's second and third corner
+    uint32_t triangle; // of the scene
+    uint32_t level;    // how often it was divided
+    uint64_t way; // which child each time, from the top bits down: no two micropolygons of a triangle have the same
+};
+
+HD inline Piece whole_triangle(uint32_t number) { return {{{0, 0}, {1, 0}, {0, 1}}, number, 0, 0}; }
+
+/// Weights of its middle.
+HD inline Vec2 middle_of(const Piece& piece) {
+    constexpr float kThird = 1.0f / 3;
+    return kThird * (piece.corners[0] + piece.corners[1] + piece.corners[2]);
+}
+
+/// `long_edges`: bit k says that the edge from corner k to the next one is to be halved.
+HD inline uint32_t child_count(uint32_t long_edges) {
+    const uint32_t edges = (long_edges & 1u) + (long_edges >> 1 & 1u) + (long_edges >> 2 & 1u);
+    return edges == 0 ? 0 : edges + 1;
+}
+
+/// Child `number` of `piece`, wound as it is.
+HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t number) {
+    const Vec2* c = piece.corners;
+    const auto middle = [&](uint32_t edge) { return 0.5f * (c[edge] + c[(edge + 1) % 3]); };
+    Piece child = piece;
+    child.level = piece.level + 1;
+    child.way = piece.way | uint64_t(number) << (2 * (kMostLevels - 1 - piece.level));
+    const auto set = [&](Vec2 x, Vec2 y, Vec2 z) { child.corners[0] = x, child.corners[1] = y, child.corners[2] = z; };
+    if (long_edges == 7) {
+        if (number < 3) {
+            set(c[number], middle(number), middle((number + 2) % 3));
+        } else {
+            set(middle(0), middle(1), middle(2));
+        }
+        return child;
+    }
+    if ((long_edges & (long_edges - 1)) == 0) { // one
+        const uint32_t k = long_edges == 1 ? 0 : long_edges == 2 ? 1 : 2;
+        const Vec2 p = c[k], q = c[(k + 1) % 3], r = c[(k + 2) % 3], m = middle(k);
+        if (number == 0) {
+            set(p, m, r);
+        } else {
+            set(m, q, r);
+        }
+        return child;
+    }
+    const uint32_t k = long_edges == 3 ? 0 : long_edges == 6 ? 1 : 2; // edges k and k + 1
+    const Vec2 p = c[k], q = c[(k + 1) % 3], r = c[(k + 2) % 3], m = middle(k), n = middle((k + 1) % 3);
+    if (number == 0) {
+        set(m, q, n);
+    } else if (number == 1) {
+        set(p, m, n);
+    } else {
+        set(p, n, r);
+    }
+    return child;
+}
+
+/// The child through which `way` goes from a piece at `level`.
+HD inline uint32_t child_on_way(uint64_t way, uint32_t level) {
+    return static_cast<uint32_t>(way >> (2 * (kMostLevels - 1 - level))) & 3u;
+}
+
+} // namespace pertev

@@ -1,0 +1,181 @@
+#include "integrators/reyes/reyes_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "device/launch.h"
+#include "integrators/reyes/shade_samples.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint64_t kMostSamplesAtOnce = uint64_t(1) << 23; // of all pixels, but for one of each
+constexpr uint32_t kRoundsWithOneLook = 8;                 // at how far away everything is by now
+constexpr uint32_t kStack = 1u << 19, kMostUnderWay = 1u << 16;
+
+// Why the stack suffices: a round takes `kLeast` pieces at least off the top and leaves four of each at most, one level
+// further. So what lies 4 kLeast higher is a level further, and no level is beyond kMostLevels. Larger rounds never
+// fill what is kept for that.
+constexpr uint32_t kLeast = 1024, kReserve = 4 * kLeast * (kMostLevels + 2);
+
+uint32_t pieces_at_once(uint32_t height) {
+    const uint32_t room = height < kStack - kReserve ? (kStack - kReserve - height) / 4 : 0;
+    return std::min({height, std::max(kLeast, room), kMostUnderWay});
+}
+
+uint64_t samples_held(uint64_t pixels, uint32_t samples) {
+    return std::clamp(ReyesIntegrator::samples_at_once(pixels), 1u, std::max(samples, 1u)) * pixels;
+}
+
+uint64_t texels(const HeightMaps& maps) {
+    uint64_t sum = 0;
+    for (const HeightMap& map : maps) sum += map.heights.pixels.size();
+    return sum;
+}
+
+/// Materials up to the last that has heights.
+uint64_t materials_of(const HeightMaps& maps) {
+    uint64_t count = 0;
+    for (const HeightMap& map : maps) count = std::max(count, uint64_t(map.material) + 1);
+    return count;
+}
+
+template <class T>
+void fit(Queue& queue, Buffer<T>& buffer, uint64_t count, const char* name) {
+    if (buffer.size() >= count) return;
+    buffer = Buffer<T>(); // before the new one, so that both need not fit
+    buffer = Buffer<T>(queue, count, name);
+}
+
+/// Of scale (h - middle), in size.
+float reach_of(const HeightMap& map) {
+    float reach = 0;
+    for (const float h : map.heights.pixels) reach = std::max(reach, std::abs(map.scale * (h - map.middle)));
+    return reach * (1 + 0x1p-20f);
+}
+
+} // namespace
+
+ReyesIntegrator::ReyesIntegrator(Queue& queue, const ReyesSettings& settings)
+    : queue_(queue), settings_(settings), count_(queue, 1, "pieces of triangles") {}
+
+void ReyesIntegrator::set_settings(const ReyesSettings& settings) {
+    has_heights_ = has_heights_ && settings.heights == settings_.heights;
+    settings_ = settings;
+}
+
+uint32_t ReyesIntegrator::samples_at_once(uint64_t pixels) {
+    return static_cast<uint32_t>(std::max<uint64_t>(kMostSamplesAtOnce / pixels, 1));
+}
+
+std::size_t ReyesIntegrator::predicted_bytes(const ReyesSettings& settings, uint64_t pixels, uint32_t samples) {
+    const uint64_t all = samples_held(pixels, samples);
+    std::size_t bytes = all * (sizeof(SamplePlace) + 2 * sizeof(uint64_t) + sizeof(uint32_t)) +
+                        pixels * (sizeof(uint32_t) + sizeof(float)) + sizeof(uint32_t) +
+                        (std::size_t(kStack) + kMostUnderWay) * sizeof(Piece);
+    if (settings.heights) {
+        bytes += texels(*settings.heights) * sizeof(float) + materials_of(*settings.heights) * sizeof(DisplacementView);
+    }
+    return bytes;
+}
+
+std::size_t ReyesIntegrator::bytes() const {
+    return places_.size() * sizeof(SamplePlace) + (nearest_.size() + ways_.size()) * sizeof(uint64_t) +
+           (next_.size() + heads_.size() + count_.size()) * sizeof(uint32_t) +
+           (stack_.size() + under_way_.size()) * sizeof(Piece) + (far_.size() + heights_.size()) * sizeof(float) +
+           displacements_.size() * sizeof(DisplacementView);
+}
+
+void ReyesIntegrator::begin(const PictureView& picture, SceneTracer&, uint32_t samples) {
+    if (picture.scene.triangle_count >= kNoHit) {
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("--integrator reyes: {} triangles in all instances of the scene; it dices {} at most",
+                                picture.scene.triangle_count, kNoHit - 1));
+    }
+    picture_ = picture;
+    camera_ = make_pinhole(picture.camera);
+    light_ = {settings_.ambient, settings_.max_depth};
+    const LightSetView& lights = picture.scene.lights;
+    if (!settings_.has_ambient && lights.has_environment()) light_.ambient = lights.environment.mean;
+    const uint64_t pixels = uint64_t(picture.camera.width) * picture.camera.height;
+    const uint64_t all = samples_held(pixels, samples);
+    fit(queue_, places_, all, "places of samples");
+    fit(queue_, nearest_, all, "samples' nearest triangles");
+    fit(queue_, ways_, all, "samples' micropolygons");
+    fit(queue_, next_, all, "lists of samples");
+    fit(queue_, heads_, pixels, "lists of samples");
+    fit(queue_, far_, pixels, "farthest samples");
+    fit(queue_, stack_, kStack, "pieces of triangles");
+    fit(queue_, under_way_, kMostUnderWay, "pieces of triangles");
+    if (settings_.heights && !has_heights_) upload_heights();
+}
+
+void ReyesIntegrator::upload_heights() {
+    const HeightMaps& maps = *settings_.heights;
+    heights_ = Buffer<float>();
+    displacements_ = Buffer<DisplacementView>();
+    heights_ = Buffer<float>(queue_, texels(maps), "heights");
+    std::vector<DisplacementView> views(materials_of(maps));
+    uint64_t at = 0;
+    for (const HeightMap& map : maps) {
+        heights_.upload_at(at, map.heights.pixels);
+        views[map.material] = {heights_.data() + at, map.heights.width, map.heights.height, map.scale,
+                               map.middle,           reach_of(map)};
+        at += map.heights.pixels.size();
+    }
+    displacements_ = Buffer<DisplacementView>(queue_, views, "heights");
+    has_heights_ = true;
+}
+
+template <HidingPass kPass>
+bool ReyesIntegrator::hide(const ReyesPass& pass) {
+    const PiecesView pieces = {stack_.data(), under_way_.data(), count_.data(), kStack};
+    const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
+    uint32_t height = 0, round = 0;
+    for (uint32_t begun = 0; height > 0 || begun < triangles; ++round) {
+        if (is_abandoned()) return false;
+        const bool is_news = kPass == HidingPass::FindNearest ? round % kRoundsWithOneLook == 0 : round == 0;
+        if (is_news) launch(queue_, "find_far", pass.samples.pixels(), FindFar{pass.samples});
+        const uint32_t taken = pieces_at_once(height);
+        const uint32_t more = taken == height ? std::min(kMostUnderWay - taken, triangles - begun) : 0;
+        launch(queue_, "take_pieces", taken + more, TakePieces{pieces, height, taken, begun});
+        launch(queue_, "split_pieces", taken + more, SplitPieces<kPass>{pass, pieces});
+        begun += more;
+        queue_.copy_to_host(&height, count_.data(), sizeof height);
+        PERTEV_CHECK(height <= kStack);
+    }
+    return true;
+}
+
+void ReyesIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
+    PERTEV_CHECK(!film.frame.is_there());
+    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
+    const auto at_once = static_cast<uint32_t>(std::min<uint64_t>(count, places_.size() / pixels));
+    DisplacementsView displacements;
+    if (settings_.heights) displacements = {displacements_.data(), static_cast<uint32_t>(displacements_.size())};
+    for (uint32_t done = 0; done < count; done += at_once) {
+        const uint32_t now = std::min(at_once, count - done);
+        const ReyesPass pass = {camera_,
+                                picture_,
+                                displacements,
+                                static_cast<double>(settings_.shading_rate),
+                                light_,
+                                settings_.seed,
+                                {places_.data(), nearest_.data(), ways_.data(), next_.data(), heads_.data(),
+                                 far_.data(), picture_.camera.width, picture_.camera.height, first + done, now}};
+        nearest_.fill(0xff); // kNothingThere
+        ways_.fill(0xff);    // kNoWay
+        heads_.fill(0xff);   // kNoSample
+        launch(queue_, "place_samples", pixels * now,
+               PlaceSamples{picture_.camera, settings_.sampler, settings_.seed, pass.samples});
+        if (!hide<HidingPass::FindNearest>(pass) || !hide<HidingPass::FindMicropolygon>(pass)) return;
+        launch(queue_, "shade_samples", pixels, ShadeSamples{pass, film});
+    }
+    queue_.wait();
+}
+
+} // namespace pertev

@@ -1,0 +1,147 @@
+#pragma once
+
+// Last stage of a pass: each sample shows the micropolygon that is nearest there. A micropolygon has one colour, that
+// of its middle, so it is a function of the scene and the camera alone, and what a pixel's samples share is shaded
+// once.
+//
+// A displaced one is lit with its own normal, turned by what interpolation turns the normal of the bare triangle by: so
+// smooth meshes stay smooth.
+
+#include "integrators/reyes/split_stages.h"
+#include "render/first_hit.h"
+
+namespace pertev {
+
+/// A micropolygon again, by its triangle and its way.
+struct Micropolygon {
+    DicedTriangle triangle;
+    Piece piece;
+    DicedPoint points[3];
+
+    HD bool begin(const ReyesPass& pass, uint32_t number, uint64_t way) {
+        if (!triangle.begin(pass.camera, pass.picture.scene, pass.displacements, number)) return false;
+        piece = whole_triangle(number);
+        for (;;) {
+            for (int k = 0; k < 3; ++k) points[k] = triangle.point(pass.camera.is_perspective, piece.corners[k]);
+            const uint32_t edges = piece.level < kMostLevels ? long_edges(pass, triangle, points) : 0;
+            if (edges == 0) return true;
+            piece = child_of(piece, edges, child_on_way(way, piece.level));
+        }
+    }
+
+    /// In the world, displaced.
+    HD DoubleVec3 world_place(Vec2 at) const {
+        const MeshView& mesh = *triangle.mesh;
+        const TriangleIndices i = triangle.indices;
+        const auto u = static_cast<double>(at.x), v = static_cast<double>(at.y), w = 1 - u - v;
+        const DoubleVec3 a = to_double(mesh.positions[i.a]), b = to_double(mesh.positions[i.b]),
+                         c = to_double(mesh.positions[i.c]);
+        DoubleVec3 p = {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y, w * a.z + u * b.z + v * c.z};
+        if (triangle.displacement != nullptr) {
+            const DoubleVec3 by = triangle.moved(at);
+            p = {p.x + by.x, p.y + by.y, p.z + by.z};
+        }
+        const Transform& m = triangle.placed->world_from_local;
+        const DoubleVec3 t = to_double(m.translation);
+        return {dot(to_double(m.row0), p) + t.x, dot(to_double(m.row1), p) + t.y, dot(to_double(m.row2), p) + t.z};
+    }
+
+    /// What is there at weights `at` of the triangle, `inside` being those of the micropolygon itself. `direction`:
+    /// unit, from the eye.
+    HD Surface surface(const SceneView& scene, Vec2 at, Vec2 inside, Vec3 direction) const {
+        const TriangleCorners& of = triangle.corners;
+        Surface s = make_surface(scene, {0, at.x, at.y, of.instance, of.primitive}, direction);
+        if (triangle.displacement == nullptr) return s;
+        const DoubleVec3 a = world_place(piece.corners[0]);
+        const DoubleVec3 ab = world_place(piece.corners[1]) - a, ac = world_place(piece.corners[2]) - a;
+        const Vec3 bare = bare_normal();
+        const bool is_turned = dot(bare, s.geometric_normal) < 0; // its vertex normals call the other side the front
+        const float sign = (triangle.placed->is_mirrored != 0) != is_turned ? -1.0f : 1.0f;
+        const DoubleVec3 across = cross(ab, ac);
+        const double length = ::sqrt(dot(across, across));
+        const Vec3 normal = length > 0 ? sign * to_float(across / length) : s.geometric_normal;
+        const double u = static_cast<double>(inside.x), v = static_cast<double>(inside.y);
+        s.position = to_float({a.x + u * ab.x + v * ac.x, a.y + u * ab.y + v * ac.y, a.z + u * ab.z + v * ac.z});
+        s.frame = make_frame(normalize_or(normal + (s.frame.normal - s.geometric_normal), normal));
+        s.geometric_normal = normal;
+        s.tilt = 0;
+        return s;
+    }
+
+    /// Its one colour, W/(sr m2), towards the eye.
+    HD Rgb color(const ReyesPass& pass) const {
+        const CameraRays& camera = pass.picture.camera;
+        constexpr float kThird = 1.0f / 3;
+        const Vec2 middle = middle_of(piece);
+        Vec3 direction = camera.axis;
+        if (pass.camera.is_perspective) {
+            direction = normalize_or(to_float(world_place(middle) - pass.camera.eye), camera.axis);
+        }
+        const Surface s = surface(pass.picture.scene, middle, {kThird, kThird}, direction);
+        return local_light(pass.picture.scene.lights, s, -direction, pass.light);
+    }
+
+private:
+    /// Of the triangle before it is displaced, by its winding.
+    HD Vec3 bare_normal() const {
+        const MeshView& mesh = *triangle.mesh;
+        const Transform& m = triangle.placed->world_from_local;
+        const TriangleIndices i = triangle.indices;
+        const Vec3 a = mesh.positions[i.a], ab = transform_vector(m, mesh.positions[i.b] - a),
+                   ac = transform_vector(m, mesh.positions[i.c] - a);
+        const float size = max(max_component(abs(ab)), max_component(abs(ac)));
+        const Vec3 across = cross((1.0f / size) * ab, (1.0f / size) * ac);
+        return triangle.placed->is_mirrored != 0 ? -across : across;
+    }
+};
+
+/// All samples of a pixel.
+struct ShadeSamples {
+    ReyesPass pass;
+    FilmView film;
+
+    HD void operator()(uint32_t pixel) const {
+        const SampleLists& samples = pass.samples;
+        Micropolygon seen;
+        uint64_t way = kNoWay;
+        uint32_t number = kNoHit;
+        Rgb color = {};
+        for (uint32_t s = 0; s < samples.count; ++s) {
+            const uint32_t i = s * samples.pixels() + pixel;
+            constexpr float kStep = 1.0f / static_cast<float>(kSubpixels);
+            const SamplePlace at = samples.places[i];
+            const Vec2 place = {kStep * static_cast<float>(at.x), kStep * static_cast<float>(at.y)};
+            const Ray ray = make_camera_ray(pass.picture.camera.view, place, {});
+            const uint64_t nearest = samples.nearest[i];
+            if (nearest == kNothingThere) {
+                add_no_first_hit(film, pixel, samples.first + s);
+                add_radiance(film, pixel, seen_background(pass.picture, ray.direction));
+                continue;
+            }
+            const auto triangle = static_cast<uint32_t>(nearest);
+            if (triangle != number || samples.ways[i] != way) {
+                number = triangle, way = samples.ways[i];
+                if (!seen.begin(pass, number, way)) continue;
+                color = seen.color(pass);
+            }
+            add_layers(pixel, samples.first + s, seen, place, ray);
+            add_radiance(film, pixel, color);
+        }
+    }
+
+private:
+    HD void add_layers(uint32_t pixel, uint32_t sample, const Micropolygon& seen, Vec2 place, const Ray& ray) const {
+        if (film.aovs == 0) return add_channel(film, pixel, kFilmHits, 1.0f);
+        const PinholePoint corners[3] = {seen.points[0].place, seen.points[1].place, seen.points[2].place};
+        const Vec2 inside = weights_at(corners, pass.camera.x_of(static_cast<double>(place.x)),
+                                       pass.camera.y_of(static_cast<double>(place.y)));
+        const Vec2* c = seen.piece.corners;
+        const Vec2 at = c[0] + (inside.x * (c[1] - c[0]) + inside.y * (c[2] - c[0]));
+        const TriangleCorners& of = seen.triangle.corners;
+        const Hit hit = {0, at.x, at.y, of.instance, of.primitive};
+        add_first_hit(film, pixel, sample, {ray.origin, ray.direction}, hit,
+                      seen.surface(pass.picture.scene, at, inside, ray.direction), pass.picture);
+    }
+};
+
+} // namespace pertev

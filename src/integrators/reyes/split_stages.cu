@@ -1,0 +1,10 @@
+#include "device/launch_body.h"
+#include "integrators/reyes/split_stages.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const PlaceSamples&);
+template void launch(Queue&, const char*, WorkCount, const FindFar&);
+template void launch(Queue&, const char*, WorkCount, const TakePieces&);
+template void launch(Queue&, const char*, WorkCount, const SplitPieces<HidingPass::FindNearest>&);
+template void launch(Queue&, const char*, WorkCount, const SplitPieces<HidingPass::FindMicropolygon>&);
+} // namespace pertev

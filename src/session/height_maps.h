@@ -1,0 +1,32 @@
+#pragma once
+
+// Height maps that the user gives to materials: what displaces surfaces for --integrator reyes.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/messages.h"
+#include "integrators/make_integrator.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+struct HeightMapText {
+    std::string material; // * and ? stand for letters (scene/names.h)
+    std::string file;
+    float scale = 1, middle = 0; // of HeightMap
+    std::string text;            // as it was asked for
+};
+
+/// Of MATERIAL=FILE,SCALE or MATERIAL=FILE,SCALE,MIDDLE. Throws Error(BadInput).
+HeightMapText parse_height_map(std::string_view text);
+
+/// Reads the files: the first channel of PNG, JPEG, HDR or EXR, as it is stored, [0, 1] of whole numbers. Of maps that
+/// are for the same material the last counts. Null where nothing is asked for. Throws Error(BadInput) for a material
+/// that the scene does not have or whose meshes have no texture coordinates, and as decode_image does.
+std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText> texts, const Scene& scene,
+                                                   Messages* messages = nullptr);
+
+} // namespace pertev

@@ -1,0 +1,91 @@
+// What --displacement says, and the heights that are read for it.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "image/write_exr.h"
+#include "image/write_png.h"
+#include "session/height_maps.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
+#include "tests/support/write_text.h"
+
+using namespace pertev;
+
+namespace {
+
+std::string why_not(const std::string& text) {
+    return test::bad_input_message([&] { parse_height_map(text); });
+}
+
+/// Two materials on sheets with texture coordinates, one on a sheet without.
+Scene three_sheets() {
+    Scene scene;
+    for (const char* name : {"wall left", "wall right", "floor"}) {
+        Mesh mesh = test::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        if (std::string(name) != "floor") mesh.uv[0].assign(4, {0, 0});
+        test::add(scene, std::move(mesh), {.name = name});
+    }
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("a height map is a material, a file, a scale, and the height that moves nothing") {
+    const HeightMapText two = parse_height_map("wall*=a,b=c.png,-0.5");
+    CHECK(two.material == "wall*");
+    CHECK(two.file == "a,b=c.png");
+    CHECK(two.scale == -0.5f);
+    CHECK(two.middle == 0);
+    const HeightMapText three = parse_height_map("a=b.exr,2,0.25");
+    CHECK(three.file == "b.exr");
+    CHECK(three.scale == 2);
+    CHECK(three.middle == 0.25f);
+    for (const char* text : {"", "a", "a=", "=b,1", "a=b", "a=,1", "a=b,x", "a=b,1e400", "a=b,nan", "a=b,1,"}) {
+        CAPTURE(text);
+        CHECK(why_not(text).find("expected MATERIAL=FILE,SCALE") != std::string::npos);
+    }
+    CHECK(why_not("a=b,3e6").find("SCALE and MIDDLE are within") != std::string::npos);
+}
+
+TEST_CASE("heights are the first channel as stored, for every material of the name, the last map counting") {
+    const std::filesystem::path folder = test::scratch_folder();
+    const std::string png = (folder / "h.png").string(), exr = (folder / "h.exr").string();
+    write_png(png, Rgba8Image{2, 1, {0, 9, 9, 255, 51, 7, 7, 255}});
+    write_exr(exr, Image{1, 2, 3, {-3, 1, 1, 7.5f, 1, 1}});
+    const Scene scene = three_sheets();
+    CHECK(read_height_maps({}, scene) == nullptr);
+    const HeightMapText maps[] = {parse_height_map("wall*=" + png + ",2"),
+                                  parse_height_map("wall right=" + exr + ",3,0.5")};
+    const auto read = read_height_maps(maps, scene);
+    REQUIRE(read != nullptr);
+    REQUIRE(read->size() == 2);
+    CHECK(read->at(0).material == 0);
+    CHECK(read->at(0).heights.width == 2);
+    CHECK(read->at(0).heights.pixels == std::vector<float>{0, 0.2f});
+    CHECK(read->at(0).scale == 2);
+    CHECK(read->at(1).material == 1);
+    CHECK(read->at(1).heights.height == 2);
+    CHECK(read->at(1).heights.pixels == std::vector<float>{-3, 7.5f});
+    CHECK(read->at(1).middle == 0.5f);
+}
+
+TEST_CASE("a map for no material, for one without texture coordinates, or of no picture is refused") {
+    const std::filesystem::path folder = test::scratch_folder();
+    const std::string file = (folder / "no.png").string();
+    test::write_text(file, "no picture");
+    const Scene scene = three_sheets();
+    const auto why = [&](const std::string& material, const std::string& name) {
+        const HeightMapText map[] = {parse_height_map(material + "=" + name + ",1")};
+        return test::bad_input_message([&] { read_height_maps(map, scene); });
+    };
+    CHECK(why("door", file).find("no material of the scene is called so; there are 'floor', 'wall left'") !=
+          std::string::npos);
+    CHECK(why("floor", file).find("'floor' is on a mesh without texture coordinates") != std::string::npos);
+    CHECK(why("wall left", file).find(file) != std::string::npos);
+    CHECK(why("wall left", file + "x").find(file + "x") != std::string::npos);
+}
