@@ -128,6 +128,7 @@ RenderSettings light_settings(const RenderFlags& flags) {
     if (!flags.shading.empty()) settings.look.shading = *shading_named(flags.shading);
     settings.look.is_wireframe = flags.wireframe;
     set_integrator(settings, flags.integrator);
+    settings.photon_map = photon_map_settings(flags.photons, settings.integrator, flags.integrator);
     check_integrator(settings);
     const bool is_raster = settings.integrator == IntegratorKind::Raster;
     refuse(!flags.shading.empty() && !is_raster,
@@ -253,7 +254,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->group(group);
     verb.add_option("--integrator", flags.integrator,
                     "path, or its parts direct and indirect; hybrid, cast,\nwhitted, distributed, raster; light, "
-                    "bidirectional\n(docs/transport.md)")
+                    "bidirectional,\nphoton_map (docs/transport.md)")
         ->type_name("NAME")
         ->check(one_of(integrator_names()))
         ->capture_default_str()
@@ -274,6 +275,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->check(one_of(shading_names()))
         ->group(group);
     verb.add_flag("--wireframe", flags.wireframe, "of raster: the triangles' edges alone")->group(group);
+    add_photon_flags(verb, flags.photons, group);
     verb.add_option("--seed", flags.seed, "of the random numbers")
         ->type_name("N")
         ->check(whole_between(0, UINT32_MAX))

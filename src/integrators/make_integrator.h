@@ -8,6 +8,7 @@
 
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "integrators/raster/raster_settings.h"
 #include "math/rgb.h"
 #include "render/light_paths/light_path_layers.h"
@@ -23,6 +24,7 @@ enum class IntegratorKind : uint8_t {
     Raster,        // integrators/raster/raster_integrator.h
     Light,         // integrators/light/light.h
     Bidirectional, // integrators/bidirectional/bidirectional.h
+    PhotonMap,     // integrators/photon_map/photon_map_integrator.h
 };
 
 struct IntegratorSettings {
@@ -32,7 +34,8 @@ struct IntegratorSettings {
     // Of Cast, Whitted and Raster: radiance from all around that diffuse surfaces reflect, W/(sr m2). None: Whitted and
     // Raster take the mean of the environment.
     std::optional<Rgb> ambient;
-    RasterLook look; // of Raster
+    RasterLook look;              // of Raster
+    PhotonMapSettings photon_map; // of PhotonMap
 
     // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;
@@ -52,7 +55,7 @@ bool makes_frames(IntegratorKind kind);
 bool rasterises_camera(IntegratorKind kind);
 /// Whether that is done by a CameraRaster, whose memory comes on top of predicted_bytes().
 bool lists_tiles(IntegratorKind kind);
-/// Whether its mean is all light that there is, so that another one of these has the same.
+/// Whether its mean is all light that there is, in the end, so that another one of these has the same.
 bool finds_all_light(IntegratorKind kind);
 /// Whether it tells light paths apart and can show irradiance: IntegratorSettings::light_paths and irradiance.
 bool has_light_path_layers(IntegratorKind kind);
