@@ -49,6 +49,9 @@ reyes-displaced $scenes/crytek-sponza/sponza.obj --integrator reyes --ambient 0.
 light $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator light
 light-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator light --aperture 0.05
 bidirectional $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator bidirectional
+photon_map $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator photon_map
+photon_map-direct $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator photon_map --gather direct --nearest 50
+photon_map-sky $scenes/crytek-sponza/sponza.obj --integrator photon_map --photon-search kd-tree --max-depth 6
 bidirectional-sky $scenes/crytek-sponza/sponza.obj --integrator bidirectional --max-depth 6
 layers $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --lpe seen=LE --lpe diffuse=L.*DE --lpe glossy=L.*[GS]E
 blurred $work/box.gltf --time 1 --shutter 0.2

@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "integrators/bidirectional/most_joined_depth.h"
 #include "integrators/path/path_integrator.h"
+#include "integrators/photon_map/photon_map_integrator.h"
 #include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 #include "integrators/reyes/reyes_integrator.h"
@@ -80,7 +81,9 @@ bool rasterises_camera(IntegratorKind kind) {
 
 bool lists_tiles(IntegratorKind kind) { return kind == IntegratorKind::Hybrid; }
 
-bool finds_all_light(IntegratorKind kind) { return makes_frames(kind) || kind == IntegratorKind::Bidirectional; }
+bool finds_all_light(IntegratorKind kind) {
+    return makes_frames(kind) || kind == IntegratorKind::Bidirectional || kind == IntegratorKind::PhotonMap;
+}
 
 bool has_light_path_layers(IntegratorKind kind) { return makes_frames(kind); }
 
@@ -103,6 +106,8 @@ uint32_t most_depth(IntegratorKind kind) {
         return kMaxTreeDepth;
     case IntegratorKind::Bidirectional:
         return kMostJoinedDepth;
+    case IntegratorKind::PhotonMap:
+        return kMostPhotonDepth;
     }
     return kMaxPathDepth - 1;
 }
@@ -118,8 +123,8 @@ uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
-           a.shading_rate == b.shading_rate && same_heights(a, b) && a.light_paths == b.light_paths &&
-           a.irradiance == b.irradiance;
+           a.shading_rate == b.shading_rate && same_heights(a, b) && a.photon_map == b.photon_map &&
+           a.light_paths == b.light_paths && a.irradiance == b.irradiance;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
@@ -141,6 +146,9 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
         return make_walks<ParticlesAlone>(queue, settings);
     case IntegratorKind::Bidirectional:
         return make_walks<BothDirections>(queue, settings);
+    case IntegratorKind::PhotonMap:
+        return std::make_unique<PhotonMapIntegrator>(queue, walk_settings(settings), settings.photon_map,
+                                                     settings.body == PathBody::Loop, settings.batch);
     }
     auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch,
                                                  lists_tiles(settings.integrator));
@@ -179,6 +187,9 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::Bidirectional:
         set_walk_settings<BothDirections>(integrator, to);
         break;
+    case IntegratorKind::PhotonMap:
+        static_cast<PhotonMapIntegrator&>(integrator).set_settings(walk_settings(to), to.photon_map);
+        break;
     }
     return true;
 }
@@ -190,13 +201,19 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
         return ReyesIntegrator::predicted_bytes(reyes_settings(settings), pixels, samples);
     }
     const std::size_t tables = settings.light_paths ? LightPathsOnDevice::predicted_bytes(*settings.light_paths) : 0;
-    if (walks_itself && settings.body == PathBody::Loop) return tables;
+    const bool in_loop = walks_itself && settings.body == PathBody::Loop;
+    if (settings.integrator == IntegratorKind::PhotonMap) {
+        return PhotonMapIntegrator::predicted_bytes(walk_settings(settings), settings.photon_map, pixels,
+                                                    settings.batch, in_loop, on_cuda);
+    }
+    if (in_loop) return tables;
     const uint64_t all = pixels * samples;
     switch (settings.integrator) {
     case IntegratorKind::Path:
     case IntegratorKind::Hybrid:
     case IntegratorKind::Raster:
     case IntegratorKind::Reyes:
+    case IntegratorKind::PhotonMap:
         break;
     case IntegratorKind::Cast:
         return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);

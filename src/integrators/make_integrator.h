@@ -8,6 +8,7 @@
 
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "integrators/raster/raster_settings.h"
 #include "integrators/reyes/reyes_settings.h"
 #include "math/rgb.h"
@@ -25,6 +26,7 @@ enum class IntegratorKind : uint8_t {
     Reyes,         // integrators/reyes/reyes_integrator.h
     Light,         // integrators/light/light.h
     Bidirectional, // integrators/bidirectional/bidirectional.h
+    PhotonMap,     // integrators/photon_map/photon_map_integrator.h
 };
 
 struct IntegratorSettings {
@@ -37,6 +39,7 @@ struct IntegratorSettings {
     RasterLook look;                           // of Raster
     float shading_rate = 1;                    // of Reyes: no edge of a micropolygon is longer, pixels
     std::shared_ptr<const HeightMaps> heights; // of Reyes: what displaces surfaces; null: nothing
+    PhotonMapSettings photon_map;              // of PhotonMap
 
     // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;
@@ -56,7 +59,7 @@ bool makes_frames(IntegratorKind kind);
 bool rasterises_camera(IntegratorKind kind);
 /// Whether that is done by a CameraRaster, whose memory comes on top of predicted_bytes().
 bool lists_tiles(IntegratorKind kind);
-/// Whether its mean is all light that there is, so that another one of these has the same.
+/// Whether its mean is all light that there is, in the end, so that another one of these has the same.
 bool finds_all_light(IntegratorKind kind);
 /// Whether it tells light paths apart and can show irradiance: IntegratorSettings::light_paths and irradiance.
 bool has_light_path_layers(IntegratorKind kind);

@@ -23,6 +23,9 @@ bool is_all_unlit(const Scene& scene) {
         return scene.materials[instance.material].kind == MaterialKind::Unlit;
     });
 }
+bool has_any_light(const Scene& scene) {
+    return has_punctual_light(scene) || has_lamp(scene) || scene.environment || is_all_unlit(scene);
+}
 
 void refuse_layers(bool is_wrong, const std::string& why) {
     if (is_wrong) throw Error(ErrorCode::BadInput, "--lpe: " + why);
@@ -76,6 +79,14 @@ void check_integrator(const RenderSettings& settings) {
         throw Error(ErrorCode::OverLimit, fmt::format("--max-depth {}: with --integrator {} at most {}",
                                                       settings.path.max_depth, name, most_depth(settings.integrator)));
     }
+    const PhotonMapSettings& photons = settings.photon_map;
+    if (settings.integrator == IntegratorKind::PhotonMap &&
+        !has_room_for_photons(photons.photons, settings.path.max_depth)) {
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("--photons {}: with --max-depth {} a pass may leave more than {} photons; at most {}",
+                                photons.photons, settings.path.max_depth, kMostStored,
+                                kMostStored / (2 * uint64_t(settings.path.max_depth - 1))));
+    }
 }
 
 void check_shutter(const RenderSettings& settings) {
@@ -101,6 +112,11 @@ void check_camera(const RenderSettings& settings, const Camera& camera) {
 }
 
 std::string why_dark(const RenderSettings& settings, const Scene& scene) {
+    if (settings.integrator == IntegratorKind::PhotonMap && settings.path.max_depth > 0 && !has_any_light(scene)) {
+        return fmt::format("--integrator {}: photons leave lights, and this scene has none: no lamp, no point, spot or "
+                           "directional light, no environment",
+                           integrator_name(settings));
+    }
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
     return fmt::format("--integrator {}: point, spot and directional lights alone light its surfaces, and {}: "
                        "--integrator distributed or path knows all lights, --ambient 0.5 lights all surfaces alike",

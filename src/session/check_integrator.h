@@ -19,8 +19,8 @@ void check_shutter(const RenderSettings& settings);
 /// Whether the integrator can see by this camera. Throws Error(BadInput).
 void check_camera(const RenderSettings& settings, const Camera& camera);
 
-/// Why nothing would be lit, for want of lights that the integrator knows, though mirrors may show lamps; empty where
-/// something may be.
+/// Why nothing would be lit, for want of lights that the integrator knows, though mirrors may show lamps; or why no
+/// photon leaves a light. Empty where something may be lit.
 std::string why_dark(const RenderSettings& settings, const Scene& scene);
 
 /// Throws Error(BadInput) that says why_dark; a note tells what whitted leaves out.

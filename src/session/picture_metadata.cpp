@@ -138,6 +138,14 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         }
         if (!heights.empty()) metadata.emplace_back("pertev.displacement", fmt::format("{}", fmt::join(heights, "\n")));
     }
+    if (settings.integrator == IntegratorKind::PhotonMap) {
+        const PhotonMapSettings& map = settings.photon_map;
+        append(metadata, {{"pertev.photons", static_cast<int32_t>(map.photons)},
+                          {"pertev.radius", map.radius},
+                          {"pertev.caustic_radius", map.caustic_radius},
+                          {"pertev.nearest", static_cast<int32_t>(map.nearest)},
+                          {"pertev.gather", std::string(name_of(map.gather))}});
+    }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }

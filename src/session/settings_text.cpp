@@ -10,10 +10,12 @@ namespace {
 
 // A switch names each value, so that the compiler tells of one that was forgotten; these list them.
 constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
-constexpr IntegratorKind kIntegrators[] = {IntegratorKind::Hybrid,  IntegratorKind::Cast, // beside Path
-                                           IntegratorKind::Whitted, IntegratorKind::Distributed,
-                                           IntegratorKind::Raster,  IntegratorKind::Reyes,
-                                           IntegratorKind::Light,   IntegratorKind::Bidirectional};
+constexpr IntegratorKind kIntegrators[] = {
+    IntegratorKind::Hybrid,  IntegratorKind::Cast, // beside Path
+    IntegratorKind::Whitted, IntegratorKind::Distributed,   IntegratorKind::Raster,   IntegratorKind::Reyes,
+    IntegratorKind::Light,   IntegratorKind::Bidirectional, IntegratorKind::PhotonMap};
+constexpr PhotonGather kGathers[] = {PhotonGather::Direct, PhotonGather::Final};
+constexpr PhotonSearch kSearches[] = {PhotonSearch::Grid, PhotonSearch::KdTree, PhotonSearch::Octree};
 constexpr RasterShading kShadings[] = {RasterShading::Flat, RasterShading::Gouraud, RasterShading::Phong};
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
@@ -54,6 +56,8 @@ std::string_view name_of(IntegratorKind integrator) {
         return "light";
     case IntegratorKind::Bidirectional:
         return "bidirectional";
+    case IntegratorKind::PhotonMap:
+        return "photon_map";
     }
     return "";
 }
@@ -87,6 +91,7 @@ std::string_view integrator_name(const RenderSettings& settings) {
     case IntegratorKind::Reyes:
     case IntegratorKind::Light:
     case IntegratorKind::Bidirectional:
+    case IntegratorKind::PhotonMap:
         break;
     }
     return name_of(settings.integrator);
@@ -125,6 +130,32 @@ std::string_view name_of(RasterShading shading) {
 
 std::optional<RasterShading> shading_named(std::string_view name) { return value_named(kShadings, name); }
 std::vector<std::string> shading_names() { return names_of(kShadings); }
+
+std::string_view name_of(PhotonGather gather) {
+    switch (gather) {
+    case PhotonGather::Direct:
+        return "direct";
+    case PhotonGather::Final:
+        return "final";
+    }
+    return "";
+}
+std::optional<PhotonGather> gather_named(std::string_view name) { return value_named(kGathers, name); }
+std::vector<std::string> gather_names() { return names_of(kGathers); }
+
+std::string_view name_of(PhotonSearch search) {
+    switch (search) {
+    case PhotonSearch::Grid:
+        return "grid";
+    case PhotonSearch::KdTree:
+        return "kd-tree";
+    case PhotonSearch::Octree:
+        return "octree";
+    }
+    return "";
+}
+std::optional<PhotonSearch> photon_search_named(std::string_view name) { return value_named(kSearches, name); }
+std::vector<std::string> photon_search_names() { return names_of(kSearches); }
 
 std::string_view name_of(SamplerKind sampler) {
     switch (sampler) {

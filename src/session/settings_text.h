@@ -15,7 +15,7 @@
 namespace pertev {
 
 /// The integrator, "path" by name of the part of the light that it shows: "path", "direct" or "indirect"; "hybrid",
-/// "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional".
+/// "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional", "photon_map".
 std::string_view integrator_name(const RenderSettings& settings);
 /// False, and nothing done, where there is no such integrator.
 bool set_integrator(RenderSettings& settings, std::string_view name);
@@ -25,6 +25,14 @@ std::vector<std::string> integrator_names();
 std::string_view name_of(RasterShading shading);
 std::optional<RasterShading> shading_named(std::string_view name);
 std::vector<std::string> shading_names();
+
+/// Of --integrator photon_map: "direct" or "final"; "grid", "kd-tree" or "octree".
+std::string_view name_of(PhotonGather gather);
+std::optional<PhotonGather> gather_named(std::string_view name);
+std::vector<std::string> gather_names();
+std::string_view name_of(PhotonSearch search);
+std::optional<PhotonSearch> photon_search_named(std::string_view name);
+std::vector<std::string> photon_search_names();
 
 std::string_view name_of(SamplerKind sampler);
 std::optional<SamplerKind> sampler_named(std::string_view name);

@@ -31,7 +31,8 @@ TEST_CASE("every value has a name") {
     CHECK(filter_names() == std::vector<std::string>{"box", "tent", "gaussian", "blackman-harris"});
     CHECK(tone_map_names() == std::vector<std::string>{"srgb", "agx", "aces", "neutral"});
     CHECK(integrator_names() == std::vector<std::string>{"path", "direct", "indirect", "hybrid", "cast", "whitted",
-                                                         "distributed", "raster", "reyes", "light", "bidirectional"});
+                                                         "distributed", "raster", "reyes", "light", "bidirectional",
+                                                         "photon_map"});
     CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion"});
 }
 

@@ -1,0 +1,84 @@
+#pragma once
+
+// What walks of photon mapping know beside subpaths/walk_memory.h: what a mirror at their end may show, and the places
+// where light is to be looked up in the maps.
+
+#include "accel/nearest_points.h"
+#include "integrators/subpaths/walk_memory.h"
+
+namespace pertev {
+
+/// Of a walk from the camera, beside its throughput.
+struct Sight {
+    Rgb past_mirrors; // of the throughput, what counts of light met behind mirrors and smooth glass alone: the rest of
+                      // that is in the caustic map
+    float pdf;        // with which the ray's direction was drawn, 1/sr; 0 after the camera or a delta lobe
+};
+
+/// A diffuse surface at which a walk ends or turns.
+struct Lookup {
+    Hit hit;
+    Vec3 direction; // of the walk, unit
+    Rgb throughput;
+    uint32_t pixel, scatterings; // so far
+    bool wants_all;              // of both maps; else of the caustic map alone
+};
+
+struct GatherView {
+    Float4* sights;  // [walks]
+    uint32_t* marks; // [walks] 1: of a photon, scattered otherwise than by delta lobes; of a walk from the camera, it
+                     // has turned at a diffuse surface
+    // Lookups of a round, side by side; WalkCounts::vertices is their number.
+    Float4 *places, *directions, *throughputs;
+    NearPoint* nearest; // [walks * nearest_count]
+    uint32_t nearest_count;
+
+    HD void store_sight(uint32_t walk, const Sight& sight) const {
+        sights[walk] = {sight.past_mirrors.r, sight.past_mirrors.g, sight.past_mirrors.b, sight.pdf};
+    }
+    HD Sight sight_of(uint32_t walk) const {
+        const Float4 s = sights[walk];
+        return {{s.x, s.y, s.z}, s.w};
+    }
+    HD void store(uint32_t at, const Lookup& lookup) const {
+        const Hit& hit = lookup.hit;
+        const Vec3 d = lookup.direction;
+        const Rgb t = lookup.throughput;
+        places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
+        directions[at] = {d.x, d.y, d.z, float_of(lookup.scatterings << 1 | (lookup.wants_all ? 1u : 0u))};
+        throughputs[at] = {t.r, t.g, t.b, float_of(lookup.pixel)};
+    }
+    HD Lookup load(uint32_t at) const {
+        const Float4 p = places[at], d = directions[at], t = throughputs[at];
+        const uint32_t bits = bits_of(d.w);
+        return {{0, p.x, p.y, bits_of(p.z), bits_of(p.w)},
+                {d.x, d.y, d.z},
+                {t.x, t.y, t.z},
+                bits_of(t.w),
+                bits >> 1,
+                (bits & 1) != 0};
+    }
+};
+
+/// Places the arrays as lay_out of walk_memory.h does.
+inline std::size_t lay_out(GatherView& view, std::byte* memory, uint32_t walks, uint32_t nearest) {
+    std::size_t bytes = 0;
+    const auto place = [&]<class T>(T*& array, std::size_t count) {
+        array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
+        bytes += (count * sizeof(T) + 15) / 16 * 16;
+    };
+    view.nearest_count = nearest;
+    place(view.sights, walks);
+    place(view.marks, walks);
+    place(view.places, walks);
+    place(view.directions, walks);
+    place(view.throughputs, walks);
+    place(view.nearest, std::size_t(walks) * nearest);
+    return bytes;
+}
+inline std::size_t gather_bytes(uint32_t walks, uint32_t nearest) {
+    GatherView view;
+    return lay_out(view, nullptr, walks, nearest);
+}
+
+} // namespace pertev

@@ -1,0 +1,168 @@
+#pragma once
+
+// The stages of walks from the camera. A walk goes on by mirrors, smooth glass and glossy lobes as path tracing does;
+// where a surface is diffuse, light is
+//   L D            drawn by a shadow ray,
+//   L S+ D         looked up in the caustic map,
+//   all other      looked up in the global map too; or, with final gathering, found by going on once from there, to
+//                  where a surface is diffuse again and all of it is looked up. Where that is nearer than the radius,
+//                  the walk goes on once more: a map blurs what is nearer than that.
+// Each light path is found in one of these ways and in no other.
+//
+// Source: Jensen, "Global Illumination using Photon Maps", 1996, section 5.
+
+#include "integrators/photon_map/estimate_radiance.h"
+#include "integrators/subpaths/begin_eyes.h"
+#include "shading/power_heuristic.h"
+
+namespace pertev {
+
+/// Walks 0, 1, ... become the camera's of a pass.
+struct BeginSights {
+    BeginEyes begin;
+    GatherView gather;
+
+    HD void operator()(uint32_t i) const {
+        begin(i);
+        gather.store_sight(i, {{1, 1, 1}, 0});
+        gather.marks[i] = 0;
+    }
+};
+
+/// Where the camera's walks have met something.
+template <MaterialsKnown kKnown>
+struct ShadeSights {
+    WalkScene scene;
+    WalksView walks;
+    GatherView gather;
+    FilmView film;
+    PhotonGather how;
+    float near; // metres: a surface that is so near to the last one is no place to look light up
+    uint32_t round;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const PictureView& picture = scene.picture;
+        const uint32_t walk = walks.owners[round % 2][i];
+        const Ray ray = load_ray(walks.rays[round % 2] + i);
+        const Hit hit = walks.hits().load(i);
+        WalkState state = walks.states[walk];
+        const Sight sight = gather.sight_of(walk);
+        if (hit.instance == kNoHit) return add_background(state, sight, ray);
+        const Surface surface = make_surface<kKnown>(picture.scene, hit, ray.direction);
+        if (state.depth() == 0) {
+            add_seen(picture, film, state, ray, hit, surface);
+        } else if (!is_black(surface.emission)) {
+            const uint32_t light = light_of(picture.scene.lights, hit.instance, hit.primitive);
+            const bool may_be_drawn = sight.pdf > 0 && light != kNoLight;
+            add_light(state, sight, surface.emission,
+                      may_be_drawn ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position) : 0.0f);
+        }
+        const uint32_t depth = state.depth(), max_depth = scene.settings.max_depth;
+        if (surface.is_unlit || depth >= max_depth) return;
+
+        const bool is_diffuse = surface.bsdf.has(LobeClass::Diffuse), is_glossy = surface.bsdf.has(LobeClass::Glossy);
+        const bool is_near = sight.pdf > 0 && hit.t < near;
+        const bool turns = is_diffuse && how == PhotonGather::Final && (gather.marks[walk] == 0 || is_near);
+        const Vertex vertex = {surface,   -ray.direction, is_diffuse,
+                               is_glossy, turns,          {state.pixel, state.sample, scene.settings.seed}};
+        if (is_diffuse || is_glossy) ask_for_light(vertex, state);
+        if (is_diffuse && depth + 2 <= max_depth) {
+            gather.store(atomic_add(&walks.counts->vertices, 1u),
+                         {hit, ray.direction, state.throughput, state.pixel, depth, !turns});
+        }
+        go_on(vertex, walk, state, sight);
+    }
+
+private:
+    struct Vertex {
+        const Surface& surface;
+        Vec3 wo;
+        bool is_diffuse, is_glossy;
+        bool turns; // the walk goes on by diffuse lobes too
+        SampleKey key;
+    };
+
+    /// Light that the walk has run into; `light_pdf`: the density with which a shadow ray would have been sent there.
+    HD void add_light(const WalkState& state, const Sight& sight, Rgb emission, float light_pdf) const {
+        const float weight = light_pdf > 0 ? power_heuristic(sight.pdf, light_pdf) : 1.0f;
+        add_radiance(film, state.pixel, (sight.pdf > 0 ? weight * state.throughput : sight.past_mirrors) * emission);
+    }
+    HD void add_background(const WalkState& state, const Sight& sight, const Ray& ray) const {
+        if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
+        const LightSetView& lights = scene.picture.scene.lights;
+        if (!lights.has_environment()) return;
+        add_light(state, sight, environment_radiance(lights.environment, ray.direction),
+                  sight.pdf > 0 ? pdf_environment(lights, ray.direction) : 0.0f);
+    }
+
+    /// One point of one light, as path tracing draws it.
+    HD_FUSED void ask_for_light(const Vertex& vertex, const WalkState& state) const {
+        const SceneView& view = scene.picture.scene;
+        const Surface& surface = vertex.surface;
+        LightSample light;
+        const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
+        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return;
+        const BsdfValue all = surface.evaluate(vertex.wo, light.wi);
+        if (is_black(all.f)) return;
+        const uint32_t coin = coin_key(vertex.key, state.depth(), true);
+        if (light.instance != kNoLight && view.any_alpha != 0 &&
+            !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
+            return; // a hole in the light
+        }
+        Connection connection;
+        connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+        connection.start = surface.triangle;
+        connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        connection.key = coin;
+        connection.light = (1.0f / light.pdf) * (state.throughput * drawn_share(vertex, light, all) * light.radiance);
+        walks.ask(atomic_add(&walks.counts->asked, 1u), connection, state.pixel);
+    }
+    /// Of what the surface sends on of a light that was drawn, what the walk's own ray does not find.
+    HD Rgb drawn_share(const Vertex& vertex, const LightSample& light, const BsdfValue& all) const {
+        if (light.is_delta || !(vertex.turns || vertex.is_glossy)) return all.f;
+        const float weight = power_heuristic(light.pdf, all.pdf);
+        if (vertex.turns || !vertex.is_diffuse) return weight * all.f;
+        const Surface& surface = vertex.surface;
+        return surface.evaluate(vertex.wo, light.wi, only(LobeClass::Diffuse)).f +
+               weight * surface.evaluate(vertex.wo, light.wi, only(LobeClass::Glossy)).f;
+    }
+
+    HD_FUSED void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, Sight sight) const {
+        const Surface& surface = vertex.surface;
+        if (!vertex.turns && !vertex.is_glossy && !surface.bsdf.has_delta()) return;
+        const SubpathSettings& settings = scene.settings;
+        const uint32_t choices = eye_group(state.depth(), kWalkChoices);
+        const WalkDraw draw =
+            draw_scatter(settings, vertex.key, surface.bsdf, eye_group(state.depth(), kWalkScatter), choices);
+        BsdfSample sample = surface.sample(vertex.wo, draw.lobe, draw.u);
+        if (!(sample.pdf > 0)) return;
+        Rgb past_mirrors = sample.weight; // of light beyond delta lobes from here on
+        if (!sample.is_delta() && vertex.is_diffuse) {
+            past_mirrors = {};
+            if (vertex.is_glossy) {
+                const Rgb glossy = surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
+                past_mirrors = (1.0f / sample.pdf) * glossy;
+            }
+            if (!vertex.turns) sample.weight = past_mirrors;
+        }
+        if (is_black(sample.weight)) return;
+        const Rgb before = sample.weight;
+        if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
+        const float made_up = max_component(sample.weight) / max_component(before);
+        const Vec3 wi = sample.wi;
+        sight = {sample.is_delta() ? made_up * (sight.past_mirrors * past_mirrors)
+                                   : made_up * (state.throughput * past_mirrors),
+                 sample.is_delta() ? 0.0f : sample.pdf};
+        if (!sample.is_delta() && vertex.turns) gather.marks[walk] = 1;
+        state.throughput = state.throughput * sample.weight;
+        ++state.scatterings;
+        walks.states[walk] = state;
+        gather.store_sight(walk, sight);
+        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
+                         kInfinity};
+        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
+                        coin_key(vertex.key, state.depth(), false), round + 1);
+    }
+};
+
+} // namespace pertev

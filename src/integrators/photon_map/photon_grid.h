@@ -1,0 +1,83 @@
+#pragma once
+
+// A hash grid over photons: cubic cells a little wider than twice the radius, so that all within the radius of a place
+// lie in two cells along each axis; photons of one bucket lie side by side, in the order of their numbers. Built by
+// sorting, all of it on the device.
+
+#include <cstdint>
+
+#include "accel/nearest_points.h"
+#include "math/float4.h"
+#include "math/random.h"
+
+namespace pertev {
+
+/// Cells, and what it takes to be sure: places are rounded by up to 2^-24 of the largest coordinate.
+struct PhotonCells {
+    float reach;      // metres round a place, more than the radius
+    float per_metre;  // 1 / a cell's side
+    uint32_t buckets; // a power of two
+
+    HD int cell(float x) const { return to_int(floor(x * per_metre), -(1 << 30), 1 << 30); }
+    HD uint32_t bucket(int x, int y, int z) const {
+        return hash_words(static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(z)).x &
+               (buckets - 1);
+    }
+    HD uint32_t bucket_of(Vec3 p) const { return bucket(cell(p.x), cell(p.y), cell(p.z)); }
+};
+
+/// `largest`: |coordinate| of any photon and place. At most two cells an axis: a side is more than twice the reach, and
+/// x * per_metre is rounded by less than the hundredth of a cell that is left.
+inline PhotonCells make_photon_cells(float radius, float largest, uint32_t count) {
+    const float side = 2.05f * radius + 0x1p-17f * largest;
+    uint32_t buckets = 1;
+    while (buckets < count && buckets < 1u << 30) buckets *= 2;
+    return {1.0001f * radius + 0x1p-20f * largest, min(1.0f / side, 0x1p100f), buckets};
+}
+
+struct PhotonGridView {
+    PhotonCells cells;
+    const Float4* points = nullptr;   // by buckets: position, bits of the photon's number
+    const uint32_t* starts = nullptr; // [buckets + 1] in `points`
+};
+
+/// Offers `found` each photon that may be within its limit; see accel/kd_tree/point_kd_tree.h.
+template <class Found>
+HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found) {
+    const PhotonCells& cells = grid.cells;
+    const auto low = [&](float x) { return cells.cell(x - cells.reach); };
+    const int x0 = low(at.x), y0 = low(at.y), z0 = low(at.z);
+    const int x_more = cells.cell(at.x + cells.reach) > x0 ? 1 : 0,
+              y_more = cells.cell(at.y + cells.reach) > y0 ? 1 : 0,
+              z_more = cells.cell(at.z + cells.reach) > z0 ? 1 : 0;
+    uint32_t seen[8]; // two cells may share a bucket
+    int seen_count = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+        if (x > x_more || y > y_more || z > z_more) continue;
+        const uint32_t bucket = cells.bucket(x0 + x, y0 + y, z0 + z);
+        bool is_new = true;
+        for (int k = 0; k < seen_count; ++k) is_new = is_new && seen[k] != bucket;
+        if (!is_new) continue;
+        seen[seen_count++] = bucket;
+        const uint32_t end = grid.starts[bucket + 1];
+        for (uint32_t i = grid.starts[bucket]; i < end; ++i) {
+            const Float4 point = grid.points[i];
+            found.offer({squared_distance({point.x, point.y, point.z}, at), bits_of(point.w)});
+        }
+    }
+}
+
+/// As those of accel/: see point_kd_tree.h.
+HD inline uint32_t find_nearest(const PhotonGridView& grid, Vec3 at, float radius, uint32_t k, NearPoint* found) {
+    NearestPoints nearest(found, k, square_of_radius(radius));
+    search_points(grid, at, nearest);
+    return nearest.sort();
+}
+template <class Visit>
+HD inline void visit_within(const PhotonGridView& grid, Vec3 at, float radius, Visit&& visit) {
+    PointsWithin<Visit> within = {square_of_radius(radius), visit};
+    search_points(grid, at, within);
+}
+
+} // namespace pertev

@@ -1,0 +1,151 @@
+#include "integrators/photon_map/photon_maps.h"
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "base/error.h"
+#include "device/launch.h"
+#include "integrators/photon_map/order_photons.h"
+#include "render/tracer/hploc/sort_codes.h"
+
+namespace pertev {
+namespace {
+
+/// What each of two maps may hold.
+uint64_t room_of_map(const PhotonMapSettings& settings, uint32_t max_depth) {
+    return uint64_t(settings.photons) * (max_depth > 1 ? max_depth - 1 : 1);
+}
+std::size_t most_starts(uint64_t room) { return std::bit_ceil(room) + 1; }
+
+} // namespace
+
+std::size_t PhotonMaps::predicted_bytes(const PhotonMapSettings& settings, uint32_t max_depth, bool on_cuda) {
+    const uint64_t of_map = room_of_map(settings, max_depth), room = 2 * of_map;
+    std::size_t each = 6 * sizeof(Float4) + 2 * (sizeof(uint64_t) + sizeof(uint32_t));
+    if (on_cuda) each += sizeof(uint64_t) + sizeof(uint32_t); // a copy of what is sorted, about
+    switch (settings.search) {
+    case PhotonSearch::Grid:
+        break;
+    case PhotonSearch::KdTree:
+        each += sizeof(PointKdNode);
+        break;
+    case PhotonSearch::Octree:
+        each += 2 * sizeof(PointOctreeNode) + sizeof(Sphere) + sizeof(uint32_t);
+        break;
+    }
+    const bool has_grid = settings.search == PhotonSearch::Grid;
+    return room * each + (has_grid ? 2 * most_starts(of_map) * sizeof(uint32_t) : 0) + sizeof(PhotonCounts);
+}
+
+void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth) {
+    const uint64_t of_map = room_of_map(settings, max_depth), room = 2 * of_map;
+    search_ = settings.search;
+    const auto need = [&]<class T>(Buffer<T>& buffer, std::size_t count, const char* name) {
+        if (buffer.size() >= count) return;
+        buffer = {}; // before there is more
+        buffer = Buffer<T>(queue_, count, name);
+    };
+    for (int k = 0; k < 3; ++k) {
+        need(stored_[k], room, "photons as they come");
+        need(ordered_[k], room, "photons");
+    }
+    for (int k = 0; k < 2; ++k) {
+        need(keys_[k], room, "numbers of photons");
+        need(order_[k], room, "order of photons");
+        if (search_ == PhotonSearch::Grid) need(starts_[k], most_starts(of_map), "hash grid over photons");
+    }
+    if (queue_.is_cuda()) {
+        need(scratch_, sort_scratch_bytes(queue_, static_cast<uint32_t>(room)), "room for sorting photons");
+    }
+    need(counts_, 1, "counts of photons");
+    if (search_ == PhotonSearch::KdTree) need(kd_nodes_, room, "kd-tree over photons");
+    if (search_ == PhotonSearch::Octree) {
+        need(octree_nodes_, 2 * room, "octree over photons");
+        need(octree_spheres_, room, "octree over photons");
+        need(octree_indices_, room, "octree over photons");
+    }
+    room_ = room;
+}
+
+std::size_t PhotonMaps::bytes() const {
+    std::size_t bytes = scratch_.size() + counts_.size() * sizeof(PhotonCounts);
+    for (int k = 0; k < 3; ++k) bytes += (stored_[k].size() + ordered_[k].size()) * sizeof(Float4);
+    for (int k = 0; k < 2; ++k) {
+        bytes += keys_[k].size() * sizeof(uint64_t) + (order_[k].size() + starts_[k].size()) * sizeof(uint32_t);
+    }
+    return bytes + kd_nodes_.size() * sizeof(PointKdNode) + octree_nodes_.size() * sizeof(PointOctreeNode) +
+           octree_spheres_.size() * sizeof(Sphere) + octree_indices_.size() * sizeof(uint32_t);
+}
+
+StoredPhotonsView PhotonMaps::clear() {
+    counts_.zero();
+    return {{stored_[0].data(), stored_[1].data(), stored_[2].data()}, keys_[0].data(), counts_.data()};
+}
+
+PhotonMapsView PhotonMaps::build(float global_radius, float caustic_radius, float largest) {
+    queue_.copy_to_host(&found_, counts_.data(), sizeof found_);
+    PERTEV_CHECK(found_.stored <= room_);
+    const uint32_t all = found_.stored;
+    const PhotonsView stored = {stored_[0].data(), stored_[1].data(), stored_[2].data()};
+    launch(queue_, "number photons", all, NumberPhotons{order_[0].data()});
+    sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), all, 34);
+    launch(queue_, "order photons", all, OrderPhotons{stored, ordered(), order_[1].data()});
+
+    PhotonMapsView maps;
+    const uint32_t global = all - found_.caustic;
+    maps.global.count = global;
+    maps.global.radius = global_radius;
+    maps.caustic.count = found_.caustic;
+    maps.caustic.radius = caustic_radius;
+    PhotonMapView* const both[] = {&maps.global, &maps.caustic};
+    for (int k = 0; k < 2; ++k) {
+        PhotonMapView& map = *both[k];
+        const uint32_t first = k == 0 ? 0 : global;
+        map.photons = ordered().from(first);
+        if (map.count == 0) continue;
+        if (search_ == PhotonSearch::Grid) {
+            fill_grid(map, first, starts_[k], largest);
+        } else {
+            build_trees(map, first);
+        }
+    }
+    return maps;
+}
+
+void PhotonMaps::fill_grid(PhotonMapView& map, uint32_t first, Buffer<uint32_t>& starts, float largest) {
+    const PhotonCells cells = make_photon_cells(map.radius, largest, map.count);
+    const Float4* places = map.photons.places;
+    launch(queue_, "make buckets", map.count, MakeBuckets{places, cells, keys_[0].data(), order_[0].data()});
+    sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), map.count,
+                 std::max(static_cast<int>(std::bit_width(cells.buckets)) - 1, 1));
+    Float4* points = stored_[0].data() + first;
+    launch(queue_, "fill buckets", map.count + 1,
+           FillBuckets{places, keys_[1].data(), order_[1].data(), map.count, cells.buckets, points, starts.data()});
+    map.grid = {cells, points, starts.data()};
+}
+
+void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
+    std::vector<Float4> places(map.count);
+    queue_.copy_to_host(places.data(), map.photons.places, places.size() * sizeof(Float4));
+    if (search_ == PhotonSearch::KdTree) {
+        std::vector<Vec3> points(places.size());
+        std::ranges::transform(places, points.begin(), [](const Float4& p) { return Vec3{p.x, p.y, p.z}; });
+        const PointKdTree tree = build_point_kd_tree(points);
+        kd_nodes_.upload_at(first, tree.nodes);
+        map.kd_tree = {kd_nodes_.data() + first, map.count};
+        return;
+    }
+    std::vector<Sphere> spheres(places.size());
+    std::ranges::transform(places, spheres.begin(), [](const Float4& p) { return Sphere{{p.x, p.y, p.z}, 0}; });
+    const PointOctree tree = build_point_octree(spheres);
+    const std::size_t first_node = 2 * std::size_t(first);
+    PERTEV_CHECK(tree.nodes.size() <= 2 * places.size());
+    octree_nodes_.upload_at(first_node, tree.nodes);
+    octree_spheres_.upload_at(first, tree.spheres);
+    octree_indices_.upload_at(first, tree.indices);
+    map.octree = {octree_nodes_.data() + first_node, octree_spheres_.data() + first, octree_indices_.data() + first,
+                  static_cast<uint32_t>(tree.nodes.size())};
+}
+
+} // namespace pertev

@@ -1,0 +1,16 @@
+#include "device/launch_body.h"
+#include "integrators/photon_map/find_targets.h"
+#include "integrators/photon_map/gather_stages.h"
+#include "integrators/photon_map/order_photons.h"
+#include "integrators/photon_map/photon_stages.h"
+
+// Those that compile soon: shading has files of its own.
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const FindSpecular&);
+template void launch(Queue&, const char*, WorkCount, const BeginPhotons&);
+template void launch(Queue&, const char*, WorkCount, const NumberPhotons&);
+template void launch(Queue&, const char*, WorkCount, const OrderPhotons&);
+template void launch(Queue&, const char*, WorkCount, const MakeBuckets&);
+template void launch(Queue&, const char*, WorkCount, const FillBuckets&);
+template void launch(Queue&, const char*, WorkCount, const BeginSights&);
+} // namespace pertev

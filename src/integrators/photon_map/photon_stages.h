@@ -1,0 +1,154 @@
+#pragma once
+
+// The stages of a pass's photons: leave the lights; then, round by round, be left where they meet something diffuse,
+// and go on. Particles of two kinds, as the maps have them:
+//   global   leave the lights as particles do (emit_particle.h); kept where they have been scattered otherwise than by
+//            delta lobes: L (D|G|S)* (D|G) S* D
+//   caustic  are aimed at what mirrors or refracts (photon_targets.h); kept where delta lobes alone have scattered
+//            them: L S+ D
+// Light that has not been scattered is in neither: shadow rays find it.
+//
+// Source: Jensen, "Global Illumination using Photon Maps", 1996, section 4.1.
+
+#include "integrators/photon_map/gather_memory.h"
+#include "integrators/photon_map/photon_targets.h"
+#include "integrators/photon_map/photons.h"
+#include "integrators/subpaths/walk_vertex.h"
+#include "render/film_view.h"
+
+namespace pertev {
+
+/// What becomes of photons, for who asks: powers, the three colours together, W.
+struct PhotonEnergy {
+    FixedSum emitted;
+    FixedSum escaped; // met nothing
+    FixedSum arrived; // at surfaces
+    FixedSum went_on; // from there: the rest is absorbed
+    FixedSum kept;    // in the maps, wherever photons arrive
+};
+
+/// A pass's photons: paths [0, count) are global ones, [count, 2 count) caustic ones.
+struct PhotonPass {
+    uint32_t pass, count;
+    PhotonTargetsView targets;
+    StoredPhotonsView stored;
+    uint64_t* invalid;    // photons that are left out, for a power that is no number
+    PhotonEnergy* energy; // null: nobody asks
+
+    HD bool is_caustic(uint32_t path) const { return path >= count; }
+    /// One sequence goes through the photons of all passes.
+    HD SampleKey key(uint32_t path, uint32_t seed) const {
+        const uint64_t number = uint64_t(pass) * count + (is_caustic(path) ? path - count : path);
+        return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number),
+                seed ^ (is_caustic(path) ? 0x51ed270bu : 0x2545f491u)};
+    }
+    HD void tell(FixedSum PhotonEnergy::*of, Rgb power) const {
+        if (energy != nullptr) atomic_add(&(energy->*of), to_fixed(power.r + power.g + power.b));
+    }
+};
+
+/// Walks 0, 1, ... become photons `first`, first + 1, ...
+struct BeginPhotons {
+    WalkScene scene;
+    WalksView walks;
+    GatherView gather;
+    PhotonPass pass;
+    uint32_t first;
+
+    HD void operator()(uint32_t i) const {
+        const SubpathSettings& settings = scene.settings;
+        const uint32_t path = first + i;
+        const SampleKey key = pass.key(path, settings.seed);
+        const SampleBits place = sample_bits(settings.sampler, key, kGroupLight);
+        const Vec2 direction = sample_2d(settings.sampler, key, kGroupLight, Pair::Last);
+        const uint32_t coin = coin_key(key, 0, false);
+        Particle particle;
+        const bool leaves =
+            pass.is_caustic(path)
+                ? aim_particle(scene.picture.scene, pass.targets, scene.world, place, direction, coin, particle)
+                : emit_particle(scene.picture.scene, scene.world, place, direction, coin, particle);
+        if (!leaves) return;
+        WalkState state = {};
+        state.throughput = (1.0f / static_cast<float>(pass.count)) * particle.power;
+        if (!(max_component(state.throughput) > 0)) return;
+        if (!(max_component(state.throughput) <= kMaxSampleValue)) {
+            atomic_add(pass.invalid, 1);
+            return;
+        }
+        state.pixel = path;
+        walks.states[i] = state;
+        gather.marks[i] = 0;
+        pass.tell(&PhotonEnergy::emitted, state.throughput);
+        walks.queue_ray(atomic_add(&walks.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
+    }
+};
+
+/// Where the photons' rays have met something.
+template <MaterialsKnown kKnown>
+struct ShadePhotons {
+    WalkScene scene;
+    WalksView walks;
+    GatherView gather;
+    PhotonPass pass;
+    uint32_t round;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const Hit hit = walks.hits().load(i);
+        const uint32_t walk = walks.owners[round % 2][i];
+        WalkState state = walks.states[walk];
+        if (hit.instance == kNoHit) return pass.tell(&PhotonEnergy::escaped, state.throughput);
+        pass.tell(&PhotonEnergy::arrived, state.throughput);
+        const Ray ray = load_ray(walks.rays[round % 2] + i);
+        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit, ray.direction);
+        if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
+        if (surface.is_unlit || is_black(state.throughput)) return;
+        const bool is_caustic = pass.is_caustic(state.pixel);
+        const bool is_kept = state.depth() > 0 && (is_caustic || gather.marks[walk] != 0);
+        if (is_kept && surface.bsdf.has(LobeClass::Diffuse)) keep(surface, state, -ray.direction, is_caustic);
+        if (state.depth() + 1 < scene.settings.max_depth && !(is_caustic && !surface.bsdf.has_delta())) {
+            go_on(surface, walk, state, -ray.direction, is_caustic);
+        }
+    }
+
+private:
+    HD void keep(const Surface& surface, const WalkState& state, Vec3 wi, bool is_caustic) const {
+        if (!(max_component(state.throughput) <= kMaxSampleValue)) {
+            atomic_add(pass.invalid, 1);
+            return;
+        }
+        const Vec3 normal = surface.geometric_normal;
+        pass.stored.add({surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, state.throughput, state.pixel,
+                         state.depth()},
+                        is_caustic);
+        pass.tell(&PhotonEnergy::kept, state.throughput);
+    }
+    HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, bool is_caustic) const {
+        const SubpathSettings& settings = scene.settings;
+        const SampleKey key = pass.key(state.pixel, settings.seed);
+        const uint32_t choices = particle_group(state.depth(), kWalkChoices);
+        const WalkDraw draw =
+            draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kWalkScatter), choices);
+        BsdfSample sample = sample_adjoint(surface, wi, draw.lobe, draw.u);
+        if (!(sample.pdf > 0) || (is_caustic && !sample.is_delta())) return;
+        // Photons of much the same power make the smoothest maps: of what is scattered in part, fewer go on (Jensen
+        // 1996, section 4.1).
+        const float chance = max_component(sample.weight);
+        if (!(chance > 0)) return;
+        if (chance < 1) {
+            if (!(sample_1d(settings.sampler, key, choices, kNumberOfRoulette) < chance)) return;
+            sample.weight = (1.0f / chance) * sample.weight;
+        }
+        if (!sample.is_delta()) gather.marks[walk] = 1;
+        state.throughput = state.throughput * sample.weight;
+        ++state.scatterings;
+        walks.states[walk] = state;
+        pass.tell(&PhotonEnergy::went_on, state.throughput);
+        const Vec3 wo = sample.wi;
+        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo), 0, wo,
+                         kInfinity};
+        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
+                        coin_key(key, state.depth(), false), round + 1);
+    }
+};
+
+} // namespace pertev

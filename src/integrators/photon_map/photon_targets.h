@@ -1,0 +1,191 @@
+#pragma once
+
+// Where photons of the caustic map are aimed: spheres that together hold every surface that may mirror or refract. A
+// photon whose first surface is none of them brings no caustic. And how such a photon leaves its light: the light and
+// the place on it as emit_particle.h draws them, then a direction evenly in the cones from there to the spheres; of
+// light from far away, a place evenly in their discs. Where the targets are wider than what the light sends anyway, it
+// sends it as ever.
+//
+// Source: Jensen, "Global Illumination using Photon Maps", 1996, section 4.1, whose projection maps are grids of
+// directions, made for one place each; spheres serve every place on a lamp.
+
+#include "integrators/subpaths/emit_particle.h"
+#include "math/float4.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kMostTargets = 64;
+
+struct PhotonTargetsView {
+    const Float4* spheres; // centre, radius: moved world, metres
+    uint32_t count;        // 0: nothing mirrors or refracts
+};
+
+namespace aim {
+
+/// 1 - cosine of the half angle under which a sphere is seen; 2 from within.
+HD inline float depth_of_cone(Vec3 from, Float4 sphere) {
+    const float distance_squared = length_squared(Vec3{sphere.x, sphere.y, sphere.z} - from);
+    const float sine_squared = square(sphere.w) / distance_squared;
+    if (!(sine_squared < 1)) return 2;
+    return sine_squared / (1.0f + sqrt(1.0f - sine_squared));
+}
+HD inline Vec3 axis_to(Vec3 from, Float4 sphere) {
+    return normalize_or(Vec3{sphere.x, sphere.y, sphere.z} - from, Vec3{0, 0, 1});
+}
+
+struct Direction {
+    Vec3 to;
+    float pdf; // 1/sr
+};
+
+HD inline float depth_of_cones(const PhotonTargetsView& targets, Vec3 from) {
+    float all = 0;
+    for (uint32_t i = 0; i < targets.count; ++i) all += depth_of_cone(from, targets.spheres[i]);
+    return all;
+}
+/// Square metres over pi.
+HD inline float area_of_discs(const PhotonTargetsView& targets) {
+    float all = 0;
+    for (uint32_t i = 0; i < targets.count; ++i) all += square(targets.spheres[i].w);
+    return all;
+}
+
+/// Evenly in the cones: a direction in two of them is twice as likely.
+HD inline Direction draw_direction(const PhotonTargetsView& targets, Vec3 from, Vec2 u) {
+    const float all = depth_of_cones(targets, from);
+    float rest = u.x * all, depth = 0;
+    uint32_t chosen = 0;
+    for (uint32_t i = 0; i < targets.count; ++i) {
+        depth = depth_of_cone(from, targets.spheres[i]);
+        chosen = i;
+        if (rest < depth || i + 1 == targets.count) break;
+        rest -= depth;
+    }
+    const Vec2 within = {min(rest / depth, 0x1.fffffep-1f), u.y};
+    const Frame frame = make_frame(axis_to(from, targets.spheres[chosen]));
+    const Vec3 direction = normalize(frame.to_world(sample_uniform_cone(within, depth)));
+    uint32_t cones = 1;
+    for (uint32_t i = 0; i < targets.count; ++i) {
+        const Float4 sphere = targets.spheres[i];
+        if (i != chosen && 1.0f - dot(axis_to(from, sphere), direction) < depth_of_cone(from, sphere)) ++cones;
+    }
+    return {direction, static_cast<float>(cones) * 0.5f * kInvPi / all};
+}
+
+struct Start {
+    Vec3 from;
+    float pdf; // 1/m2, across the direction
+};
+
+/// Of a ray along `direction` from outside of the world: evenly in the discs of the spheres.
+HD inline Start draw_start(const PhotonTargetsView& targets, const WorldSphere& world, Vec3 direction, Vec2 u) {
+    const float all = area_of_discs(targets);
+    float rest = u.x * all;
+    uint32_t chosen = 0;
+    for (; chosen + 1 < targets.count && !(rest < square(targets.spheres[chosen].w)); ++chosen) {
+        rest -= square(targets.spheres[chosen].w);
+    }
+    const Float4 sphere = targets.spheres[chosen];
+    const Vec2 disc = sample_uniform_disk_concentric({min(rest / square(sphere.w), 0x1.fffffep-1f), u.y});
+    const Vec3 across = make_frame(direction).to_world({disc.x, disc.y, 0});
+    const Vec3 through = Vec3{sphere.x, sphere.y, sphere.z} + sphere.w * across;
+    uint32_t discs = 1;
+    for (uint32_t i = 0; i < targets.count; ++i) {
+        const Vec3 off = Vec3{targets.spheres[i].x, targets.spheres[i].y, targets.spheres[i].z} - through;
+        const Vec3 beside = off - dot(off, direction) * direction;
+        if (i != chosen && length_squared(beside) < square(targets.spheres[i].w)) ++discs;
+    }
+    const float back = dot(through - world.centre, direction) + world.radius;
+    return {through - back * direction, static_cast<float>(discs) * kInvPi / all};
+}
+
+HD inline bool from_triangle(const SceneView& scene, const PhotonTargetsView& targets, uint32_t light, Vec2 place,
+                             Vec2 u, uint32_t key, Particle& particle) {
+    const EmissiveTriangle& triangle = scene.lights.triangles[light];
+    if (scene.any_alpha != 0 &&
+        !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, place.x, place.y)) {
+        return false; // a hole in the light
+    }
+    const Vec2 uv = (1.0f - place.x - place.y) * triangle.uv0 + place.x * triangle.uv1 + place.y * triangle.uv2;
+    const Rgb radiance = surface_emission<true>(scene.lights, triangle.material, uv);
+    const float place_pdf = pdf_place(triangle);
+    if (is_black(radiance) || !(place_pdf > 0)) return false;
+    const Vec3 point = triangle.a + (place.x * triangle.ab + place.y * triangle.ac);
+    if (!(depth_of_cones(targets, point) < 1)) return emission::from_triangle(scene, light, place, u, key, particle);
+    const Direction direction = draw_direction(targets, point, u);
+    Vec3 normal = normalize(cross(triangle.ab, triangle.ac));
+    if (triangle.is_two_sided == 0 ? triangle.is_mirrored != 0 : dot(normal, direction.to) < 0) normal = -normal;
+    const float cosine = dot(normal, direction.to);
+    if (!(cosine > 0)) return false; // the target lies behind the lamp
+    particle.ray = {offset_ray_origin(point, light_point_error(point), normal, direction.to), 0, direction.to,
+                    kInfinity};
+    particle.start = {triangle.instance, triangle.primitive};
+    particle.power = (cosine / (place_pdf * direction.pdf)) * radiance;
+    return true;
+}
+
+HD inline bool from_punctual(const PunctualLight& light, const PhotonTargetsView& targets, float pmf, Vec2 u,
+                             const WorldSphere& world, Particle& particle) {
+    const bool is_directional = light.kind == LightKind::Directional;
+    const float own = light.kind == LightKind::Spot ? 1.0f - light.cos_outer : 2.0f;
+    if (is_directional ? !(area_of_discs(targets) < square(world.radius))
+                       : !(depth_of_cones(targets, light.position) < own)) {
+        return emission::from_punctual(light, pmf, u, world, particle);
+    }
+    if (is_directional) {
+        const Start start = draw_start(targets, world, light.direction, u);
+        particle.ray = {start.from, 0, light.direction, kInfinity};
+        particle.power = (1.0f / (pmf * start.pdf)) * light.intensity;
+        return true;
+    }
+    const Direction direction = draw_direction(targets, light.position, u);
+    particle.ray = {light.position, 0, direction.to, light.range > 0 ? light.range : kInfinity};
+    particle.power = (punctual_falloff(light, -direction.to, 0) / (pmf * direction.pdf)) * light.intensity;
+    return true;
+}
+
+HD inline bool from_environment(const EnvironmentView& environment, const PhotonTargetsView& targets, float pmf,
+                                SampleBits place, Vec2 u, const WorldSphere& world, Particle& particle) {
+    if (!(area_of_discs(targets) < square(world.radius))) {
+        return emission::from_environment(environment, pmf, place, u, world, particle);
+    }
+    EnvironmentSample sample;
+    if (!sample_environment(environment, place, sample)) return false;
+    const float pdf = pmf * sample.pdf;
+    if (!(pdf > 0)) return false;
+    const Start start = draw_start(targets, world, -sample.wi, u);
+    particle.ray = {start.from, 0, -sample.wi, kInfinity};
+    particle.power = (1.0f / (pdf * start.pdf)) * sample.radiance;
+    return true;
+}
+
+} // namespace aim
+
+/// As emit_particle, towards `targets`, of which there are some: the particle's power is over the density of all that
+/// was drawn. Its `mis` says nothing.
+HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& targets, const WorldSphere& world,
+                            SampleBits u_place, Vec2 u, uint32_t key, Particle& particle) {
+    const LightSetView& lights = scene.lights;
+    if (lights.choice.starts == nullptr || !(world.radius > 0)) return false;
+    particle.start = {};
+    particle.is_from_far = false;
+    const uint32_t more = bits_behind(u_place);
+    const OrderedDraw source = draw_ordered(lights.choice, u_place.x, more);
+    if (source.index < lights.emitter_count) {
+        const OrderedDraw triangle = draw_ordered(lights.triangles_of(source.index), u_place.y, more);
+        const uint32_t first = lights.emitters[source.index].first_triangle;
+        return aim::from_triangle(scene, targets, first + lights.triangle_order[first + triangle.index],
+                                  sample_uniform_triangle({rest_of(source), rest_of(triangle)}), u, key, particle);
+    }
+    const float pmf = ordered_pmf(source.owned);
+    if (!(pmf > 0)) return false;
+    if (source.index != lights.environment_source) {
+        return aim::from_punctual(lights.punctual[source.index - lights.emitter_count], targets, pmf, u, world,
+                                  particle);
+    }
+    return aim::from_environment(lights.environment, targets, pmf, {number_of_rest(source), u_place.y}, u, world,
+                                 particle);
+}
+
+} // namespace pertev

@@ -1,0 +1,158 @@
+// The one-picture law for photon mapping: the same bytes for any number of threads, any split of the passes, all stages
+// over all walks or a few walks a thread, any number of them in flight, and by whatever structure photons are found.
+// With --device cuda the GPU joins in.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel_for.h"
+#include "session/session.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+RenderSettings photon_settings(PhotonGather gather = PhotonGather::Final, uint32_t nearest = 0) {
+    RenderSettings settings;
+    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.height = 21;
+    settings.samples = 4;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    settings.transparent = true;
+    settings.integrator = IntegratorKind::PhotonMap;
+    settings.path.max_depth = 6;
+    settings.photon_map = {.photons = 3000, .radius = 0.3f, .nearest = nearest, .gather = gather};
+    return settings;
+}
+
+Camera photon_camera() {
+    Camera camera = test::mixed_scene_camera();
+    camera.aperture_radius = 0.05f;
+    camera.focus_distance = 6;
+    return camera;
+}
+
+struct PhotonPicture {
+    Hash128 hash;
+    RayCounts rays;
+};
+
+PhotonPicture picture_of_photons(Queue& queue, const RenderSettings& settings) {
+    const RenderResult result = test::render(queue, test::make_mixed_scene(), photon_camera(), settings);
+    CHECK(result.invalid_samples == 0);
+    return {test::render_hash(result), result.rays};
+}
+
+void check_same_photons(const PhotonPicture& a, const PhotonPicture& b) {
+    CHECK(a.hash == b.hash);
+    CHECK(a.rays.camera == b.rays.camera);
+    CHECK(a.rays.bounce == b.rays.bounce);
+    CHECK(a.rays.shadow == b.rays.shadow);
+}
+
+} // namespace
+
+TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how many are in flight, or the structure") {
+    for (const auto& [gather, nearest] : {std::pair(PhotonGather::Final, 0u), std::pair(PhotonGather::Direct, 0u),
+                                          std::pair(PhotonGather::Direct, 20u)}) {
+        CAPTURE(static_cast<int>(gather));
+        CAPTURE(nearest);
+        Queue queue = Queue::make_cpu();
+        RenderSettings settings = photon_settings(gather, nearest);
+        const PhotonPicture reference = picture_of_photons(queue, settings);
+        CHECK(reference.rays.bounce > 4 * 6000);
+        CHECK(reference.rays.shadow > 37 * 21);
+
+        set_thread_count(1);
+        check_same_photons(picture_of_photons(queue, settings), reference);
+        set_thread_count(5);
+        settings.pass_samples = 3;
+        check_same_photons(picture_of_photons(queue, settings), reference);
+        set_thread_count(0);
+        for (const PhotonSearch search : {PhotonSearch::KdTree, PhotonSearch::Octree, PhotonSearch::Grid}) {
+            settings.photon_map.search = search;
+            check_same_photons(picture_of_photons(queue, settings), reference);
+            if (!test::cuda_requested()) continue;
+            Queue gpu = test::make_cuda_queue();
+            check_same_photons(picture_of_photons(gpu, settings), reference);
+        }
+        settings.body = PathBody::Wavefront;
+        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
+            settings.batch = batch;
+            check_same_photons(picture_of_photons(queue, settings), reference);
+        }
+        settings.path.seed = 1;
+        CHECK(picture_of_photons(queue, settings).hash != reference.hash);
+    }
+}
+
+TEST_CASE("photon mapping tells the same of the first surface as path tracing, and of what emits") {
+    Queue queue = test::queue_asked_for();
+    const auto layers_of = [&](IntegratorKind integrator) {
+        RenderSettings settings = photon_settings();
+        settings.integrator = integrator;
+        settings.samples = 2;
+        RenderResult result = test::render(queue, test::make_mixed_scene(), photon_camera(), settings);
+        std::ranges::fill(result.picture.pixels, 0.0f);
+        return test::render_hash(result);
+    };
+    CHECK(layers_of(IntegratorKind::PhotonMap) == layers_of(IntegratorKind::Path));
+    RenderSettings settings = photon_settings();
+    settings.path.max_depth = 0;
+    const Hash128 seen = picture_of_photons(queue, settings).hash;
+    settings.integrator = IntegratorKind::Path;
+    CHECK(picture_of_photons(queue, settings).hash == seen);
+}
+
+TEST_CASE("a session goes to photon mapping and back, ends early and goes on, and each picture is whole") {
+    Queue queue = Queue::make_cpu();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = photon_settings();
+    settings.samples = 2;
+    settings.pass_samples = 1;
+    Session session(queue, prepared, photon_camera(), settings);
+    std::atomic<bool> is_abandoned = false;
+    session.abandon_when(&is_abandoned);
+    for (const auto& [integrator, photons] :
+         {std::pair(IntegratorKind::PhotonMap, 2000u), std::pair(IntegratorKind::Path, 2000u),
+          std::pair(IntegratorKind::PhotonMap, 500u), std::pair(IntegratorKind::PhotonMap, 4000u)}) {
+        settings.integrator = integrator;
+        settings.photon_map.photons = photons; // less memory, and more
+        session.set_settings(settings);
+        is_abandoned = true;
+        CHECK(session.render(settings.samples) == 0);
+        is_abandoned = false;
+        // Asked to end after its first pass, and gone on with: what Ctrl-C and a render anew do.
+        CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
+        CHECK(session.render(settings.samples - 1) == settings.samples - 1);
+        CHECK(test::render_hash(session.result()) ==
+              test::render_hash(test::render(queue, scene, photon_camera(), settings)));
+    }
+}
+
+TEST_CASE("memory of photon mapping is said beforehand") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    for (const PhotonSearch search : {PhotonSearch::Grid, PhotonSearch::KdTree, PhotonSearch::Octree}) {
+        for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+            RenderSettings settings = photon_settings(PhotonGather::Final, 10);
+            settings.body = body;
+            settings.photon_map.search = search;
+            Queue queue = test::queue_asked_for();
+            Session session(queue, prepared, photon_camera(), settings);
+            session.render(settings.samples);
+            const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
+            const std::size_t sorting = queue.is_cuda() ? predicted / 10 : 0; // CUB says what it takes on the device
+            CHECK(queue.allocated_bytes() + sorting >= predicted);
+            CHECK(queue.allocated_bytes() <= predicted + 4096 + sorting); // the filter's table, the scene's view
+        }
+    }
+}

@@ -1,0 +1,412 @@
+// Photon mapping's parts against what they claim, and pictures of it in closed form.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "device/launch.h"
+#include "integrators/photon_map/find_targets.h"
+#include "integrators/photon_map/order_photons.h"
+#include "integrators/photon_map/photon_map_integrator.h"
+#include "render/film.h"
+#include "render/filter_table.h"
+#include "render/scene_on_device.h"
+#include "session/check_integrator.h"
+#include "tests/support/flat_scenes.h"
+#include "tests/support/meshes.h"
+#include "tests/support/nasty_points.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+TEST_CASE("the radius of a pass is Knaus and Zwicker's, a function of the pass alone") {
+    CHECK(radius_of_pass(0) == 1);
+    const double a = 2.0 / 3;
+    double squared = 1;
+    for (uint32_t pass = 1; pass < 200; ++pass) {
+        squared *= (pass + a) / (pass + 1);
+        CHECK(static_cast<double>(radius_of_pass(pass)) == doctest::Approx(std::sqrt(squared)).epsilon(1e-6));
+    }
+    // The product is Gamma(k + 1 + a) / (Gamma(1 + a) Gamma(k + 2)).
+    const double k = 100'000, logarithm = std::lgamma(k + 1 + a) - std::lgamma(1 + a) - std::lgamma(k + 2);
+    CHECK(static_cast<double>(radius_of_pass(100'000)) == doctest::Approx(std::exp(0.5 * logarithm)).epsilon(1e-5));
+}
+
+namespace {
+
+struct GridOfPoints {
+    std::vector<Float4> points;
+    std::vector<uint32_t> starts;
+    PhotonGridView view;
+
+    GridOfPoints(const std::vector<Vec3>& from, float radius, float largest) {
+        Queue queue = Queue::make_cpu();
+        const auto count = static_cast<uint32_t>(from.size());
+        std::vector<Float4> places;
+        for (const Vec3 p : from) places.push_back({p.x, p.y, p.z, 0});
+        const PhotonCells cells = make_photon_cells(radius, largest, count);
+        std::vector<uint64_t> keys(count), sorted_keys(count);
+        std::vector<uint32_t> order(count), sorted_order(count);
+        for (uint32_t i = 0; i < count; ++i) MakeBuckets{places.data(), cells, keys.data(), order.data()}(i);
+        Buffer<std::byte> scratch;
+        sort_photons(queue, scratch, keys.data(), order.data(), sorted_keys.data(), sorted_order.data(), count, 31);
+        points.resize(count);
+        starts.assign(cells.buckets + 1, 77);
+        for (uint32_t i = 0; i <= count; ++i) {
+            FillBuckets{places.data(), sorted_keys.data(), sorted_order.data(), count,
+                        cells.buckets, points.data(),      starts.data()}(i);
+        }
+        view = {cells, points.data(), starts.data()};
+    }
+};
+
+} // namespace
+
+TEST_CASE("a hash grid finds what looking at every photon finds, ties by number") {
+    for (const test::NastyPoints& set : test::nasty_points(600)) {
+        if (set.extent < 1e-30f) continue; // squares of such distances are 0: all is near all, but not in a grid
+        CAPTURE(set.name);
+        for (const float share : {1e-6f, 0.1f, 0.25f, 1.0f}) {
+            const float radius = share * set.extent;
+            const GridOfPoints grid(set.points, radius, 2 * set.extent);
+            for (const Vec3 at : test::places_to_ask(set, 60)) {
+                const std::vector<NearPoint> want = test::within_by_brute_force(set.points, at, radius);
+                std::vector<NearPoint> seen;
+                visit_within(grid.view, at, radius, [&](const NearPoint& p) { seen.push_back(p); });
+                std::ranges::sort(seen, is_nearer);
+                REQUIRE(seen == want);
+                for (const uint32_t k : {1u, 7u, 700u}) {
+                    std::vector<NearPoint> nearest(k);
+                    nearest.resize(find_nearest(grid.view, at, radius, k, nearest.data()));
+                    REQUIRE(nearest.size() == std::min<std::size_t>(k, want.size()));
+                    REQUIRE(std::equal(nearest.begin(), nearest.end(), want.begin()));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("photons are sorted by their numbers whatever the order in which they come") {
+    Queue queue = Queue::make_cpu();
+    test::Random random(4);
+    std::vector<std::pair<uint64_t, uint32_t>> wanted;
+    std::vector<uint64_t> keys, sorted_keys(5000);
+    std::vector<uint32_t> order, sorted_order(5000);
+    for (uint32_t i = 0; i < 5000; ++i) {
+        keys.push_back(photon_key(random.below(1u << 25), random.below(64)));
+        order.push_back(i);
+        wanted.emplace_back(keys.back(), i);
+    }
+    std::ranges::sort(wanted);
+    Buffer<std::byte> scratch;
+    sort_photons(queue, scratch, keys.data(), order.data(), sorted_keys.data(), sorted_order.data(), 5000, 34);
+    for (uint32_t i = 0; i < 5000; ++i) {
+        CHECK(wanted[i] == std::pair(sorted_keys[i], sorted_order[i]));
+    }
+}
+
+TEST_CASE("photons are aimed with the density that is said, wherever the spheres lie") {
+    const Float4 near_each_other[] = {{1, 0, 0, 0.4f}, {1.3f, 0.3f, 0, 0.4f}, {-2, 1, 0.5f, 0.1f}};
+    const Float4 round_all[] = {{0.1f, 0, 0, 1}, {3, 0, 0, 0.5f}};
+    for (const PhotonTargetsView targets : {PhotonTargetsView{near_each_other, 3}, PhotonTargetsView{round_all, 2}}) {
+        constexpr int kDraws = 100'000;
+        const auto is_in_a_cone = [&](Vec3 direction) {
+            for (uint32_t i = 0; i < targets.count; ++i) {
+                const Vec3 axis = aim::axis_to({0, 0, 0}, targets.spheres[i]);
+                if (1 - dot(axis, direction) < aim::depth_of_cone({0, 0, 0}, targets.spheres[i])) return true;
+            }
+            return false;
+        };
+        test::Random random(5);
+        const auto draw = [&] {
+            const float x = random.unit();
+            return Vec2{x, random.unit()};
+        };
+        // Of f over the cones, once by draws there, once by draws from everywhere.
+        const auto f = [](Vec3 w) { return static_cast<double>(1 + w.x + 0.5f * w.y); };
+        double aimed = 0, everywhere = 0;
+        for (int i = 0; i < kDraws; ++i) {
+            const aim::Direction direction = aim::draw_direction(targets, {0, 0, 0}, draw());
+            aimed += f(direction.to) / static_cast<double>(direction.pdf) / kDraws;
+            const Vec3 other = sample_uniform_sphere(draw());
+            if (is_in_a_cone(other)) everywhere += f(other) / static_cast<double>(pdf_uniform_sphere()) / kDraws;
+        }
+        CHECK(aimed == doctest::Approx(everywhere).epsilon(0.02));
+
+        // The area of all discs across a direction.
+        const Vec3 along = normalize(Vec3{0.3f, -1, 0.2f});
+        const WorldSphere world = {{0, 0, 0}, 4};
+        const Frame frame = make_frame(along);
+        double by_aim = 0, by_chance = 0;
+        for (int i = 0; i < kDraws; ++i) {
+            const aim::Start start = aim::draw_start(targets, world, along, draw());
+            CHECK(std::abs(dot(start.from, along) + 4) < 1e-4f); // outside of the world
+            by_aim += 1 / static_cast<double>(start.pdf) / kDraws;
+            const Vec2 u = draw();
+            const Vec3 through = frame.to_world({8 * u.x - 4, 8 * u.y - 4, 0});
+            const bool meets = std::any_of(targets.spheres, targets.spheres + targets.count, [&](const Float4& s) {
+                const Vec3 off = Vec3{s.x, s.y, s.z} - through;
+                return length(off - dot(off, along) * along) < s.w;
+            });
+            if (meets) by_chance += 64.0 / kDraws;
+        }
+        CHECK(by_aim == doctest::Approx(by_chance).epsilon(0.03));
+    }
+}
+
+namespace {
+
+/// A scene, a camera and photon mapping of it, with what becomes of the photons of one pass.
+struct PhotonRun {
+    PhotonEnergy energy{};
+    PhotonCounts counts{};
+    std::size_t bytes = 0;
+
+    PhotonRun(const Scene& scene, uint32_t max_depth, uint32_t photons, bool in_loop = true) {
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(scene, {}, messages);
+        Queue queue = Queue::make_cpu();
+        const SceneOnDevice device(queue, prepared);
+        SceneTracer tracer(queue, *prepared.structures, default_tracers(false));
+        tracer.set_surfaces(device.view());
+        FilterTable filter(queue);
+        const PictureView picture = {device.view(),
+                                     make_camera_rays(test::camera_down({0, 0.1f, 0}, 0.2f),
+                                                      filter.set(PixelFilter::Box, 0.5f), 8, 8, prepared.centre)};
+        PhotonMapIntegrator integrator(queue, {.max_depth = max_depth}, {.photons = photons}, in_loop, 1u << 20);
+        integrator.begin(picture, tracer, 1);
+        integrator.tell_energy(&energy);
+        Film film(queue, 8, 8, 0);
+        integrator.render(3, 1, film.view());
+        counts = integrator.photons();
+        bytes = integrator.bytes();
+    }
+};
+
+double joules(const FixedSum& sum) { return static_cast<double>(mean_of(sum, 1)); }
+
+/// A floor under a spot light one metre above it.
+Scene floor_under_a_spot() {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 4), test::white(0.5f));
+    Light spot = test::point_light({0, 1, 0}, {8, 8, 8});
+    spot.kind = LightKind::Spot;
+    spot.direction = {0, -1, 0};
+    spot.cos_inner = 0.971f;
+    spot.cos_outer = 0.97f;
+    scene.lights.push_back(spot);
+    return scene;
+}
+
+Scene under_two_faces_of_glass() {
+    Scene scene = floor_under_a_spot();
+    const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f};
+    test::add(scene, test::floor_at(0.6f, 2), glass);
+    test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
+    scene.materials.back().roughness = scene.materials[1].roughness = 0;
+    return scene;
+}
+
+Scene sphere_that_glows(float albedo) {
+    const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
+    Scene scene;
+    Mesh mesh;
+    mesh.positions = sphere.positions;
+    mesh.indices = sphere.indices;
+    test::add(scene, mesh, {.name = "wall", .base_color = grey(albedo), .emission = {1, 1, 1}});
+    scene.materials.back().two_sided_emission = true;
+    return scene;
+}
+
+/// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
+double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 eye = {0, 0.1f, 0}) {
+    RenderSettings settings = from;
+    settings.width = settings.height = 8;
+    settings.integrator = IntegratorKind::PhotonMap;
+    settings.filter = PixelFilter::Box;
+    Queue queue = test::queue_asked_for();
+    const RenderResult result = test::render(queue, scene, test::camera_down(eye, 0.2f), settings);
+    CHECK(result.invalid_samples == 0);
+    return test::mean_of(result.picture);
+}
+
+} // namespace
+
+TEST_CASE("the energy of photons that leave the lights is what surfaces absorb and what escapes") {
+    const Scene scenes[] = {test::make_mixed_scene(), under_two_faces_of_glass(), sphere_that_glows(0.5f)};
+    for (const Scene& scene : scenes) {
+        const PhotonRun run(scene, 6, 3000);
+        const FixedSum emitted = run.energy.emitted, escaped = run.energy.escaped;
+        CHECK(joules(emitted) > 0);
+        // Nothing is lost on the way, to the last bit.
+        CHECK(emitted + run.energy.went_on == run.energy.arrived + escaped);
+        CHECK(run.counts.stored > 100);
+        CHECK(joules(run.energy.kept) > 0);
+        // The other body moves the very same photons.
+        const PhotonRun again(scene, 6, 3000, false);
+        CHECK(again.energy.emitted == emitted);
+        CHECK(again.energy.escaped == escaped);
+        CHECK(again.energy.kept == run.energy.kept);
+        CHECK(again.counts.stored == run.counts.stored);
+        CHECK(again.counts.caustic == run.counts.caustic);
+    }
+}
+
+TEST_CASE("photons carry what the lights send, and leave what a closed room keeps") {
+    // A sphere of radius 2 whose inside and outside send pi W/m2 each: photons of the outside escape. Three colours.
+    const double area = 4 * 3.14159265 * 4 * 0.99, inside = 3 * 3.14159265 * area; // 0.99: it has flat sides
+    const PhotonRun run(sphere_that_glows(0.5f), 5, 20000);
+    CHECK(joules(run.energy.emitted) == doctest::Approx(2 * inside).epsilon(0.01));
+    CHECK(joules(run.energy.escaped) == doctest::Approx(inside).epsilon(0.01));
+    // Arrivals after 1 to 4 scatterings are kept: 1/2 + 1/4 + 1/8 + 1/16 of what is sent.
+    CHECK(joules(run.energy.kept) == doctest::Approx(inside * 15 / 16).epsilon(0.02));
+    CHECK(joules(run.energy.arrived) == doctest::Approx(inside * 31 / 16).epsilon(0.02));
+    CHECK(run.counts.caustic == 0);
+}
+
+TEST_CASE("a floor under a lamp behind glass has the radiance of the closed form, by photons alone") {
+    RenderSettings settings;
+    settings.path.max_depth = 6;
+    settings.samples = 8;
+    settings.photon_map.photons = 20'000;
+    settings.photon_map.caustic_radius = 0.03f;
+    constexpr double kFloor = 0.5 * 8 / 3.14159265; // albedo I / pi, at 1 m; 1 % less towards the view's corners
+    CHECK(mean_seen(floor_under_a_spot(), settings) == doctest::Approx(kFloor).epsilon(0.02)); // shadow rays alone
+    // All mirrored ways between the two faces together let 2 n / (n^2 + 1) through; the light seems 0.2 (1 - 1 / n) m
+    // nearer.
+    const double nearer = 1 - 0.2 * (1 - 1 / 1.5), behind = kFloor * 2 * 1.5 / (1.5 * 1.5 + 1) / (nearer * nearer);
+    const Scene scene = under_two_faces_of_glass();
+    CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
+    settings.photon_map.nearest = 60;
+    CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
+    settings.path.max_depth = 2; // one face alone may scatter beside the floor
+    CHECK(mean_seen(scene, settings) == 0);
+}
+
+TEST_CASE("what is seen in a mirror is there too: a caustic that neither end finds alone") {
+    Scene scene = under_two_faces_of_glass();
+    test::add(scene, test::sheet({0.5f, 0.2f, 0}, {0, 0, 0.1f}, {0, 0.1f, 0}), test::mirror()); // its front to -x
+    RenderSettings settings;
+    settings.path.max_depth = 8;
+    settings.samples = 4;
+    settings.photon_map.caustic_radius = 0.03f;
+    settings.photon_map.photons = 20'000;
+    settings.width = settings.height = 4;
+    settings.integrator = IntegratorKind::PhotonMap;
+    Camera camera;
+    camera.world_from_camera = look_at({0.3f, 0.25f, 0}, {0.5f, 0.15f, 0}, {0, 1, 0});
+    camera.fov_y = 0.05f;
+    Queue queue = test::queue_asked_for();
+    const double seen = test::mean_of(test::render(queue, scene, camera, settings).picture);
+    settings.integrator = IntegratorKind::Bidirectional;
+    settings.samples = 64;
+    const double by_bidirectional = test::mean_of(test::render(queue, scene, camera, settings).picture);
+    CHECK(seen > 0.3);
+    CHECK(by_bidirectional < 0.1 * seen);
+}
+
+TEST_CASE("a glowing room shows each scattering once, by direct estimate and by final gathering") {
+    for (const PhotonGather gather : {PhotonGather::Direct, PhotonGather::Final}) {
+        for (const uint32_t nearest : {0u, 100u}) {
+            double wanted = 0;
+            for (uint32_t depth = 0; depth <= 4; ++depth) {
+                CAPTURE(static_cast<int>(gather));
+                CAPTURE(nearest);
+                CAPTURE(depth);
+                wanted += std::pow(0.5, depth);
+                RenderSettings settings;
+                settings.path.max_depth = depth;
+                settings.path.roulette_depth = 100;
+                settings.samples = 16;
+                settings.photon_map = {.photons = 20'000, .radius = 0.2f, .nearest = nearest, .gather = gather};
+                CHECK(mean_seen(sphere_that_glows(0.5f), settings, {0.3f, 0.2f, -0.5f}) ==
+                      doctest::Approx(wanted).epsilon(0.02));
+            }
+        }
+    }
+}
+
+TEST_CASE("a sphere in a furnace shows its albedo") {
+    RenderSettings settings;
+    settings.samples = 64;
+    settings.photon_map.photons = 1000;
+    CHECK(mean_seen(test::make_furnace_scene(0.6f), settings, {0, 2, 0}) == doctest::Approx(0.6).epsilon(0.01));
+}
+
+TEST_CASE("targets are one sphere round a ball, and several where mirrors lie apart") {
+    SpecularBounds found;
+    std::fill_n(reinterpret_cast<unsigned char*>(&found), sizeof found, hploc::kNothing);
+    CHECK(choose_targets(found).empty());
+    for (const bool are_apart : {false, true}) {
+        Scene scene;
+        const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .ior = 1.5f};
+        for (const float x : {-3.0f, 3.0f}) {
+            if (x < 0 && !are_apart) continue;
+            const test::TriangleMesh ball = test::make_sphere(2, {x, 0, 0}, 0.5f);
+            Mesh mesh;
+            mesh.positions = ball.positions;
+            mesh.indices = ball.indices;
+            test::add(scene, mesh, glass);
+            scene.materials.back().roughness = 0;
+        }
+        test::add(scene, test::floor_at(-1, 4), test::white());
+        Messages messages;
+        const PreparedScene prepared = prepare_scene(scene, {}, messages);
+        Queue queue = Queue::make_cpu();
+        const SceneOnDevice device(queue, prepared);
+        std::fill_n(reinterpret_cast<unsigned char*>(&found), sizeof found, hploc::kNothing);
+        for (const bool in_cells : {false, true}) {
+            for (uint32_t i = 0; i < device.view().triangle_count; ++i) {
+                FindSpecular{device.view(), &found, in_cells}(i);
+            }
+        }
+        const std::vector<Float4> spheres = choose_targets(found);
+        if (!are_apart) {
+            REQUIRE(spheres.size() == 1);
+            CHECK(spheres[0].w == doctest::Approx(0.5).epsilon(0.01));
+        }
+        CHECK(spheres.size() >= (are_apart ? 2u : 1u));
+        double area = 0;
+        for (const Float4& sphere : spheres) area += static_cast<double>(sphere.w) * static_cast<double>(sphere.w);
+        CHECK(area < 4);                      // one sphere round both would have 3.5^2
+        for (const float x : {-3.0f, 3.0f}) { // all of it lies in one of them
+            if (x < 0 && !are_apart) continue;
+            for (const Vec3 at : test::make_sphere(2, Vec3{x, 0, 0} - prepared.centre, 0.5f).positions) {
+                CHECK(std::ranges::any_of(spheres, [&](const Float4& sphere) {
+                    return length(at - Vec3{sphere.x, sphere.y, sphere.z}) <= sphere.w;
+                }));
+            }
+        }
+    }
+}
+
+TEST_CASE("a scene without a light for photons, and more photons than there is room for, are refused in a line") {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 1), test::white());
+    RenderSettings settings;
+    settings.integrator = IntegratorKind::PhotonMap;
+    Messages messages;
+    const auto said = [&] { return test::bad_input_message([&] { check_light(settings, scene, messages); }); };
+    CHECK(said() == "--integrator photon_map: photons leave lights, and this scene has none: no lamp, no point, spot "
+                    "or directional light, no environment");
+    scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
+    CHECK(said() == "no error");
+    scene.lights.clear();
+    settings.path.max_depth = 0; // what emits
+    CHECK(said() == "no error");
+
+    settings.path.max_depth = 64;
+    settings.photon_map.photons = kMostPhotons;
+    const auto error = test::thrown_error([&] { check_integrator(settings); });
+    CHECK(test::says(error, "--photons 16777216: with --max-depth 64 a pass may leave more than 1073741823 photons; at "
+                            "most 8521760"));
+    CHECK(error->code() == ErrorCode::OverLimit);
+    settings.path.max_depth = 65;
+    CHECK(
+        test::says(test::thrown_error([&] { check_integrator(settings); }), "with --integrator photon_map at most 64"));
+}
