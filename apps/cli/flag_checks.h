@@ -9,9 +9,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/error.h"
 #include "base/limits.h"
 
 namespace pertev {
+
+/// Throws Error(BadInput) where it is.
+inline void refuse(bool is_wrong, const std::string& why) {
+    if (is_wrong) throw Error(ErrorCode::BadInput, why);
+}
 
 /// A finite number in [low, high].
 CLI::Validator number_between(float low, float high);

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "base/error.h"
+#include "apps/cli/flag_checks.h"
 
 namespace pertev {
 namespace {
@@ -30,9 +30,6 @@ void note_real_time_flags(const CLI::App& verb, RenderFlags& flags) {
 }
 
 void check_real_time_flags(const RenderFlags& flags) {
-    const auto refuse = [](bool is_wrong, const std::string& why) {
-        if (is_wrong) throw Error(ErrorCode::BadInput, why);
-    };
     refuse(!flags.real_time && !flags.real_time_flag.empty(),
            fmt::format("{}: of frames in real time; say --real-time", flags.real_time_flag));
     if (!flags.real_time) return;

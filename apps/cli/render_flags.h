@@ -62,6 +62,8 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags);
 /// which throws Error(BadInput).
 void add_motion_flags(CLI::App& verb, RenderFlags& flags);
 void check_motion_flags(const RenderFlags& flags);
+/// --shutter, which pictures alone have that are not reconstructed of frames.
+void add_shutter_flag(CLI::App& verb, RenderFlags& flags);
 /// Of --shutter; none: it is not given. Throws Error(BadInput).
 std::optional<Shutter> shutter(const RenderFlags& flags);
 /// Of these, the ones that say at which time the scene is shown, or how the camera goes over time: --time,

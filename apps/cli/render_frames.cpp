@@ -38,10 +38,10 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
     SequenceRecord::Settings settings;
     for (const auto& [name, value] : settings_metadata(record)) {
         // They stand there only where they are; a run without them must be told apart from one with them.
-        constexpr std::string_view kSometimes[] = {"pertev.denoise",   "pertev.ambient",     "pertev.shading",
-                                                   "pertev.wireframe", "pertev.lpe",         "pertev.lamp",
-                                                   "pertev.quantity",  "pertev.false_color", "pertev.shutter",
-                                                   "pertev.frame",     "pertev.first_frame", "pertev.reconstruction"};
+        constexpr std::string_view kSometimes[] = {
+            "pertev.denoise",     "pertev.ambient",        "pertev.shading",     "pertev.wireframe", "pertev.lpe",
+            "pertev.lamp",        "pertev.quantity",       "pertev.false_color", "pertev.shutter",   "pertev.frame",
+            "pertev.first_frame", "pertev.reconstruction", "pertev.displacement"};
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
@@ -50,6 +50,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
     for (const std::string& layer : flags.light_paths) layers += layer + " ";
     std::string lamps;
     for (const std::string& lamp : flags.scene.lamps) lamps += lamp + " ";
+    std::string displacements;
+    for (const std::string& displacement : flags.displacements) displacements += displacement + " ";
     const RenderSettings& picture = record.settings;
     settings.insert(settings.end(), {{"first frame", fmt::format("{}", sequence.first)},
                                      {"--fps", sequence.fps ? fmt::format("{}", *sequence.fps) : ""},
@@ -62,6 +64,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
                                      {"--lamp", lamps},
+                                     {"--displacement", displacements},
                                      {"--efficacy", fmt::format("{}", flags.scene.efficacy)},
                                      {"--false-color", flags.false_color},
                                      {"--false-color-range", flags.false_color_range},
