@@ -15,6 +15,8 @@
 namespace pertev {
 namespace {
 
+constexpr uint32_t kMostFrames = 1'000'000'000;
+
 /// The number that `text` is from its first character to its last, of a size up to a million.
 std::optional<double> seconds_in(std::string_view text) {
     double value = 0;

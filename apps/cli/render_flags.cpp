@@ -21,8 +21,6 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kMostFrames = 1'000'000'000;
-
 bool keeps_alpha(const std::string& output) {
     const ImageFormat format = image_format_for(output);
     return format == ImageFormat::Exr || format == ImageFormat::Png;
