@@ -20,7 +20,10 @@ FLAGS = {
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --device --threads "
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
-              "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso",
+              "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
+              "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
+              "--real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
+              "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --quiet -q --json",
     "info": "--allow-path --quiet -q --json",
