@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "base/parallel_for.h"
 #include "session/session.h"
+#include "tests/support/check_one_picture.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/thrown_error.h"
@@ -30,31 +30,6 @@ RenderSettings photon_settings(PhotonGather gather = PhotonGather::Final, uint32
     return settings;
 }
 
-Camera photon_camera() {
-    Camera camera = test::mixed_scene_camera();
-    camera.aperture_radius = 0.05f;
-    camera.focus_distance = 6;
-    return camera;
-}
-
-struct PhotonPicture {
-    Hash128 hash;
-    RayCounts rays;
-};
-
-PhotonPicture picture_of_photons(Queue& queue, const RenderSettings& settings) {
-    const RenderResult result = test::render(queue, test::make_mixed_scene(), photon_camera(), settings);
-    CHECK(result.invalid_samples == 0);
-    return {test::render_hash(result), result.rays};
-}
-
-void check_same_photons(const PhotonPicture& a, const PhotonPicture& b) {
-    CHECK(a.hash == b.hash);
-    CHECK(a.rays.camera == b.rays.camera);
-    CHECK(a.rays.bounce == b.rays.bounce);
-    CHECK(a.rays.shadow == b.rays.shadow);
-}
-
 } // namespace
 
 TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how many are in flight, or the structure") {
@@ -62,32 +37,21 @@ TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how man
                                           std::pair(PhotonGather::Direct, 20u)}) {
         CAPTURE(static_cast<int>(gather));
         CAPTURE(nearest);
-        Queue queue = Queue::make_cpu();
+        const Scene scene = test::make_mixed_scene();
         RenderSettings settings = photon_settings(gather, nearest);
-        const PhotonPicture reference = picture_of_photons(queue, settings);
+        const test::CheckedPicture reference = test::check_one_picture(scene, settings);
         CHECK(reference.rays.bounce > 4 * 6000);
         CHECK(reference.rays.shadow > 37 * 21);
 
-        set_thread_count(1);
-        check_same_photons(picture_of_photons(queue, settings), reference);
-        set_thread_count(5);
+        Queue queue = Queue::make_cpu();
         settings.pass_samples = 3;
-        check_same_photons(picture_of_photons(queue, settings), reference);
-        set_thread_count(0);
         for (const PhotonSearch search : {PhotonSearch::KdTree, PhotonSearch::Octree, PhotonSearch::Grid}) {
             settings.photon_map.search = search;
-            check_same_photons(picture_of_photons(queue, settings), reference);
+            test::check_same(test::checked_picture(queue, scene, settings), reference);
             if (!test::cuda_requested()) continue;
             Queue gpu = test::make_cuda_queue();
-            check_same_photons(picture_of_photons(gpu, settings), reference);
+            test::check_same(test::checked_picture(gpu, scene, settings), reference);
         }
-        settings.body = PathBody::Wavefront;
-        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
-            settings.batch = batch;
-            check_same_photons(picture_of_photons(queue, settings), reference);
-        }
-        settings.path.seed = 1;
-        CHECK(picture_of_photons(queue, settings).hash != reference.hash);
     }
 }
 
@@ -97,16 +61,16 @@ TEST_CASE("photon mapping tells the same of the first surface as path tracing, a
         RenderSettings settings = photon_settings();
         settings.integrator = integrator;
         settings.samples = 2;
-        RenderResult result = test::render(queue, test::make_mixed_scene(), photon_camera(), settings);
+        RenderResult result = test::render(queue, test::make_mixed_scene(), test::camera_with_lens(), settings);
         std::ranges::fill(result.picture.pixels, 0.0f);
         return test::render_hash(result);
     };
     CHECK(layers_of(IntegratorKind::PhotonMap) == layers_of(IntegratorKind::Path));
     RenderSettings settings = photon_settings();
     settings.path.max_depth = 0;
-    const Hash128 seen = picture_of_photons(queue, settings).hash;
+    const Hash128 seen = test::checked_picture(queue, test::make_mixed_scene(), settings).hash;
     settings.integrator = IntegratorKind::Path;
-    CHECK(picture_of_photons(queue, settings).hash == seen);
+    CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
 }
 
 TEST_CASE("a session goes to photon mapping and back, ends early and goes on, and each picture is whole") {
@@ -117,7 +81,7 @@ TEST_CASE("a session goes to photon mapping and back, ends early and goes on, an
     RenderSettings settings = photon_settings();
     settings.samples = 2;
     settings.pass_samples = 1;
-    Session session(queue, prepared, photon_camera(), settings);
+    Session session(queue, prepared, test::camera_with_lens(), settings);
     std::atomic<bool> is_abandoned = false;
     session.abandon_when(&is_abandoned);
     for (const auto& [integrator, photons] :
@@ -133,7 +97,7 @@ TEST_CASE("a session goes to photon mapping and back, ends early and goes on, an
         CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
         CHECK(session.render(settings.samples - 1) == settings.samples - 1);
         CHECK(test::render_hash(session.result()) ==
-              test::render_hash(test::render(queue, scene, photon_camera(), settings)));
+              test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings)));
     }
 }
 
@@ -147,7 +111,7 @@ TEST_CASE("memory of photon mapping is said beforehand") {
             settings.body = body;
             settings.photon_map.search = search;
             Queue queue = test::queue_asked_for();
-            Session session(queue, prepared, photon_camera(), settings);
+            Session session(queue, prepared, test::camera_with_lens(), settings);
             session.render(settings.samples);
             const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
             const std::size_t sorting = queue.is_cuda() ? predicted / 10 : 0; // CUB says what it takes on the device

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "base/parallel_for.h"
 #include "session/session.h"
+#include "tests/support/check_one_picture.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/thrown_error.h"
@@ -39,54 +39,14 @@ Scene tree_scene() {
     return scene;
 }
 
-struct TreePicture {
-    Hash128 hash;
-    RayCounts rays;
-};
-
-TreePicture picture_of(Queue& queue, const RenderSettings& settings) {
-    Camera camera = test::mixed_scene_camera();
-    camera.aperture_radius = 0.05f;
-    camera.focus_distance = 6;
-    const RenderResult result = test::render(queue, tree_scene(), camera, settings);
-    CHECK(result.invalid_samples == 0);
-    return {test::render_hash(result), result.rays};
-}
-
-void check_same(const TreePicture& a, const TreePicture& b) {
-    CHECK(a.hash == b.hash);
-    CHECK(a.rays.camera == b.rays.camera);
-    CHECK(a.rays.bounce == b.rays.bounce);
-    CHECK(a.rays.shadow == b.rays.shadow);
-}
-
 } // namespace
 
 TEST_CASE("pictures of trees of rays do not depend on threads, passes, bodies or how many are in flight") {
     for (const IntegratorKind integrator : kTrees) {
         CAPTURE(static_cast<int>(integrator));
-        Queue queue = Queue::make_cpu();
-        RenderSettings settings = tree_settings(integrator);
-        const TreePicture reference = picture_of(queue, settings);
+        const test::CheckedPicture reference = test::check_one_picture(tree_scene(), tree_settings(integrator));
         CHECK((reference.rays.bounce > 0) == (integrator != IntegratorKind::Cast));
         CHECK(reference.rays.shadow > 37 * 21);
-
-        set_thread_count(1);
-        check_same(picture_of(queue, settings), reference);
-        set_thread_count(5);
-        settings.pass_samples = 3;
-        check_same(picture_of(queue, settings), reference);
-        set_thread_count(0);
-        settings.body = PathBody::Wavefront;
-        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
-            settings.batch = batch;
-            check_same(picture_of(queue, settings), reference);
-            if (!test::cuda_requested()) continue;
-            Queue gpu = test::make_cuda_queue();
-            check_same(picture_of(gpu, settings), reference);
-        }
-        settings.path.seed = 1;
-        CHECK(picture_of(queue, settings).hash != reference.hash);
     }
 }
 

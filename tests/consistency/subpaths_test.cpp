@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "base/parallel_for.h"
 #include "session/session.h"
+#include "tests/support/check_one_picture.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/thrown_error.h"
@@ -31,58 +31,15 @@ RenderSettings walk_settings(IntegratorKind integrator) {
     return settings;
 }
 
-Camera camera_with_lens() {
-    Camera camera = test::mixed_scene_camera();
-    camera.aperture_radius = 0.05f;
-    camera.focus_distance = 6;
-    return camera;
-}
-
-struct WalkPicture {
-    Hash128 hash;
-    RayCounts rays;
-};
-
-WalkPicture picture_of_walks(Queue& queue, const RenderSettings& settings) {
-    const RenderResult result = test::render(queue, test::make_mixed_scene(), camera_with_lens(), settings);
-    CHECK(result.invalid_samples == 0);
-    return {test::render_hash(result), result.rays};
-}
-
-void check_same_walks(const WalkPicture& a, const WalkPicture& b) {
-    CHECK(a.hash == b.hash);
-    CHECK(a.rays.camera == b.rays.camera);
-    CHECK(a.rays.bounce == b.rays.bounce);
-    CHECK(a.rays.shadow == b.rays.shadow);
-}
-
 } // namespace
 
 TEST_CASE("pictures of walks from the lights do not depend on threads, passes, bodies or how many are in flight") {
     for (const IntegratorKind integrator : kWalks) {
         CAPTURE(static_cast<int>(integrator));
-        Queue queue = Queue::make_cpu();
-        RenderSettings settings = walk_settings(integrator);
-        const WalkPicture reference = picture_of_walks(queue, settings);
+        const test::CheckedPicture reference =
+            test::check_one_picture(test::make_mixed_scene(), walk_settings(integrator));
         CHECK(reference.rays.bounce > 37 * 21);
         CHECK(reference.rays.shadow > 37 * 21);
-
-        set_thread_count(1);
-        check_same_walks(picture_of_walks(queue, settings), reference);
-        set_thread_count(5);
-        settings.pass_samples = 3;
-        check_same_walks(picture_of_walks(queue, settings), reference);
-        set_thread_count(0);
-        settings.body = PathBody::Wavefront;
-        for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
-            settings.batch = batch;
-            check_same_walks(picture_of_walks(queue, settings), reference);
-            if (!test::cuda_requested()) continue;
-            Queue gpu = test::make_cuda_queue();
-            check_same_walks(picture_of_walks(gpu, settings), reference);
-        }
-        settings.path.seed = 1;
-        CHECK(picture_of_walks(queue, settings).hash != reference.hash);
     }
 }
 
@@ -91,7 +48,7 @@ TEST_CASE("walks from the camera tell the same of the first surface as path trac
     const auto layers_of = [&](IntegratorKind integrator) {
         RenderSettings settings = walk_settings(integrator);
         settings.samples = 2;
-        RenderResult result = test::render(queue, test::make_mixed_scene(), camera_with_lens(), settings);
+        RenderResult result = test::render(queue, test::make_mixed_scene(), test::camera_with_lens(), settings);
         std::ranges::fill(result.picture.pixels, 0.0f);
         return test::render_hash(result);
     };
@@ -103,10 +60,10 @@ TEST_CASE("without a scattering all that is left is what the camera looks straig
     Queue queue = test::queue_asked_for();
     RenderSettings settings = walk_settings(IntegratorKind::Path);
     settings.path.max_depth = 0;
-    const Hash128 of_path = picture_of_walks(queue, settings).hash;
+    const Hash128 of_path = test::checked_picture(queue, test::make_mixed_scene(), settings).hash;
     for (const IntegratorKind integrator : kWalks) {
         settings.integrator = integrator;
-        CHECK(picture_of_walks(queue, settings).hash == of_path);
+        CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == of_path);
     }
 }
 
@@ -118,7 +75,7 @@ TEST_CASE("a session goes to walks from the lights and back, ends early and goes
     RenderSettings settings = walk_settings(IntegratorKind::Path);
     settings.samples = 2;
     settings.pass_samples = 1;
-    Session session(queue, prepared, camera_with_lens(), settings);
+    Session session(queue, prepared, test::camera_with_lens(), settings);
     std::atomic<bool> is_abandoned = false;
     session.abandon_when(&is_abandoned);
     for (const IntegratorKind integrator :
@@ -133,7 +90,7 @@ TEST_CASE("a session goes to walks from the lights and back, ends early and goes
         CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
         CHECK(session.render(settings.samples - 1) == settings.samples - 1);
         CHECK(test::render_hash(session.result()) ==
-              test::render_hash(test::render(queue, scene, camera_with_lens(), settings)));
+              test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings)));
     }
 }
 
@@ -145,7 +102,7 @@ TEST_CASE("memory of walks is said beforehand, and is a GiB at most") {
         RenderSettings settings = walk_settings(integrator);
         settings.body = PathBody::Wavefront;
         Queue queue = test::queue_asked_for();
-        Session session(queue, prepared, camera_with_lens(), settings);
+        Session session(queue, prepared, test::camera_with_lens(), settings);
         session.render(settings.samples);
         const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
         CHECK(queue.allocated_bytes() >= predicted);

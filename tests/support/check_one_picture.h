@@ -1,0 +1,64 @@
+#pragma once
+
+// The one-picture law for one integrator: what a picture may not depend on. Of the mixed scene, or another one.
+
+#include <doctest/doctest.h>
+
+#include "base/parallel_for.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+namespace pertev::test {
+
+/// The mixed scene's, with a lens.
+inline Camera camera_with_lens() {
+    Camera camera = mixed_scene_camera();
+    camera.aperture_radius = 0.05f;
+    camera.focus_distance = 6;
+    return camera;
+}
+
+struct CheckedPicture {
+    Hash128 hash;
+    RayCounts rays;
+};
+
+inline CheckedPicture checked_picture(Queue& queue, const Scene& scene, const RenderSettings& settings) {
+    const RenderResult result = render(queue, scene, camera_with_lens(), settings);
+    CHECK(result.invalid_samples == 0);
+    return {render_hash(result), result.rays};
+}
+
+inline void check_same(const CheckedPicture& a, const CheckedPicture& b) {
+    CHECK(a.hash == b.hash);
+    CHECK(a.rays.camera == b.rays.camera);
+    CHECK(a.rays.bounce == b.rays.bounce);
+    CHECK(a.rays.shadow == b.rays.shadow);
+}
+
+/// Renders by 1 and 5 threads, in other passes, by all stages with few samples in flight and with all, and with
+/// --device cuda on the GPU: the same bytes and rays. Another seed gives another picture. Returns what the CPU's loop
+/// gives.
+inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings settings) {
+    Queue queue = Queue::make_cpu();
+    const CheckedPicture reference = checked_picture(queue, scene, settings);
+    set_thread_count(1);
+    check_same(checked_picture(queue, scene, settings), reference);
+    set_thread_count(5);
+    settings.pass_samples = 3;
+    check_same(checked_picture(queue, scene, settings), reference);
+    set_thread_count(0);
+    settings.body = PathBody::Wavefront;
+    for (const uint32_t batch : {333u, 1u << 20}) { // less than a picture; all
+        settings.batch = batch;
+        check_same(checked_picture(queue, scene, settings), reference);
+        if (!cuda_requested()) continue;
+        Queue gpu = make_cuda_queue();
+        check_same(checked_picture(gpu, scene, settings), reference);
+    }
+    settings.path.seed = 1;
+    CHECK(checked_picture(queue, scene, settings).hash != reference.hash);
+    return reference;
+}
+
+} // namespace pertev::test
