@@ -42,6 +42,19 @@ inline Light point_light(Vec3 position, Rgb intensity) {
     return light;
 }
 
+/// A floor under a spot light that stands one metre above it and shines straight down.
+inline Scene floor_under_spot() {
+    Scene scene;
+    add(scene, floor_at(0, 4), white(0.5f));
+    Light spot = point_light({0, 1, 0}, {8, 8, 8});
+    spot.kind = LightKind::Spot;
+    spot.direction = {0, -1, 0};
+    spot.cos_inner = 0.971f;
+    spot.cos_outer = 0.97f;
+    scene.lights.push_back(spot);
+    return scene;
+}
+
 /// Looks straight down from `eye` without perspective; the picture's right is +x, its lower edge +z.
 inline Camera camera_down(Vec3 eye, float height) {
     Camera camera;

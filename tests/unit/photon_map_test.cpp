@@ -190,21 +190,8 @@ struct PhotonRun {
 
 double joules(const FixedSum& sum) { return static_cast<double>(mean_of(sum, 1)); }
 
-/// A floor under a spot light one metre above it.
-Scene floor_under_a_spot() {
-    Scene scene;
-    test::add(scene, test::floor_at(0, 4), test::white(0.5f));
-    Light spot = test::point_light({0, 1, 0}, {8, 8, 8});
-    spot.kind = LightKind::Spot;
-    spot.direction = {0, -1, 0};
-    spot.cos_inner = 0.971f;
-    spot.cos_outer = 0.97f;
-    scene.lights.push_back(spot);
-    return scene;
-}
-
 Scene under_two_faces_of_glass() {
-    Scene scene = floor_under_a_spot();
+    Scene scene = test::floor_under_spot();
     const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f};
     test::add(scene, test::floor_at(0.6f, 2), glass);
     test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
@@ -276,7 +263,7 @@ TEST_CASE("a floor under a lamp behind glass has the radiance of the closed form
     settings.photon_map.photons = 20'000;
     settings.photon_map.caustic_radius = 0.03f;
     constexpr double kFloor = 0.5 * 8 / 3.14159265; // albedo I / pi, at 1 m; 1 % less towards the view's corners
-    CHECK(mean_seen(floor_under_a_spot(), settings) == doctest::Approx(kFloor).epsilon(0.02)); // shadow rays alone
+    CHECK(mean_seen(test::floor_under_spot(), settings) == doctest::Approx(kFloor).epsilon(0.02)); // shadow rays alone
     // All mirrored ways between the two faces together let 2 n / (n^2 + 1) through; the light seems 0.2 (1 - 1 / n) m
     // nearer.
     const double nearer = 1 - 0.2 * (1 - 1 / 1.5), behind = kFloor * 2 * 1.5 / (1.5 * 1.5 + 1) / (nearer * nearer);

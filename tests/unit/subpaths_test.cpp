@@ -68,19 +68,6 @@ TEST_CASE("a vertex is seen where the camera's ray to it comes from") {
 
 namespace {
 
-/// A floor under a spot light that stands one metre above it and shines straight down.
-Scene floor_under_spot() {
-    Scene scene;
-    test::add(scene, test::floor_at(0, 4), test::white(0.5f));
-    Light spot = test::point_light({0, 1, 0}, {8, 8, 8});
-    spot.kind = LightKind::Spot;
-    spot.direction = {0, -1, 0};
-    spot.cos_inner = 0.971f;
-    spot.cos_outer = 0.97f;
-    scene.lights.push_back(spot);
-    return scene;
-}
-
 /// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
 double seen_below(const Scene& scene, IntegratorKind integrator, uint32_t samples, float eye = 0.1f) {
     RenderSettings settings;
@@ -99,13 +86,14 @@ constexpr double kFloor = 0.5 * 8 / 3.14159265; // albedo I / pi, at 1 m; 1 % le
 } // namespace
 
 TEST_CASE("a floor under a spot light has the radiance of the closed form") {
-    CHECK(seen_below(floor_under_spot(), IntegratorKind::Path, 4) == doctest::Approx(kFloor).epsilon(0.02));
-    CHECK(seen_below(floor_under_spot(), IntegratorKind::Light, 4096) == doctest::Approx(kFloor).epsilon(0.02));
-    CHECK(seen_below(floor_under_spot(), IntegratorKind::Bidirectional, 256) == doctest::Approx(kFloor).epsilon(0.02));
+    CHECK(seen_below(test::floor_under_spot(), IntegratorKind::Path, 4) == doctest::Approx(kFloor).epsilon(0.02));
+    CHECK(seen_below(test::floor_under_spot(), IntegratorKind::Light, 4096) == doctest::Approx(kFloor).epsilon(0.02));
+    CHECK(seen_below(test::floor_under_spot(), IntegratorKind::Bidirectional, 256) ==
+          doctest::Approx(kFloor).epsilon(0.02));
 }
 
 TEST_CASE("a light without size behind glass lights the floor, but for path tracing, which cannot find it") {
-    Scene scene = floor_under_spot();
+    Scene scene = test::floor_under_spot();
     const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f};
     test::add(scene, test::floor_at(0.6f, 2), glass);
     test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
