@@ -7,6 +7,15 @@
 
 namespace pertev {
 
+/// What code knows of its scene when it is compiled: whether something moves while the shutter is open. Code for both
+/// would cost each of them registers, and on a GPU keep surfaces in memory.
+enum class MotionKnown : uint8_t { None, Perhaps, Some };
+
+template <MotionKnown kMotion>
+HD inline bool is_moving(const SceneView& scene) {
+    return kMotion == MotionKnown::Some || (kMotion == MotionKnown::Perhaps && scene.motions.is_there());
+}
+
 HD inline void move_surface(const RigidMotion& motion, Surface& surface) {
     const float error = motion.error(surface.position);
     surface.error = motion.turn_sizes(surface.error) + Vec3{error, error, error};

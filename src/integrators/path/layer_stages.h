@@ -18,6 +18,8 @@ struct LayerQueueView {
     static constexpr std::size_t kBytesOfPath = 2 * sizeof(Uint2) + sizeof(Float4) + sizeof(Uint4);
 };
 
+/// `kMotion`: as shade_hit has it.
+template <MotionKnown kMotion>
 struct ShadeHitsToLayers {
     PictureView picture;
     PathSettings settings;
@@ -34,7 +36,9 @@ struct ShadeHitsToLayers {
     HD void operator()(uint32_t i) const {
         const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
         PathState path = paths.load(place);
-        path.time = time_of(picture.camera, settings, path);
+        if (kMotion != MotionKnown::None || (path.depth == 0 && picture.camera.motion.moves())) {
+            path.time = time_of(picture.camera, settings, path);
+        }
         const Hit hit = hits.load(place);
         const uint32_t key = path_key(path, settings.seed, true);
         LightPathState state = layers.begin();
@@ -42,13 +46,13 @@ struct ShadeHitsToLayers {
         ShadowRay shadow;
         LayerShadow parts;
         bool wants_shadow = false;
-        const bool goes_on = shade_hit_to_layers(picture, settings, film, layers, is_meter, state, path, hit, shadow,
-                                                 wants_shadow, parts);
+        const bool goes_on = shade_hit_to_layers<kMotion>(picture, settings, film, layers, is_meter, state, path, hit,
+                                                          shadow, wants_shadow, parts);
         uint32_t to = 0;
         if (goes_on) {
             to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
-            if (next.times != nullptr) next.times[to] = path.time;
+            if (kMotion != MotionKnown::None) next.times[to] = path.time;
             if (layers.is_there()) layered.next_states[to] = {state.red_green, state.blue};
         } else {
             to = last - atomic_add(&round->ended, 1u);
@@ -57,7 +61,7 @@ struct ShadeHitsToLayers {
         if (!wants_shadow) return;
         const uint32_t ray = atomic_add(&round->shadows, 1u);
         shadows.store<false>(ray, shadow, to, path.pixel, {hit.instance, hit.primitive}, key);
-        if (shadows.times != nullptr) shadows.times[ray] = path.time;
+        if (kMotion != MotionKnown::None) shadows.times[ray] = path.time;
         if (!layers.is_there()) return;
         layered.shadow_diffuse[ray] = {parts.diffuse.r, parts.diffuse.g, parts.diffuse.b, float_of(path.pixel)};
         layered.shadow_parts[ray] = {parts.state.red_green, parts.state.blue, parts.column, parts.light};

@@ -33,14 +33,22 @@ Size size_for(uint64_t samples, uint32_t batch, bool on_cuda) {
 void shade_hits(Queue& queue, const WorkCount& active, const PictureView& picture, const PathSettings& settings,
                 const FilmView& film, const PathQueueView& paths, const PathQueueView& next, const HitQueueView& hits,
                 const ShadowQueueView& shadows, RoundCounts* counts, uint32_t last) {
-    const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave, bool kMoves = false>() {
+    const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave,
+                              MotionKnown kMotion = MotionKnown::None>() {
         launch(queue, "shade_hits", active,
-               ShadeHits<kKnown, kMayBeFrame, kMayLeave, kMoves>{picture, settings, film, paths, next, hits, shadows,
-                                                                 counts, last});
+               ShadeHits<kKnown, kMayBeFrame, kMayLeave, kMotion>{picture, settings, film, paths, next, hits, shadows,
+                                                                  counts, last});
     };
     if (picture.scene.motions.is_there()) {
         PERTEV_CHECK(!film.frame.is_there());
-        return shade_as.operator()<MaterialsKnown::Nothing, false, false, true>();
+        switch (picture.scene.known) {
+        case MaterialsKnown::Nothing:
+            return shade_as.operator()<MaterialsKnown::Nothing, false, false, MotionKnown::Some>();
+        case MaterialsKnown::Diffuse:
+            return shade_as.operator()<MaterialsKnown::Diffuse, false, false, MotionKnown::Some>();
+        case MaterialsKnown::PlainDiffuse:
+            return shade_as.operator()<MaterialsKnown::PlainDiffuse, false, false, MotionKnown::Some>();
+        }
     }
     const bool leaves_light = film.frame.first_bounce.leaves_direct_light();
     const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
@@ -307,9 +315,13 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
         }
         const WorkCount active = {most, &counts->active};
         if (work.layers.is_there() || is_meter_) {
-            launch(queue_, "shade_hits", active,
-                   ShadeHitsToLayers{picture_, work.settings, work.film, work.layers, is_meter_, paths, next, layered,
-                                     hits, shadows, counts, last});
+            const auto shade_as = [&]<MotionKnown kMotion>() {
+                launch(queue_, "shade_hits", active,
+                       ShadeHitsToLayers<kMotion>{picture_, work.settings, work.film, work.layers, is_meter_, paths,
+                                                  next, layered, hits, shadows, counts, last});
+            };
+            const bool moves = picture_.scene.motions.is_there();
+            moves ? shade_as.operator()<MotionKnown::Some>() : shade_as.operator()<MotionKnown::None>();
         } else {
             shade_hits(queue_, active, picture_, work.settings, work.film, paths, next, hits, shadows, counts, last);
         }

@@ -71,9 +71,9 @@ private:
     bool shade(uint32_t i, uint32_t shadow) {
         bool wants_shadow = false;
         if constexpr (kHasLayers) {
-            goes_on_[i] =
-                shade_hit_to_layers(picture_, settings_, film_, layers_.view, layers_.is_meter, layers_.states[i],
-                                    paths_[i], hits_[i], asked_[shadow].ray, wants_shadow, layers_.shadows[shadow]);
+            goes_on_[i] = shade_hit_to_layers<MotionKnown::Perhaps>(
+                picture_, settings_, film_, layers_.view, layers_.is_meter, layers_.states[i], paths_[i], hits_[i],
+                asked_[shadow].ray, wants_shadow, layers_.shadows[shadow]);
             return wants_shadow;
         }
         LightSplit split;

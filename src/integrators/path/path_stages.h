@@ -53,8 +53,8 @@ struct GeneratePaths {
     }
 };
 
-/// `kMayBeFrame`, `kMayLeave`, `kMoves`: as shade_hit has them.
-template <MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave, bool kMoves>
+/// `kMayBeFrame`, `kMayLeave`, `kMotion`: as shade_hit has them.
+template <MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave, MotionKnown kMotion>
 struct ShadeHits {
     PictureView picture;
     PathSettings settings;
@@ -68,7 +68,9 @@ struct ShadeHits {
     HD void operator()(uint32_t i) const {
         const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
         PathState path = paths.load(place);
-        if (kMoves) path.time = time_of(picture.camera, settings, path);
+        if (kMotion != MotionKnown::None || (path.depth == 0 && picture.camera.motion.moves())) {
+            path.time = time_of(picture.camera, settings, path);
+        }
         const Hit hit = hits.load(place);
         const uint32_t key = path_key(path, settings.seed, true);
         const TriangleId here = {hit.instance, hit.primitive};
@@ -78,13 +80,13 @@ struct ShadeHits {
         LightSplit split;
         if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
         uint32_t to = 0;
-        const bool goes_on =
-            shade_hit<kKnown, kMayBeFrame, kMayLeave, kMoves>(picture, settings, film, path, hit, shadow, wants_shadow);
+        const bool goes_on = shade_hit<kKnown, kMayBeFrame, kMayLeave, kMotion>(picture, settings, film, path, hit,
+                                                                                shadow, wants_shadow);
         if (splits_light) split.put_back(path);
         if (goes_on) {
             to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
-            if (kMoves) next.times[to] = path.time;
+            if (kMotion != MotionKnown::None) next.times[to] = path.time;
         } else {
             to = last - atomic_add(&round->ended, 1u);
             next.store_ended(to, path);
@@ -93,7 +95,7 @@ struct ShadeHits {
         if (wants_shadow) {
             const uint32_t ray = atomic_add(&round->shadows, 1u);
             shadows.store<kMayLeave>(ray, shadow, to, path.pixel, here, key);
-            if (kMoves) shadows.times[ray] = path.time;
+            if (kMotion != MotionKnown::None) shadows.times[ray] = path.time;
         }
     }
 };

@@ -54,18 +54,19 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
 
 /// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
 /// `tells_bounce`: shadow.sent is, of a second vertex.
-template <MaterialsKnown kKnown, bool kMoves, class Events = NoEvents>
-HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
-                             const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow,
-                             Events&& events = Events()) {
+template <MaterialsKnown kKnown, MotionKnown kMotion, class Events = NoEvents>
+HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
+                                       const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce,
+                                       ShadowRay& shadow, Events&& events = Events()) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = sample_key(settings, path.pixel, path.sample);
     LightSample light;
     const SampleBits u = sample_bits(settings.sampler, key, light_group(path), Pair::Last);
-    const bool moves = kMoves && scene.motions.is_there();
+    const bool moves = is_moving<kMotion>(scene);
     if (moves) {
-        if (!sample_light(scene.lights, surface.position, u, light, LampsAt{scene.motions, path.time})) return false;
+        const LampsAt lamps = {scene.motions, path.time};
+        if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position, u, light, lamps)) return false;
     } else if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position, u, light)) {
         return false;
     }
@@ -182,10 +183,10 @@ HD inline void store_no_hit(const NoisyFrameView& frame, uint32_t pixel) {
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
 /// Where `kMayBeFrame` is false `film` is none of a noisy frame, and where `kMayLeave` is, none that leaves light to
-/// ReSTIR, and where `kMoves` is, nothing moves while the shutter is open: code for these would cost others registers.
+/// ReSTIR: code for these would cost others registers, and so would code for a motion that is not there (`kMotion`).
 /// `events`: what is to be told of the vertex (vertex_events.h).
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true, bool kMayLeave = true,
-          bool kMoves = true, class Events = NoEvents>
+          MotionKnown kMotion = MotionKnown::Perhaps, class Events = NoEvents>
 HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
                          PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow,
                          Events&& events = Events()) {
@@ -217,10 +218,11 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
         if (is_frame && path.depth == 0) store_emission(film.frame, path);
         return false;
     }
-    const bool moves = kMoves && scene.motions.is_there();
-    const MovedHit moved(scene, hit, kMoves ? path.time : kAtRest);
-    Surface surface = make_surface<kKnown>(scene, hit, kMoves ? moved.back(path.direction) : path.direction);
-    if (kMoves) moved.move(surface);
+    constexpr bool kMayMove = kMotion != MotionKnown::None;
+    const bool moves = is_moving<kMotion>(scene);
+    const MovedHit moved(scene, hit, kMayMove ? path.time : kAtRest);
+    Surface surface = make_surface<kKnown>(scene, hit, kMayMove ? moved.back(path.direction) : path.direction);
+    if (kMayMove) moved.move(surface);
     events.meets(surface, path.depth);
     if (is_frame) {
         if (path.depth == 0) store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
@@ -251,7 +253,7 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     if (is_bounce) begin_bounce(left, path, hit, true);
     wants_shadow =
         !(leaves_light && path.depth == 0) &&
-        ask_for_light<kKnown, kMoves>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
+        ask_for_light<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
     if (tells_bounce && wants_shadow && !is_bounce) {
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }

@@ -2,7 +2,10 @@
 #include "integrators/path/path_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Nothing, true, true, false>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::Diffuse, true, true, false>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeHits<MaterialsKnown::PlainDiffuse, true, true, false>&);
+template void launch(Queue&, const char*, WorkCount,
+                     const ShadeHits<MaterialsKnown::Nothing, true, true, MotionKnown::None>&);
+template void launch(Queue&, const char*, WorkCount,
+                     const ShadeHits<MaterialsKnown::Diffuse, true, true, MotionKnown::None>&);
+template void launch(Queue&, const char*, WorkCount,
+                     const ShadeHits<MaterialsKnown::PlainDiffuse, true, true, MotionKnown::None>&);
 } // namespace pertev

@@ -26,8 +26,10 @@ HD inline void add_to_layers(const LightPathView& layers, const FilmView& film, 
     layers.add(film, pixel, after(LobeClass::Glossy), shadow.light, contribution - shadow.diffuse);
 }
 
-/// As shade_hit. `state`: of the path before the vertex, then after it. `parts` is written where `wants_shadow` is.
-/// `is_meter`: the picture is that of the irradiance of what the camera sees, W/m2, black where it sees no surface.
+/// As shade_hit (`kMotion` too). `state`: of the path before the vertex, then after it. `parts` is written where
+/// `wants_shadow` is. `is_meter`: the picture is that of the irradiance of what the camera sees, W/m2, black where it
+/// sees no surface.
+template <MotionKnown kMotion>
 HD inline bool shade_hit_to_layers(const PictureView& picture, const PathSettings& settings, const FilmView& film,
                                    const LightPathView& layers, bool is_meter, LightPathState& state, PathState& path,
                                    const Hit& hit, ShadowRay& shadow, bool& wants_shadow, LayerShadow& parts) {
@@ -37,8 +39,8 @@ HD inline bool shade_hit_to_layers(const PictureView& picture, const PathSetting
     VertexEvents events;
     events.is_meter = is_meter;
     const bool is_sky_seen = hit.instance == kNoHit && path.depth == 0;
-    const bool goes_on = shade_hit<MaterialsKnown::Nothing, false, false, true>(picture, settings, film, path, hit,
-                                                                                shadow, wants_shadow, events);
+    const bool goes_on = shade_hit<MaterialsKnown::Nothing, false, false, kMotion>(picture, settings, film, path, hit,
+                                                                                   shadow, wants_shadow, events);
     if (is_meter && is_sky_seen) path.radiance = {0, 0, 0};
     if (!layers.is_there()) {
         path.radiance = before + path.radiance;
