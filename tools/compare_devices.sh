@@ -34,6 +34,9 @@ helmet $scenes/gltf/DamagedHelmet/DamagedHelmet.glb
 glass $scenes/cornell-box-mcguire/CornellBox-Glass.obj
 mirror $scenes/cornell-box-mcguire/CornellBox-Mirror.obj
 water $scenes/cornell-box-mcguire/CornellBox-Water.obj
+direct $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator direct
+indirect $scenes/sibenik/sibenik.obj --integrator indirect
+irradiance $scenes/sibenik/sibenik.obj --false-color illuminance
 cast $scenes/sibenik/sibenik.obj --integrator cast
 whitted $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator whitted --ambient 0.5
 whitted-lamps $scenes/sibenik/sibenik.obj --integrator whitted
@@ -56,8 +59,24 @@ bidirectional-sky $scenes/crytek-sponza/sponza.obj --integrator bidirectional --
 layers $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --lpe seen=LE --lpe diffuse=L.*DE --lpe glossy=L.*[GS]E
 blurred $work/box.gltf --time 1 --shutter 0.2
 blurred-distributed $work/box.gltf --time 1 --shutter=-0.1,0.1 --integrator distributed
+blurred-layers $work/box.gltf --time 1 --shutter 0.2 --lpe seen=LE --lpe others=L.+E
 blurred-camera $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
+blurred-depth $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1 --aov depth
+blurred-direct $scenes/sibenik/sibenik.obj --integrator direct --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
+blurred-indirect $scenes/sibenik/sibenik.obj --integrator indirect --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
+blurred-whitted $scenes/sibenik/sibenik.obj --integrator whitted --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
+blurred-cast $scenes/sibenik/sibenik.obj --integrator cast --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
 LIST
+done
+
+# Light that arrives at a place: all that is said of it, to the last digit.
+light_at() { "$pertev" measure "$@" --json -q 2>&1 | grep '"event":"measure"' | sed 's/"seconds":[0-9.e+-]*//; s/"device":"[^"]*"//'; }
+for scene in cornell-box "$scenes/sibenik/sibenik.obj"; do
+    place=(--at 0.278,0,0.28 --normal 0,1,0)
+    cpu=$(light_at "$scene" "${place[@]}" --device cpu) cuda=$(light_at "$scene" "${place[@]}" --device cuda)
+    verdict=same
+    [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
+    printf '%-16s measured at a place  %s  %s\n' "$(basename "$scene")" "$(md5sum <<<"$cpu" | cut -c1-8)" "$verdict"
 done
 
 # The hash of the 31st frame of each sequence that docs/real_time.md has figures of.

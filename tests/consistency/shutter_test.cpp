@@ -6,10 +6,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "base/parallel_for.h"
+#include "render/camera_rays.h"
 #include "render/find_hits.h"
 #include "render/light_paths/light_path_expression.h"
 #include "render/tracer/walk_kernels.h"
@@ -119,6 +121,19 @@ TEST_CASE("blurred pictures do not depend on threads, bodies, how many are in fl
     }
 }
 
+TEST_CASE("a blur of the camera alone is the same by stages as by the loop, depth too") {
+    Messages messages;
+    MovingScene still(make_rushing_scene(false), 0.3, {}, messages, kHalfASecond);
+    REQUIRE(still.prepared().motions == nullptr);
+    RenderSettings settings = blurred_settings(IntegratorKind::Path);
+    Queue cpu = Queue::make_cpu();
+    const Hash128 loop = picture_of(cpu, still.prepared(), rushing_camera(), settings);
+    settings.body = PathBody::Wavefront;
+    CHECK(picture_of(cpu, still.prepared(), rushing_camera(), settings) == loop);
+    Queue queue = test::queue_asked_for();
+    CHECK(picture_of(queue, still.prepared(), rushing_camera(), settings) == loop);
+}
+
 TEST_CASE("every tracer finds the same in a scene that moves") {
     Messages messages;
     MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
@@ -165,6 +180,7 @@ TEST_CASE("a ray meets what it meets in the scene that stands still as it is at 
     };
     test::Random random(11);
     int on_moving = 0, others = 0, wrong = 0;
+    std::vector<float> worst; // metres
     for (const float time : {0.0f, 0.17f, 0.5f, 0.81f, 1.0f}) {
         CAPTURE(time);
         std::vector<Ray> rays;
@@ -184,7 +200,9 @@ TEST_CASE("a ray meets what it meets in the scene that stands still as it is at 
                 ++wrong; // grazes an edge
             } else if (now[i].instance != kNoHit && moves) {
                 ++on_moving;
-                wrong += std::fabs(now[i].t - then[i].t) < 0.01f * (1 + then[i].t) ? 0 : 1;
+                // Corners are at most 1/2048 of the size off (math/motion_keys.h), 2 m here; on a slope a ray feels
+                // more.
+                worst.push_back(std::fabs(now[i].t - then[i].t));
             } else if (now[i].instance != kNoHit) {
                 ++others;
                 CHECK(now[i] == then[i]);
@@ -193,7 +211,47 @@ TEST_CASE("a ray meets what it meets in the scene that stands still as it is at 
     }
     CHECK(on_moving > 600);
     CHECK(others > 3000);
-    CHECK(wrong < on_moving / 100);
+    CHECK(wrong < on_moving / 200);
+    std::ranges::sort(worst);
+    CHECK(worst[worst.size() / 2] < 0.0002f);
+    CHECK(worst[worst.size() * 99 / 100] < 0.002f);
+}
+
+TEST_CASE("each sample of a blurred picture shows the scene that stands still at the time that it draws") {
+    Messages messages;
+    const Scene rest = make_rushing_scene();
+    MovingScene moving(rest, 0.3, {}, messages, kHalfASecond);
+    RenderSettings settings = blurred_settings(IntegratorKind::Cast); // which draws nothing but place, lens and time
+    settings.width = 16, settings.height = 12, settings.samples = 1;
+    settings.aovs = kAovDepth;
+    Camera camera = test::mixed_scene_camera();
+    camera.aperture_radius = 0.05f;
+    camera.focus_distance = 6;
+    Queue queue = test::queue_asked_for();
+    const auto show = [&](const PreparedScene& prepared) {
+        Session session(queue, prepared, camera, settings);
+        session.render(1);
+        return session.result();
+    };
+    const RenderResult blurred = show(moving.prepared()),
+                       at_rest = show(MovingScene(rest, 0.3, {}, messages).prepared());
+    CameraRays rays = {};
+    rays.is_open = true;
+    uint32_t moved = 0, wrong = 0;
+    for (uint32_t pixel = 0; pixel < settings.width * settings.height; ++pixel) {
+        const double time = static_cast<double>(rays.time(settings.path.sampler, sample_key(settings.path, pixel, 0)));
+        REQUIRE((time >= 0 && time < 1));
+        MovingScene still(rest, kHalfASecond.time_at(0.3, time), {}, messages);
+        const RenderResult now = show(still.prepared());
+        const auto depth_of = [&](const RenderResult& result) { return result.layers.front().image.pixels[pixel]; };
+        const auto light_of = [&](const RenderResult& result) { return result.picture.pixels[3 * pixel + 1]; };
+        moved += depth_of(blurred) != depth_of(at_rest) || light_of(blurred) != light_of(at_rest) ? 1 : 0;
+        const bool same_depth = std::fabs(depth_of(blurred) - depth_of(now)) < 0.003f;
+        const bool same_light = std::fabs(light_of(blurred) - light_of(now)) <= 0.01f * light_of(now);
+        wrong += same_depth && same_light ? 0 : 1;
+    }
+    CHECK(moved > 60);
+    CHECK(wrong <= 3); // at edges of things and of their shadows
 }
 
 TEST_CASE("a shutter before which nothing moves changes nothing") {
@@ -230,7 +288,8 @@ TEST_CASE("integrators whose rays have no time refuse an open shutter by name") 
     MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
     Queue queue = Queue::make_cpu();
     for (const IntegratorKind integrator :
-         {IntegratorKind::Hybrid, IntegratorKind::Raster, IntegratorKind::Light, IntegratorKind::Bidirectional}) {
+         {IntegratorKind::Hybrid, IntegratorKind::Raster, IntegratorKind::Reyes, IntegratorKind::Light,
+          IntegratorKind::Bidirectional, IntegratorKind::PhotonMap}) {
         const RenderSettings settings = blurred_settings(integrator);
         Session session(queue, moving.prepared(), test::mixed_scene_camera(), settings);
         CHECK(test::bad_input_message([&] { session.render(1); }).find("--shutter") == 0);

@@ -3,9 +3,15 @@
 
 import base64
 import json
+import signal
 import struct
+import subprocess
 
-from cli_run import CliTest, main, write
+from cli_run import PATIENCE_S, PROGRAM, CliTest, main, write
+
+INTEGRATORS = ["path", "direct", "indirect", "hybrid", "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional",
+               "photon_map"]
+VIEW = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"]  # of the lit triangle
 
 
 def lit_triangle():
@@ -24,15 +30,33 @@ def lit_triangle():
 
 class Integrators(CliTest):
     def test_a_render_that_a_time_limit_ended_has_the_hash_of_one_of_as_many_samples(self):
-        for integrator in ["hybrid", "raster", "reyes", "light", "bidirectional"]:
-            flags = ["--integrator", integrator, *(["--ambient", "0.5"] if integrator in ["raster", "reyes"] else [])]
-            done = self.render(*flags, "--time-limit", "0.5", size="24x24", spp=8388607)
-            self.assertEqual(self.render(*flags, size="24x24", spp=done["samples"])["hash"], done["hash"], integrator)
+        write(self.path("lit.gltf"), lit_triangle())
+        for integrator in INTEGRATORS:
+            flags = ["--integrator", integrator, *VIEW]
+            done = self.render(*flags, "--time-limit", "0.3", scene="lit.gltf", size="24x24", spp=8388607)
+            again = self.render(*flags, scene="lit.gltf", size="24x24", spp=done["samples"])
+            self.assertEqual(again["hash"], done["hash"], integrator)
+
+    def test_a_render_that_ctrl_c_ended_has_the_hash_of_one_of_as_many_samples(self):
+        write(self.path("lit.gltf"), lit_triangle())
+        for integrator in INTEGRATORS:
+            flags = ["--integrator", integrator, *VIEW, "--threads", "2"]
+            program = subprocess.Popen([PROGRAM, "render", "lit.gltf", "-o", "ended.exr", "--size", "24x24", "--spp", "8388607",
+                                        "--device", "cpu", "--json", *flags], cwd=self.folder, env=self.environment,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.addCleanup(program.kill)
+            first = next(line for line in program.stdout if json.loads(line)["event"] == "progress")
+            program.send_signal(signal.SIGINT)
+            lines = (first + program.communicate(timeout=PATIENCE_S)[0]).decode().splitlines()
+            done = next(json.loads(line) for line in lines if json.loads(line)["event"] == "done")
+            self.assertEqual((program.returncode, done["interrupted"]), (75, True), integrator)
+            self.assertLess(0, done["samples"], integrator)
+            again = self.render(*flags[:-1], "1", scene="lit.gltf", size="24x24", spp=done["samples"], output="again.exr")
+            self.assertEqual(again["hash"], done["hash"], integrator)
 
     def test_where_light_is_evaluated_changes_the_hash(self):
         write(self.path("lit.gltf"), lit_triangle())
-        view = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0", "--ambient", "0"]
-        hashes = [self.render(*view, "--integrator", *flags, scene="lit.gltf")["hash"]
+        hashes = [self.render(*VIEW, "--ambient", "0", "--integrator", *flags, scene="lit.gltf")["hash"]
                   for flags in [["raster"], ["raster", "--shading", "flat"], ["raster", "--shading", "gouraud"], ["reyes"],
                                 ["reyes", "--shading-rate", "3"]]]
         self.assertEqual(len(set(hashes)), len(hashes))

@@ -141,8 +141,16 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
         if (c.light_finds_all) {
             CHECK(same > 0.001);
             CHECK(test::p_value(test::brightened(light, 1.1, 5e-3), path) < 1e-3);
-        } else {
+        } else { // what it connects to the camera: light that a surface scatters there, and lamps themselves
             CHECK(same < 1e-6);
+            RenderSettings settings = settings_of(c);
+            settings.samples = 64;
+            settings.light_paths = std::make_shared<const LightPathLayers>(
+                put_to_scene({parse_light_path("connected=LE|L.*[DG]E")}, c.scene));
+            const test::PictureEstimate connected =
+                test::estimate_picture(queue, prepared, c.camera, settings, 24, 2000);
+            CHECK(test::p_value(light, connected) > 0.001);
+            CHECK(test::p_value(test::brightened(light, 1.1, 5e-3), connected) < 1e-3);
         }
     }
 }

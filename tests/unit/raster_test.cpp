@@ -141,21 +141,22 @@ TEST_CASE("coverage and depth are those of rays through a million pixels") {
     const RenderResult path = test::render(queue, scene, test::mixed_scene_camera(), settings);
     const auto& depths = raster.layers.front().image.pixels;
     const auto& path_depths = path.layers.front().image.pixels;
-    uint32_t others = 0, compared = 0;
+    uint32_t others = 0, compared = 0, elsewhere = 0;
     double worst = 0;
     for (std::size_t i = 0; i < 1000000; ++i) {
         const bool same =
             raster.ids[i].instance == path.ids[i].instance && raster.ids[i].material == path.ids[i].material;
         others += same ? 0 : 1;
-        if (!(raster.ids[i].instance == path.ids[i].instance && raster.ids[i].primitive == path.ids[i].primitive))
-            continue;
-        if (path.ids[i].instance == kNoHit) continue;
+        if (!same || path.ids[i].instance == kNoHit) continue;
+        const double off = double(std::abs(depths[i] - path_depths[i])) / double(path_depths[i]);
         ++compared;
-        worst = std::max(worst, double(std::abs(depths[i] - path_depths[i])) / double(path_depths[i]));
+        elsewhere += off > 1e-3 ? 1 : 0; // another triangle of the same instance
+        if (raster.ids[i].primitive == path.ids[i].primitive) worst = std::max(worst, off);
     }
     // Corners are rounded to 1/256 of a pixel: a sample so near to an outline may go either way.
     CHECK(others < 1000);
     CHECK(compared > 400000);
+    CHECK(elsewhere < 100);
     CHECK(worst < 1e-4);
 }
 

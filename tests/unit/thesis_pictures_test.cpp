@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "lab/thesis_pictures.h"
 #include "tests/support/options.h"
@@ -66,4 +67,35 @@ TEST_CASE("the four figures differ, and none is black") {
         CHECK(std::ranges::find(seen, picture.image.pixels) == seen.end());
         seen.push_back(picture.image.pixels);
     }
+}
+
+TEST_CASE(
+    "shadows are hard under a point light and soft under a lamp, and indirect light has neither lamp nor shadow") {
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings;
+    settings.width = 96;
+    settings.height = 72;
+    settings.samples = 64;
+    // Shares of neighbours in a row of which one is at least 1.5 times as bright as the other, and of white.
+    const auto look_at_picture = [&](const char* number) {
+        const auto picture = render_thesis_picture(queue, number, settings, [](const RenderProgress&) { return true; });
+        const auto& pixels = picture.image.pixels;
+        int steps = 0, white = 0;
+        for (uint32_t y = 0; y < settings.height; ++y) {
+            for (uint32_t x = 0; x + 1 < settings.width; ++x) {
+                const int a = pixels[3 * (y * settings.width + x) + 1],
+                          b = pixels[3 * (y * settings.width + x + 1) + 1];
+                steps += std::max(a, b) > std::min(a, b) + 40 ? 1 : 0;
+                white += a > 250 ? 1 : 0;
+            }
+        }
+        return std::pair(steps, white);
+    };
+    const auto [hard_steps, hard_white] = look_at_picture("3.3");
+    const auto [soft_steps, soft_white] = look_at_picture("3.4");
+    const auto [indirect_steps, indirect_white] = look_at_picture("3.6");
+    MESSAGE(hard_steps, " ", soft_steps, " ", indirect_steps, " ", hard_white, " ", soft_white, " ", indirect_white);
+    CHECK(hard_steps > 1.3 * soft_steps);
+    CHECK(soft_steps > 1.3 * indirect_steps);
+    CHECK(soft_white > indirect_white);
 }
