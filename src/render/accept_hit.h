@@ -65,6 +65,19 @@ struct AcceptHit {
     }
 };
 
+/// Whether the instance, where it has been put, hides from a camera's ray of that direction (world space) the side that
+/// the ray comes to. In the mesh's own space: the winding there tells the front, mirrored or not.
+HD inline bool hides_side(const SceneView& scene, Vec3 direction, uint32_t instance, uint32_t primitive) {
+    const InstanceView& placed = scene.instances[instance];
+    if (placed.hides_back == 0) return false;
+    const MeshView& mesh = scene.meshes[placed.mesh];
+    const TriangleIndices i = triangle_indices(mesh, primitive);
+    const Vec3 a = mesh.positions[i.a], ab = mesh.positions[i.b] - a, ac = mesh.positions[i.c] - a;
+    const float size = max(max_component(abs(ab)), max_component(abs(ac)));
+    const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+    return dot(normal, transform_vector(placed.local_from_world, direction)) > 0;
+}
+
 /// The same of a ray of the camera in a scene where backs are hidden from those. A type of its own: the other rays'
 /// walk has no registers to spare for it.
 struct AcceptCameraHit {
@@ -76,19 +89,12 @@ struct AcceptCameraHit {
         return !meets_hidden_back(instance, primitive) && accept(instance, primitive, u, v);
     }
 
-    /// In the mesh's own space: the winding there tells the front, mirrored or not.
     HD bool meets_hidden_back(uint32_t instance, uint32_t primitive) const {
-        const InstanceView& placed = accept.scene.instances[instance];
-        if (placed.hides_back == 0) return false;
-        const MeshView& mesh = accept.scene.meshes[placed.mesh];
-        const TriangleIndices i = triangle_indices(mesh, primitive);
-        const Vec3 a = mesh.positions[i.a], ab = mesh.positions[i.b] - a, ac = mesh.positions[i.c] - a;
-        const float size = max(max_component(abs(ab)), max_component(abs(ac)));
-        const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+        if (accept.scene.instances[instance].hides_back == 0) return false;
         const uint32_t motion = accept.scene.motions.of(instance);
         const Vec3 at_rest =
             motion == kNoMotion ? direction : accept.scene.motions.at(motion, accept.time).turn_back(direction);
-        return dot(normal, transform_vector(placed.local_from_world, at_rest)) > 0;
+        return hides_side(accept.scene, at_rest, instance, primitive);
     }
 };
 

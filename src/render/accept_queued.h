@@ -22,19 +22,21 @@ struct TraceQuery {
     bool is_opaque() const { return scene == nullptr; }
 };
 
-/// Of an instance that may let something pass. Out of line: what it does with textures must not cost the walk
-/// registers.
-HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
-                                   uint32_t instance, uint32_t primitive, float u, float v) {
-    const AcceptHit accept{*scene, {}, {}, key};
-    if (hides_backs && AcceptCameraHit{accept, ray->direction}.meets_hidden_back(instance, primitive)) return true;
-    return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
+/// Where a ray goes, as an instance meets it that has moved. Out of line, as what follows.
+HD_CALL inline Vec3 turned_back(const SceneView* scene, Vec3 direction, float time, uint32_t instance) {
+    return scene->motions.of_instance_at(instance, time).turn_back(direction);
 }
 
-/// Whether a ray of the camera, at its time, meets a back that is hidden from it. Still scenes do not pay for it.
-HD_CALL inline bool meets_moved_back(const SceneView* scene, const Ray* ray, float time, uint32_t instance,
-                                     uint32_t primitive) {
-    return AcceptCameraHit{AcceptHit{*scene, {}, {}, 0, time}, ray->direction}.meets_hidden_back(instance, primitive);
+/// Of an instance that may let something pass. Out of line: what it does with textures must not cost the walk
+/// registers. `time`: null where nothing moves while the shutter is open.
+HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+                                   const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
+    if (hides_backs && scene->instances[instance].hides_back != 0) {
+        Vec3 direction = ray->direction;
+        if (time != nullptr) direction = turned_back(scene, direction, *time, instance);
+        if (hides_side(*scene, direction, instance, primitive)) return true;
+    }
+    return scene->any_alpha != 0 && !AcceptHit{*scene, {}, {}, key}.passes_alpha(instance, primitive, u, v);
 }
 
 /// Where a ray begins and where it goes, as an instance meets it that has moved. Out of line: no still instance pays
@@ -76,12 +78,9 @@ struct AcceptQueued {
         if ((query.passing[instance / 32] >> instance % 32 & 1u) == 0) return true;
         const int64_t place = query.rays.place(i);
         const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[place] : 0;
-        const Ray* const ray = query.rays.rays + place;
-        const bool may_have_moved = query.hides_backs && query.rays.times != nullptr;
-        if (may_have_moved && meets_moved_back(query.scene, ray, query.rays.times[place], instance, primitive)) {
-            return false;
-        }
-        return !passes_surface(query.scene, ray, key, query.hides_backs && !may_have_moved, instance, primitive, u, v);
+        const float* const time = query.rays.times != nullptr ? query.rays.times + place : nullptr;
+        return !passes_surface(query.scene, query.rays.rays + place, key, query.hides_backs, time, instance, primitive,
+                               u, v);
     }
     HD Ray move_back(uint32_t motion, const Ray& ray) const {
         if (query.moving == nullptr) return ray;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "scene/names.h"
+#include "session/lamp_surface.h"
 #include "session/photometry.h"
 
 namespace pertev {
@@ -26,8 +26,9 @@ constexpr std::pair<std::string_view, LampUnit> kUnits[] = {{"nits", LampUnit::N
     throw Error(ErrorCode::BadInput, fmt::format("--lamp {}: {}", lamp.text, why));
 }
 
+double luminance_of(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
 double luminance_of(Rgb c) {
-    return 0.2126 * static_cast<double>(c.r) + 0.7152 * static_cast<double>(c.g) + 0.0722 * static_cast<double>(c.b);
+    return luminance_of(static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b));
 }
 
 /// `colour` times what gives it this luminance; a black one becomes white.
@@ -74,31 +75,6 @@ void set_light(const LampStrength& lamp, double lumens_per_watt, Light& light) {
                              is_far ? "lx" : "W, lm or cd"));
 }
 
-struct SurfaceSize {
-    double area = 0; // m2
-    bool is_flat = true;
-};
-
-SurfaceSize size_of(const Scene& scene, const Instance& instance) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    SurfaceSize size;
-    double sum[3] = {};
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const auto corner = [&](std::size_t k) {
-            return transform_point(instance.world_from_local, mesh.positions[mesh.indices[i + k]]);
-        };
-        const Vec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
-        const double x[] = {static_cast<double>(ab.x), static_cast<double>(ab.y), static_cast<double>(ab.z)};
-        const double y[] = {static_cast<double>(ac.x), static_cast<double>(ac.y), static_cast<double>(ac.z)};
-        const double normal[] = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
-        size.area += 0.5 * std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-        for (int k = 0; k < 3; ++k) sum[k] += 0.5 * normal[k];
-    }
-    // Area vectors of one direction add up to all of the area.
-    size.is_flat = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) > 0.9999 * size.area;
-    return size;
-}
-
 /// The material of an instance, its own. `users`: instances of each material.
 Material& own_material(Scene& scene, std::size_t index, std::vector<uint32_t>& users) {
     const uint32_t material = scene.instances[index].material;
@@ -115,14 +91,12 @@ void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene,
                  std::vector<uint32_t>& users) {
     const Instance& instance = scene.instances[index];
     const Material& before = scene.materials[instance.material];
-    const bool has_texture = before.emission_texture.image != kNoImage;
     double nits = lamp.value;
     if (lamp.unit == LampUnit::Lux)
         refuse(lamp, "a lamp with an area has W, lm, cd or nits; lx are of directional lights");
     if (lamp.unit != LampUnit::Nit) {
         if (instance.is_hidden) return; // sends out nothing, and has no size now
-        const SurfaceSize size = size_of(scene, instance);
-        if (has_texture) refuse(lamp, "its emission has a texture; nits say what that is multiplied by");
+        const LampSurface size = lamp_surface(scene, instance);
         if (before.alpha_mode != AlphaMode::Opaque) {
             refuse(lamp, "its surface has holes or lets light pass, so its area is not what shines; say nits");
         }
@@ -132,6 +106,13 @@ void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene,
         }
         const double faces = before.two_sided_emission ? 2 : 1;
         nits = lamp.unit == LampUnit::Candela ? lamp.value / size.area : lumens(lamp) / (kPiDouble * size.area * faces);
+        // That is the mean over the surface: what a texture multiplies is brighter.
+        const Rgb unit = with_luminance(lamp, before.emission, 1);
+        const double textured =
+            luminance_of(static_cast<double>(unit.r) * size.texture[0], static_cast<double>(unit.g) * size.texture[1],
+                         static_cast<double>(unit.b) * size.texture[2]);
+        if (!(textured > 0)) refuse(lamp, "the texture of its emission is black all over");
+        nits = nits / textured;
     }
     Material& material = own_material(scene, index, users);
     material.emission = with_luminance(lamp, material.emission, nits / lumens_per_watt);

@@ -31,10 +31,10 @@ struct LampStrength {
 LampStrength parse_lamp(std::string_view text);
 
 /// Sets every lamp of these names, each to all of the amount. Flux of a surface goes out from its faces that emit, as
-/// cosines do: pi L A each. A material that other objects share is copied for a lamp. Throws for a name that no lamp
-/// has, and for a unit that a lamp of this kind cannot have: flux of a lamp whose emission has a texture or whose
-/// object has no area, candela of one that is not flat, all but nits of an environment. `lumens_per_watt`:
-/// photometry.h.
+/// cosines do: pi L A each, L the mean over the surface where the emission has a texture. A material that other objects
+/// share is copied for a lamp. Throws for a name that no lamp has, and for a unit that a lamp of this kind cannot have:
+/// flux of a lamp that has holes or whose object has no area, candela of one that is not flat, all but nits of an
+/// environment. `lumens_per_watt`: photometry.h.
 void set_lamps(Scene& scene, std::span<const LampStrength> lamps, double lumens_per_watt);
 
 } // namespace pertev

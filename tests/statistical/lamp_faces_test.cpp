@@ -145,8 +145,8 @@ TEST_CASE("a clamp takes later light alike, however it is found, before it is we
         here.depth = depth;
         ShadowRay shadow;
         const PathSettings settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
-        REQUIRE(ask_for_light<MaterialsKnown::Nothing, false>(device.view(), settings, here, surface, {0, 1, 0}, false,
-                                                              false, shadow));
+        REQUIRE(ask_for_light<MaterialsKnown::Nothing, MotionKnown::None>(device.view(), settings, here, surface,
+                                                                          {0, 1, 0}, false, false, shadow));
         return static_cast<double>(max_component(shadow.contribution));
     };
     CHECK(asked(0, LightStrategy::NeeOnly, 1) == asked(0, LightStrategy::NeeOnly, 0));

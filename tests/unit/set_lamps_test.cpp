@@ -2,10 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include "image/srgb_table.h"
+#include "math/sampling.h"
 #include "session/photometry.h"
 #include "session/set_lamps.h"
 #include "shading/light_set.h"
+#include "shading/texture_lookup.h"
 #include "tests/support/flat_scenes.h"
+#include "tests/support/random.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -135,9 +139,59 @@ TEST_CASE("what a lamp cannot have is refused") {
     set_lamp(scene, "glow=8lm");
     CHECK(scene.materials[0].emission == before);
     scene.instances[0].is_hidden = scene.instances[1].is_hidden = false;
+    scene.materials[0].alpha_mode = AlphaMode::Opaque;
     scene.images.resize(1);
+    scene.images[0].rgba8 = {.width = 1, .height = 1, .pixels = {0, 0, 0, 255}};
     scene.materials[0].emission_texture.image = 0;
-    CHECK(test::bad_input_message([&] { set_lamp(scene, "small=8lm"); }).find("texture") != std::string::npos);
+    CHECK(test::bad_input_message([&] { set_lamp(scene, "small=8lm"); }).find("black all over") != std::string::npos);
+}
+
+TEST_CASE("flux of a lamp with a texture is what the path tracer's lamp sends out") {
+    // A chessboard of red and grey with a blue cell, askew, repeated and blurred.
+    Scene scene = lamp_scene();
+    scene.images.resize(1);
+    Rgba8Image& image = scene.images[0].rgba8;
+    image.width = 3, image.height = 2;
+    for (int i = 0; i < 6; ++i) {
+        for (const int c : {i % 2 == 0 ? 255 : 90, i % 2 == 0 ? 0 : 90, i == 5 ? 255 : 90, 255}) {
+            image.pixels.push_back(static_cast<uint8_t>(c));
+        }
+    }
+    Material& material = scene.materials[scene.instances[0].material];
+    material.emission_texture.image = 0;
+    material.emission_texture.is_srgb = true;
+    material.emission_texture.m00 = 1.7f, material.emission_texture.m02 = 0.2f;
+    Mesh& mesh = scene.meshes[scene.instances[0].mesh];
+    mesh.uv[0].resize(mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        mesh.uv[0][i] = {mesh.positions[i].x + 0.3f * mesh.positions[i].z, mesh.positions[i].z};
+    }
+    set_lamp(scene, "small=500lm", 1);
+    const Material& lit = scene.materials[scene.instances[0].material];
+    // By places drawn evenly on the surface, as a lamp's are.
+    const TextureImageView view = view_of(scene.images[0]);
+    test::Random random(5);
+    double sum = 0, area = 0;
+    constexpr int kDraws = 200'000;
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+        const uint32_t* at = mesh.indices.data() + t;
+        const auto world = [&](uint32_t v) {
+            return transform_point(scene.instances[0].world_from_local, mesh.positions[v]);
+        };
+        const double size =
+            0.5 * static_cast<double>(length(cross(world(at[1]) - world(at[0]), world(at[2]) - world(at[0]))));
+        double mean = 0;
+        for (int i = 0; i < kDraws; ++i) {
+            const Vec2 b = sample_uniform_triangle({random.unit(), random.unit()});
+            const Vec2 uv = (1 - b.x - b.y) * mesh.uv[0][at[0]] + b.x * mesh.uv[0][at[1]] + b.y * mesh.uv[0][at[2]];
+            const Vec4 c = lookup_texture(&view, lit.emission_texture, uv, srgb_decode_table().data());
+            mean += luminance_in({c.x * lit.emission.r, c.y * lit.emission.g, c.z * lit.emission.b}) / kDraws;
+        }
+        sum += size * mean;
+        area += size;
+    }
+    CHECK(kLampPi * sum == doctest::Approx(500).epsilon(5e-3));
+    CHECK(luminance_in(lit.emission) > 1.3 * 500 / (kLampPi * area)); // the texture takes a part of it
 }
 
 TEST_CASE("a camera's exposure is the standard's") {

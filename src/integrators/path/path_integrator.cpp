@@ -50,6 +50,10 @@ void shade_hits(Queue& queue, const WorkCount& active, const PictureView& pictur
             return shade_as.operator()<MaterialsKnown::PlainDiffuse, false, false, MotionKnown::Some>();
         }
     }
+    if (picture.camera.motion.moves() && !film.frame.is_there() &&
+        (film.aovs & kAovDepth) != 0) { // along the axis at the ray's time
+        return shade_as.operator()<MaterialsKnown::Nothing, false, false, MotionKnown::Perhaps>();
+    }
     const bool leaves_light = film.frame.first_bounce.leaves_direct_light();
     const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
         if constexpr (kMayBeFrame) {

@@ -68,9 +68,7 @@ struct ShadeHits {
     HD void operator()(uint32_t i) const {
         const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
         PathState path = paths.load(place);
-        if (kMotion != MotionKnown::None || (path.depth == 0 && picture.camera.motion.moves())) {
-            path.time = time_of(picture.camera, settings, path);
-        }
+        if (kMotion != MotionKnown::None) path.time = time_of(picture.camera, settings, path);
         const Hit hit = hits.load(place);
         const uint32_t key = path_key(path, settings.seed, true);
         const TriangleId here = {hit.instance, hit.primitive};
@@ -86,7 +84,7 @@ struct ShadeHits {
         if (goes_on) {
             to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
-            if (kMotion != MotionKnown::None) next.times[to] = path.time;
+            if (keeps_times(next.times)) next.times[to] = path.time;
         } else {
             to = last - atomic_add(&round->ended, 1u);
             next.store_ended(to, path);
@@ -95,8 +93,13 @@ struct ShadeHits {
         if (wants_shadow) {
             const uint32_t ray = atomic_add(&round->shadows, 1u);
             shadows.store<kMayLeave>(ray, shadow, to, path.pixel, here, key);
-            if (kMotion != MotionKnown::None) shadows.times[ray] = path.time;
+            if (keeps_times(shadows.times)) shadows.times[ray] = path.time;
         }
+    }
+
+private:
+    HD static bool keeps_times(const float* times) {
+        return kMotion == MotionKnown::Some || (kMotion == MotionKnown::Perhaps && times != nullptr);
     }
 };
 

@@ -52,12 +52,12 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
     path.radiance += clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
-/// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
-/// `tells_bounce`: shadow.sent is, of a second vertex.
-template <MaterialsKnown kKnown, MotionKnown kMotion, class Events = NoEvents>
-HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
-                                       const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce,
-                                       ShadowRay& shadow, Events&& events = Events()) {
+/// ask_for_light, inlined whatever its size: what moves would keep its surface in memory for a call.
+template <MaterialsKnown kKnown, MotionKnown kMotion, class Events>
+HD INLINE_ON_DEVICE bool ask_for_light_inlined(const SceneView& scene, const PathSettings& settings,
+                                               const PathState& path, const Surface& surface, Vec3 wo,
+                                               bool splits_light, bool tells_bounce, ShadowRay& shadow,
+                                               Events&& events) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = sample_key(settings, path.pixel, path.sample);
@@ -97,6 +97,16 @@ HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSetting
     shadow.t_max = ray.t_max;
     shadow.target = {light.instance, light.primitive};
     return true;
+}
+
+/// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
+/// `tells_bounce`: shadow.sent is, of a second vertex.
+template <MaterialsKnown kKnown, MotionKnown kMotion, class Events = NoEvents>
+HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
+                             const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow,
+                             Events&& events = Events()) {
+    return ask_for_light_inlined<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, tells_bounce,
+                                                  shadow, events);
 }
 
 HD inline float survival_probability(Roulette roulette, float throughput) {
@@ -251,9 +261,16 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     // With coat or sheen on top, what leaves it in one direction says little of another.
     const bool is_bounce = tells_bounce && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
     if (is_bounce) begin_bounce(left, path, hit, true);
-    wants_shadow =
-        !(leaves_light && path.depth == 0) &&
-        ask_for_light<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
+    const auto asks = [&] {
+        if constexpr (kMotion == MotionKnown::Some) {
+            return ask_for_light_inlined<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce,
+                                                          shadow, events);
+        } else {
+            return ask_for_light<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow,
+                                                  events);
+        }
+    };
+    wants_shadow = !(leaves_light && path.depth == 0) && asks();
     if (tells_bounce && wants_shadow && !is_bounce) {
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }
