@@ -2,6 +2,7 @@
 
 #include "base/limits.h"
 #include "integrators/bidirectional/most_joined_depth.h"
+#include "integrators/irradiance_cache/irradiance_cache_integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/photon_map/photon_map_integrator.h"
 #include "integrators/raster/raster_integrator.h"
@@ -82,7 +83,8 @@ bool rasterises_camera(IntegratorKind kind) {
 bool lists_tiles(IntegratorKind kind) { return kind == IntegratorKind::Hybrid; }
 
 bool finds_all_light(IntegratorKind kind) {
-    return makes_frames(kind) || kind == IntegratorKind::Bidirectional || kind == IntegratorKind::PhotonMap;
+    return makes_frames(kind) || kind == IntegratorKind::Bidirectional || kind == IntegratorKind::PhotonMap ||
+           kind == IntegratorKind::IrradianceCache;
 }
 
 bool has_light_path_layers(IntegratorKind kind) { return makes_frames(kind); }
@@ -99,6 +101,7 @@ uint32_t most_depth(IntegratorKind kind) {
     case IntegratorKind::Raster:
     case IntegratorKind::Reyes:
     case IntegratorKind::Light:
+    case IntegratorKind::IrradianceCache:
         break;
     case IntegratorKind::Cast:
     case IntegratorKind::Whitted:
@@ -124,7 +127,7 @@ uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
            a.shading_rate == b.shading_rate && same_heights(a, b) && a.photon_map == b.photon_map &&
-           a.light_paths == b.light_paths && a.irradiance == b.irradiance;
+           a.irradiance_cache == b.irradiance_cache && a.light_paths == b.light_paths && a.irradiance == b.irradiance;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
@@ -149,6 +152,9 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
     case IntegratorKind::PhotonMap:
         return std::make_unique<PhotonMapIntegrator>(queue, walk_settings(settings), settings.photon_map,
                                                      settings.body == PathBody::Loop, settings.batch);
+    case IntegratorKind::IrradianceCache:
+        return std::make_unique<IrradianceCacheIntegrator>(queue, walk_settings(settings), settings.irradiance_cache,
+                                                           settings.body == PathBody::Loop, settings.batch);
     }
     auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch,
                                                  lists_tiles(settings.integrator));
@@ -190,6 +196,9 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::PhotonMap:
         static_cast<PhotonMapIntegrator&>(integrator).set_settings(walk_settings(to), to.photon_map);
         break;
+    case IntegratorKind::IrradianceCache:
+        static_cast<IrradianceCacheIntegrator&>(integrator).set_settings(walk_settings(to), to.irradiance_cache);
+        break;
     }
     return true;
 }
@@ -206,6 +215,9 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
         return PhotonMapIntegrator::predicted_bytes(walk_settings(settings), settings.photon_map, pixels,
                                                     settings.batch, in_loop, on_cuda);
     }
+    if (settings.integrator == IntegratorKind::IrradianceCache) {
+        return IrradianceCacheIntegrator::predicted_bytes(settings.irradiance_cache, pixels, settings.batch, in_loop);
+    }
     if (in_loop) return tables;
     const uint64_t all = pixels * samples;
     switch (settings.integrator) {
@@ -214,6 +226,7 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     case IntegratorKind::Raster:
     case IntegratorKind::Reyes:
     case IntegratorKind::PhotonMap:
+    case IntegratorKind::IrradianceCache:
         break;
     case IntegratorKind::Cast:
         return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);

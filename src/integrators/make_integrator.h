@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "integrators/integrator.h"
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/photon_map/photon_map_settings.h"
 #include "integrators/raster/raster_settings.h"
@@ -18,15 +19,16 @@ namespace pertev {
 
 enum class IntegratorKind : uint8_t {
     Path,
-    Hybrid,        // path's samples, with what the camera sees found by rasterisation (render/raster/camera_raster.h)
-    Cast,          // integrators/cast/cast.h
-    Whitted,       // integrators/whitted/whitted.h
-    Distributed,   // integrators/distributed/distributed.h
-    Raster,        // integrators/raster/raster_integrator.h
-    Reyes,         // integrators/reyes/reyes_integrator.h
-    Light,         // integrators/light/light.h
-    Bidirectional, // integrators/bidirectional/bidirectional.h
-    PhotonMap,     // integrators/photon_map/photon_map_integrator.h
+    Hybrid,          // path's samples, with what the camera sees found by rasterisation (render/raster/camera_raster.h)
+    Cast,            // integrators/cast/cast.h
+    Whitted,         // integrators/whitted/whitted.h
+    Distributed,     // integrators/distributed/distributed.h
+    Raster,          // integrators/raster/raster_integrator.h
+    Reyes,           // integrators/reyes/reyes_integrator.h
+    Light,           // integrators/light/light.h
+    Bidirectional,   // integrators/bidirectional/bidirectional.h
+    PhotonMap,       // integrators/photon_map/photon_map_integrator.h
+    IrradianceCache, // integrators/irradiance_cache/irradiance_cache_integrator.h
 };
 
 struct IntegratorSettings {
@@ -40,6 +42,7 @@ struct IntegratorSettings {
     float shading_rate = 1;                    // of Reyes: no edge of a micropolygon is longer, pixels
     std::shared_ptr<const HeightMaps> heights; // of Reyes: what displaces surfaces; null: nothing
     PhotonMapSettings photon_map;              // of PhotonMap
+    IrradianceCacheSettings irradiance_cache;  // of IrradianceCache
 
     // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;
@@ -59,7 +62,7 @@ bool makes_frames(IntegratorKind kind);
 bool rasterises_camera(IntegratorKind kind);
 /// Whether that is done by a CameraRaster, whose memory comes on top of predicted_bytes().
 bool lists_tiles(IntegratorKind kind);
-/// Whether its mean is all light that there is, in the end, so that another one of these has the same.
+/// Whether its mean is all light that there is, in the end, so that another one of these has the same, or nearly.
 bool finds_all_light(IntegratorKind kind);
 /// Whether it tells light paths apart and can show irradiance: IntegratorSettings::light_paths and irradiance.
 bool has_light_path_layers(IntegratorKind kind);

@@ -146,6 +146,12 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                           {"pertev.nearest", static_cast<int32_t>(map.nearest)},
                           {"pertev.gather", std::string(name_of(map.gather))}});
     }
+    if (settings.integrator == IntegratorKind::IrradianceCache) {
+        const IrradianceCacheSettings& cache = settings.irradiance_cache;
+        append(metadata, {{"pertev.accuracy", cache.accuracy},
+                          {"pertev.hemisphere_rays", static_cast<int32_t>(cache.hemisphere_rays)},
+                          {"pertev.show_records", static_cast<int32_t>(cache.show_records)}});
+    }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }

@@ -12,8 +12,8 @@ namespace {
 constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
 constexpr IntegratorKind kIntegrators[] = {
     IntegratorKind::Hybrid,  IntegratorKind::Cast, // beside Path
-    IntegratorKind::Whitted, IntegratorKind::Distributed,   IntegratorKind::Raster,   IntegratorKind::Reyes,
-    IntegratorKind::Light,   IntegratorKind::Bidirectional, IntegratorKind::PhotonMap};
+    IntegratorKind::Whitted, IntegratorKind::Distributed,   IntegratorKind::Raster,    IntegratorKind::Reyes,
+    IntegratorKind::Light,   IntegratorKind::Bidirectional, IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache};
 constexpr PhotonGather kGathers[] = {PhotonGather::Direct, PhotonGather::Final};
 constexpr PhotonSearch kSearches[] = {PhotonSearch::Grid, PhotonSearch::KdTree, PhotonSearch::Octree};
 constexpr RasterShading kShadings[] = {RasterShading::Flat, RasterShading::Gouraud, RasterShading::Phong};
@@ -58,6 +58,8 @@ std::string_view name_of(IntegratorKind integrator) {
         return "bidirectional";
     case IntegratorKind::PhotonMap:
         return "photon_map";
+    case IntegratorKind::IrradianceCache:
+        return "irradiance_cache";
     }
     return "";
 }
@@ -92,6 +94,7 @@ std::string_view integrator_name(const RenderSettings& settings) {
     case IntegratorKind::Light:
     case IntegratorKind::Bidirectional:
     case IntegratorKind::PhotonMap:
+    case IntegratorKind::IrradianceCache:
         break;
     }
     return name_of(settings.integrator);

@@ -15,7 +15,8 @@
 namespace pertev {
 
 /// The integrator, "path" by name of the part of the light that it shows: "path", "direct" or "indirect"; "hybrid",
-/// "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional", "photon_map".
+/// "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional", "photon_map",
+/// "irradiance_cache".
 std::string_view integrator_name(const RenderSettings& settings);
 /// False, and nothing done, where there is no such integrator.
 bool set_integrator(RenderSettings& settings, std::string_view name);

@@ -22,6 +22,7 @@ FLAGS = {
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
+              "--accuracy --hemisphere-rays --show-records "
               "--real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
               "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "
@@ -395,7 +396,10 @@ class WhatIsRendered(CliTest):
                    ["--integrator", "indirect"], ["--integrator", "distributed"], ["--integrator", "light"],
                    ["--integrator", "bidirectional"], ["--integrator", "photon_map"],
                    ["--integrator", "photon_map", "--gather", "direct"], ["--integrator", "photon_map", "--photons", "5000"],
-                   ["--integrator", "photon_map", "--radius", "0.1"], ["--integrator", "photon_map", "--nearest", "5"], ["--integrator", "cast", "--ambient", "0.5"],
+                   ["--integrator", "photon_map", "--radius", "0.1"], ["--integrator", "photon_map", "--nearest", "5"],
+                   ["--integrator", "irradiance_cache"], ["--integrator", "irradiance_cache", "--accuracy", "0.7"],
+                   ["--integrator", "irradiance_cache", "--hemisphere-rays", "50"],
+                   ["--integrator", "irradiance_cache", "--show-records"], ["--integrator", "cast", "--ambient", "0.5"],
                    ["--integrator", "whitted", "--ambient", "0.5,0.2,0.1"],
                    ["--integrator", "raster", "--ambient", "0.5"], ["--integrator", "raster", "--wireframe", "--ambient", "0.5"],
                    ["--integrator", "reyes", "--ambient", "0.5"],

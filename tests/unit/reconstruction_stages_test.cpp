@@ -27,7 +27,12 @@ CameraView stage_camera(uint32_t side) {
 
 /// A wall that faces the camera at 5 m, all of one object. Its right half can be made another in one way at a time.
 struct Wall {
-    std::vector<Float4> guide = std::vector<Float4>(kStagePixels, pack({{0, 0, 1}, 1, 5, 7}));
+    std::vector<Float4> guide;
+
+    Wall() {
+        const Guide facing = {{0, 0, 1}, 1, 5, 7};
+        guide.assign(kStagePixels, pack(facing));
+    }
 
     void set_right(const Guide& g) {
         for (uint32_t i = 0; i < kStagePixels; ++i) {

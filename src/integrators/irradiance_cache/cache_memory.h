@@ -1,0 +1,96 @@
+#pragma once
+
+// What walks of irradiance caching know beside subpaths/walk_memory.h, and the cells of hemispheres in flight.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "integrators/subpaths/walk_memory.h"
+#include "render/fixed_sum.h"
+
+namespace pertev {
+
+/// What a walk is after.
+enum class WalkAim : uint32_t {
+    Seek, // a diffuse surface, past mirrors and smooth glass alone, to look light up there
+    GoOn, // all light that a path finds
+    End,  // nothing any more
+};
+
+/// Beside the walk's throughput, which counts for light that its next surface sends on.
+struct CacheSight {
+    Rgb seen;  // counts for light that the ray itself runs into, also by way of mirrors and smooth glass
+    float pdf; // with which its direction was drawn, 1/sr; 0 after the camera or a delta lobe
+};
+
+/// A diffuse surface where light is to be looked up.
+struct CacheLookup {
+    Hit hit;
+    Vec3 direction; // of the walk, unit
+    float way;      // from the camera, metres
+    Rgb throughput;
+    uint32_t walk, scatterings;
+};
+
+struct CacheWalksView {
+    Float4* sights; // [walks]
+    float* ways;    // [walks] from the camera, metres
+    WalkAim* aims;  // [walks]
+    // Lookups of a round, side by side; WalkCounts::vertices is their number.
+    Float4 *places, *directions, *throughputs;
+    uint32_t* scatterings;
+    // Cells of hemispheres.
+    FixedSum* light; // [3 * cells]
+    Float4* cells;   // [cells] light as floats, W/(sr m2); metres to what the first ray met
+
+    HD void store_sight(uint32_t walk, const CacheSight& sight) const {
+        sights[walk] = {sight.seen.r, sight.seen.g, sight.seen.b, sight.pdf};
+    }
+    HD CacheSight sight_of(uint32_t walk) const {
+        const Float4 s = sights[walk];
+        return {{s.x, s.y, s.z}, s.w};
+    }
+    HD void store(uint32_t at, const CacheLookup& lookup) const {
+        const Hit& hit = lookup.hit;
+        const Vec3 d = lookup.direction;
+        const Rgb t = lookup.throughput;
+        places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
+        directions[at] = {d.x, d.y, d.z, lookup.way};
+        throughputs[at] = {t.r, t.g, t.b, float_of(lookup.walk)};
+        scatterings[at] = lookup.scatterings;
+    }
+    HD CacheLookup load(uint32_t at) const {
+        const Float4 p = places[at], d = directions[at], t = throughputs[at];
+        return {{0, p.x, p.y, bits_of(p.z), bits_of(p.w)},
+                {d.x, d.y, d.z},
+                d.w,
+                {t.x, t.y, t.z},
+                bits_of(t.w),
+                scatterings[at]};
+    }
+};
+
+/// Places the arrays as lay_out of walk_memory.h does.
+inline std::size_t lay_out(CacheWalksView& view, std::byte* memory, uint32_t walks, uint32_t cells) {
+    std::size_t bytes = 0;
+    const auto place = [&]<class T>(T*& array, std::size_t count) {
+        array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
+        bytes += (count * sizeof(T) + 15) / 16 * 16;
+    };
+    place(view.sights, walks);
+    place(view.ways, walks);
+    place(view.aims, walks);
+    place(view.places, walks);
+    place(view.directions, walks);
+    place(view.throughputs, walks);
+    place(view.scatterings, walks);
+    place(view.light, std::size_t(cells) * 3);
+    place(view.cells, cells);
+    return bytes;
+}
+inline std::size_t cache_walk_bytes(uint32_t walks, uint32_t cells) {
+    CacheWalksView view;
+    return lay_out(view, nullptr, walks, cells);
+}
+
+} // namespace pertev

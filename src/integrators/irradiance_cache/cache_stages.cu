@@ -1,0 +1,12 @@
+#include "device/launch_body.h"
+#include "integrators/irradiance_cache/cache_stages.h"
+#include "integrators/irradiance_cache/hemisphere_stages.h"
+#include "integrators/irradiance_cache/overture_grid.h"
+
+// Those that compile soon: shading has files of its own.
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const BeginCacheWalks&);
+template void launch(Queue&, const char*, WorkCount, const BeginSeekers&);
+template void launch(Queue&, const char*, WorkCount, const StoreDistances&);
+template void launch(Queue&, const char*, WorkCount, const ReadCells&);
+} // namespace pertev

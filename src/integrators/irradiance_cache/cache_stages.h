@@ -1,0 +1,175 @@
+#pragma once
+
+// The stages of walks of irradiance caching: those of the camera, and those that are a record's rays. Both are path
+// tracing. But where a walk of the camera's has met mirrors and smooth glass alone and comes to a surface with a
+// diffuse base, the light there is
+//   L S* D             drawn, by a shadow ray and by the walk's own next ray, as path tracing does it;
+//   L (D|G|S)* (D|G) S* D  looked up: a record's rays bring it. Where there is no record, the walk goes on as a path.
+// What other lobes there scatter is found by the same next ray.
+//
+// Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 2.
+
+#include "integrators/irradiance_cache/cache_memory.h"
+#include "integrators/irradiance_cache/cached_surface.h"
+#include "integrators/subpaths/begin_eyes.h"
+#include "shading/power_heuristic.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kNumberOfOthers = 2; // of the choices of a vertex: whether light goes on by other lobes
+
+/// Walks 0, 1, ... become the camera's of the samples.
+struct BeginCacheWalks {
+    BeginEyes begin;
+    CacheWalksView cache;
+
+    HD void operator()(uint32_t i) const {
+        begin(i);
+        cache.store_sight(i, {{1, 1, 1}, 0});
+        cache.ways[i] = 0;
+        cache.aims[i] = WalkAim::Seek;
+    }
+};
+
+/// Where walks have met something.
+template <MaterialsKnown kKnown>
+struct ShadeCacheWalks {
+    WalkScene scene;
+    WalksView walks;
+    CacheWalksView cache;
+    FilmView film;      // of pixels, or of the cells of hemispheres; no sums: nothing is added
+    bool is_hemisphere; // walk i brings light to cell first_cell + i
+    uint32_t first_cell;
+    uint32_t round;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const uint32_t walk = walks.owners[round % 2][i];
+        if (cache.aims[walk] == WalkAim::End) return;
+        const PictureView& picture = scene.picture;
+        const Ray ray = load_ray(walks.rays[round % 2] + i);
+        const Hit hit = walks.hits().load(i);
+        WalkState state = walks.states[walk];
+        const CacheSight sight = cache.sight_of(walk);
+        if (hit.instance == kNoHit) return add_background(walk, state, sight, ray);
+        const Surface surface = make_surface<kKnown>(picture.scene, hit, ray.direction);
+        if (adds_light() && state.depth() == 0) {
+            add_seen(picture, film, state, ray, hit, surface);
+        } else if (adds_light() && !is_black(surface.emission)) {
+            const uint32_t light =
+                sight.pdf > 0 ? light_of(picture.scene.lights, hit.instance, hit.primitive) : kNoLight;
+            add_light(walk, state, sight, surface.emission,
+                      light != kNoLight ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position)
+                                        : 0.0f);
+        }
+        const uint32_t depth = state.depth();
+        if (surface.is_unlit || depth >= scene.settings.max_depth) return;
+        const float way = cache.ways[walk] + hit.t;
+        const Vec3 wo = -ray.direction;
+        const bool is_cached = cache.aims[walk] == WalkAim::Seek && depth + 2 <= scene.settings.max_depth &&
+                               CachedSurface(surface, wo).is_cached;
+        const Vertex vertex = {surface, wo, is_cached, {state.pixel, state.sample, scene.settings.seed}};
+        if (is_cached) {
+            cache.store(atomic_add(&walks.counts->vertices, 1u),
+                        {hit, ray.direction, way, state.throughput, walk, depth});
+        }
+        if (adds_light()) ask_for_light(vertex, walk, state);
+        cache.ways[walk] = way;
+        go_on(vertex, walk, state, sight);
+    }
+
+private:
+    struct Vertex {
+        const Surface& surface;
+        Vec3 wo;
+        bool is_cached; // light is looked up
+        SampleKey key;
+    };
+
+    HD bool adds_light() const { return film.sums != nullptr; }
+    HD uint32_t place_in_film(uint32_t walk, const WalkState& state) const {
+        return is_hemisphere ? first_cell + walk : state.pixel;
+    }
+
+    /// Light that the walk has run into; `light_pdf`: the density with which a shadow ray would have been sent there.
+    HD void add_light(uint32_t walk, const WalkState& state, const CacheSight& sight, Rgb emission,
+                      float light_pdf) const {
+        if (is_black(sight.seen)) return;
+        const float weight = light_pdf > 0 ? power_heuristic(sight.pdf, light_pdf) : 1.0f;
+        add_radiance(film, place_in_film(walk, state), (weight * sight.seen) * emission);
+    }
+    HD void add_background(uint32_t walk, const WalkState& state, const CacheSight& sight, const Ray& ray) const {
+        if (!adds_light()) return;
+        if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
+        const LightSetView& lights = scene.picture.scene.lights;
+        if (!lights.has_environment()) return;
+        add_light(walk, state, sight, environment_radiance(lights.environment, ray.direction),
+                  sight.pdf > 0 ? pdf_environment(lights, ray.direction) : 0.0f);
+    }
+
+    /// One point of one light, as path tracing draws it.
+    HD_FUSED void ask_for_light(const Vertex& vertex, uint32_t walk, const WalkState& state) const {
+        const SceneView& view = scene.picture.scene;
+        const Surface& surface = vertex.surface;
+        if (surface.bsdf.has_delta_only() || is_black(state.throughput)) return;
+        LightSample light;
+        const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
+        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return;
+        const BsdfValue scattered = surface.evaluate(vertex.wo, light.wi);
+        if (is_black(scattered.f)) return;
+        const uint32_t coin = coin_key(vertex.key, state.depth(), true);
+        if (light.instance != kNoLight && view.any_alpha != 0 &&
+            !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
+            return; // a hole in the light
+        }
+        const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, scattered.pdf);
+        Connection connection;
+        connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
+        connection.start = surface.triangle;
+        connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
+        connection.key = coin;
+        connection.light = (weight / light.pdf) * (state.throughput * scattered.f * light.radiance);
+        walks.ask(atomic_add(&walks.counts->asked, 1u), connection, place_in_film(walk, state));
+    }
+
+    HD_FUSED void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, CacheSight sight) const {
+        const Surface& surface = vertex.surface;
+        const SubpathSettings& settings = scene.settings;
+        const uint32_t choices = eye_group(state.depth(), kWalkChoices);
+        const WalkDraw draw =
+            draw_scatter(settings, vertex.key, surface.bsdf, eye_group(state.depth(), kWalkScatter), choices);
+        BsdfSample sample = surface.sample(vertex.wo, draw.lobe, draw.u);
+        if (!(sample.pdf > 0)) return;
+        Rgb onwards = sample.weight;
+        if (!sample.is_delta() && vertex.is_cached) onwards = others_share(vertex, sample, choices);
+        const Rgb before = sample.weight;
+        if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
+        const float made_up = max_component(before) > 0 ? max_component(sample.weight) / max_component(before) : 0.0f;
+        sight = {sample.is_delta() ? sight.seen * sample.weight : state.throughput * sample.weight,
+                 sample.is_delta() ? 0.0f : sample.pdf};
+        state.throughput = made_up * (state.throughput * onwards);
+        if (is_black(sight.seen) && is_black(state.throughput)) return;
+        ++state.scatterings;
+        walks.states[walk] = state;
+        cache.store_sight(walk, sight);
+        if (!sample.is_delta()) cache.aims[walk] = WalkAim::GoOn;
+        if (!sample.is_delta() && !adds_light()) return; // no more is to be seen
+        const Vec3 wi = sample.wi;
+        const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
+                         kInfinity};
+        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
+                        coin_key(vertex.key, state.depth(), false), round + 1);
+    }
+
+    /// Of the weight, what other lobes than the diffuse base scatter. Where that is little, few walks go on by it.
+    HD Rgb others_share(const Vertex& vertex, const BsdfSample& sample, uint32_t choices) const {
+        if (vertex.surface.bsdf.layer_count == 0) return {0, 0, 0};
+        const Rgb f = vertex.surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
+        const Rgb others = (1.0f / sample.pdf) * f;
+        const float chance = max_component(others) / max_component(sample.weight);
+        if (!(chance < 1)) return others;
+        const float u = sample_1d(scene.settings.sampler, vertex.key, choices, kNumberOfOthers);
+        return u < chance ? (1.0f / chance) * others : Rgb{0, 0, 0};
+    }
+};
+
+} // namespace pertev

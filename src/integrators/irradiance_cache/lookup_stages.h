@@ -1,0 +1,114 @@
+#pragma once
+
+// What becomes of the places where walks from the camera look light up: in a picture light is added, or the walk is
+// sent on as a path; in the overture, before there is a picture, a record is asked for where there is none.
+
+#include "integrators/irradiance_cache/cache_memory.h"
+#include "integrators/irradiance_cache/cached_surface.h"
+#include "integrators/subpaths/walk_vertex.h"
+#include "render/film_view.h"
+
+namespace pertev {
+
+/// Lookup i of a picture.
+template <MaterialsKnown kKnown>
+struct LookUpLight {
+    WalkScene scene;
+    WalksView walks;
+    CacheWalksView cache;
+    IrradianceCacheView records;
+    FilmView film;
+    uint64_t* missed; // lookups that found no record
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const CacheLookup lookup = cache.load(i);
+        const Vec3 wo = -lookup.direction;
+        const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
+        const CachedSurface cached(surface, wo);
+        const CachedLight found = look_up(records, place_of(surface, cached.side, lookup.scatterings));
+        WalkState& state = walks.states[lookup.walk];
+        if (found.weight > 0) {
+            add_radiance(film, state.pixel, lookup.throughput * sent_on(surface, wo, cached.side, found.light));
+            return;
+        }
+        atomic_add(missed, 1);
+        const CacheSight sight = cache.sight_of(lookup.walk);
+        if (sight.pdf > 0) state.throughput = sight.seen;
+    }
+};
+
+/// A place that a record is wanted for.
+struct alignas(16) RecordSite {
+    Vec3 direction; // of the walk that met it, unit
+    float way;      // from the camera, metres
+    float u, v;     // on the triangle
+    uint32_t instance, primitive;
+    uint32_t scatterings; // between the camera and the place; kNoSite: no record is wanted
+    uint32_t unused[3];
+};
+inline constexpr uint32_t kNoSite = 0xffffffffu;
+
+/// In the overture a record is wanted where those there are weigh less than this together: at the end of their reach
+/// other samples of the pixel would find none.
+inline constexpr float kServedWeight = 0.25f;
+
+/// Lookup i of a round of the overture, whose walks have a site each, from `first` on.
+template <MaterialsKnown kKnown>
+struct SeekPlaces {
+    WalkScene scene;
+    CacheWalksView cache;
+    IrradianceCacheView records;
+    RecordSite* sites;
+    uint32_t first;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const CacheLookup lookup = cache.load(i);
+        const Vec3 wo = -lookup.direction;
+        const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
+        const CachedSurface cached(surface, wo);
+        if (is_black(surface.bsdf.diffuse_albedo())) return;
+        const CachedLight found = look_up(records, place_of(surface, cached.side, lookup.scatterings));
+        if (found.weight >= kServedWeight) return;
+        cache.aims[lookup.walk] = WalkAim::End;
+        const Hit& hit = lookup.hit;
+        sites[first + lookup.walk] = {lookup.direction, lookup.way,         hit.u, hit.v, hit.instance,
+                                      hit.primitive,    lookup.scatterings, {}};
+    }
+};
+
+/// Where ray i of a picture meets the mark of a record, the walk shows that and ends.
+template <MaterialsKnown kKnown>
+struct DrawRecords {
+    static constexpr float kPixels = 1.25f; // radius of a mark
+
+    WalkScene scene;
+    WalksView walks;
+    CacheWalksView cache;
+    IrradianceCacheView records;
+    FilmView film;
+    Rgb light; // of marks, W/(sr m2)
+    uint32_t round;
+
+    HD_FUSED void operator()(uint32_t i) const {
+        const uint32_t walk = walks.owners[round % 2][i];
+        const Hit hit = walks.hits().load(i);
+        if (cache.aims[walk] != WalkAim::Seek || hit.instance == kNoHit) return;
+        const Ray ray = load_ray(walks.rays[round % 2] + i);
+        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit, ray.direction);
+        const WalkState& state = walks.states[walk];
+        const CachedSurface cached(surface, -ray.direction);
+        if (!cached.is_cached) return;
+        const CachePlace place = place_of(surface, cached.side, state.depth());
+        const float radius = kPixels * pixel_size(scene.picture.camera, cache.ways[walk] + hit.t);
+        bool is_marked = false;
+        visit_within(records.tree, place.position, radius, [&](const NearPoint& near) {
+            const CachePlace& own = records.records[near.index].place;
+            is_marked = is_marked || (own.scatterings == place.scatterings && dot(own.normal, place.normal) > 0);
+        });
+        if (!is_marked) return;
+        add_radiance(film, state.pixel, state.throughput * light);
+        cache.aims[walk] = WalkAim::End;
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,63 @@
+#pragma once
+
+// The overture: before a picture has samples, records are made, in rounds. A round sends a walk from each pixel of a
+// grid; each round's grid is finer than the one before, and where walks find too little, the places are the next
+// records, in the order of the grid. Places of one round lie at least a step of its grid apart, so few of their records
+// serve one another's places.
+//
+// Source: Ward, Rubinstein, Clear 1988, section 3, has the pass before the picture; rounds in place of one record after
+// the other are so that many are made at once, in an order that no device has a say in.
+
+#include <cstdint>
+
+#include "integrators/irradiance_cache/cache_memory.h"
+#include "integrators/irradiance_cache/lookup_stages.h"
+#include "integrators/subpaths/begin_eyes.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kOvertureSteps[] = {64, 32, 16, 8, 4, 2, 1, 1, 1}; // pixels, of each round
+inline constexpr uint32_t kOvertureRounds = sizeof(kOvertureSteps) / sizeof(kOvertureSteps[0]);
+inline constexpr uint32_t kOvertureSeed = 0x6a09e667u, kHemisphereSeed = 0xbb67ae85u; // beside the picture's own
+
+struct OvertureGrid {
+    uint32_t step, columns, rows, width;
+
+    HD uint32_t count() const { return columns * rows; }
+    HD uint32_t pixel(uint32_t number) const {
+        const uint32_t x = number % columns * step + step / 2, y = number / columns * step + step / 2;
+        return y * width + x;
+    }
+};
+inline OvertureGrid make_overture_grid(uint32_t round, uint32_t width, uint32_t height) {
+    const uint32_t step = kOvertureSteps[round], half = step / 2;
+    const auto along = [&](uint32_t pixels) { return pixels > half ? (pixels - half + step - 1) / step : 0; };
+    return {step, along(width), along(height), width};
+}
+
+/// Walks 0, 1, ... become those of the grid's numbers `first`, first + 1, ...; no record is wanted yet.
+struct BeginSeekers {
+    WalkScene scene;
+    WalksView walks;
+    CacheWalksView cache;
+    OvertureGrid grid;
+    RecordSite* sites;
+    uint32_t round, first;
+
+    HD void operator()(uint32_t i) const {
+        WalkState state = {};
+        state.pixel = grid.pixel(first + i);
+        state.sample = round;
+        state.throughput = {1, 1, 1};
+        const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
+        const Ray ray = scene.picture.camera.ray(state.pixel, scene.settings.sampler, key);
+        walks.states[i] = state;
+        walks.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
+        cache.store_sight(i, {{1, 1, 1}, 0});
+        cache.ways[i] = 0;
+        cache.aims[i] = WalkAim::Seek;
+        sites[first + i].scatterings = kNoSite;
+    }
+};
+
+} // namespace pertev

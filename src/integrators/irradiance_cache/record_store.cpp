@@ -1,0 +1,90 @@
+#include "integrators/irradiance_cache/record_store.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
+#include "integrators/irradiance_cache/space_records.h"
+
+namespace pertev {
+
+std::size_t RecordStore::predicted_bytes(uint64_t pixels) {
+    const std::size_t each =
+        sizeof(IrradianceRecord) + sizeof(float) + 2 * sizeof(PointOctreeNode) + sizeof(Sphere) + sizeof(uint32_t);
+    return pixels * sizeof(RecordSite) + most_records(pixels) * each;
+}
+
+void RecordStore::make_room(uint64_t pixels) {
+    const std::size_t most = most_records(pixels);
+    const auto need = [&]<class T>(Buffer<T>& buffer, std::size_t count, const char* name) {
+        if (buffer.size() >= count) return;
+        buffer = {}; // before there is more
+        buffer = Buffer<T>(queue_, count, name);
+    };
+    need(sites_, pixels, "places of the overture");
+    need(records_, most, "irradiance records");
+    need(reaches_, most, "irradiance records");
+    need(nodes_, 2 * most, "octree over irradiance records");
+    need(tree_spheres_, most, "octree over irradiance records");
+    need(tree_indices_, most, "octree over irradiance records");
+    pixels_ = pixels;
+}
+
+std::size_t RecordStore::bytes() const {
+    return sites_.size() * sizeof(RecordSite) + records_.size() * sizeof(IrradianceRecord) +
+           reaches_.size() * sizeof(float) + nodes_.size() * sizeof(PointOctreeNode) +
+           tree_spheres_.size() * sizeof(Sphere) + tree_indices_.size() * sizeof(uint32_t);
+}
+
+void RecordStore::clear() {
+    spheres_.clear();
+    luminances_.clear();
+    node_count_ = 0;
+}
+
+uint32_t RecordStore::gather_sites(uint32_t count) {
+    std::vector<RecordSite> wanted(count);
+    queue_.copy_to_host(wanted.data(), sites_.data(), wanted.size() * sizeof(RecordSite));
+    std::erase_if(wanted, [](const RecordSite& site) { return site.scatterings == kNoSite; });
+    wanted.resize(std::min<std::size_t>(wanted.size(), most_records(pixels_) - spheres_.size()));
+    sites_.upload(wanted);
+    return static_cast<uint32_t>(wanted.size());
+}
+
+void RecordStore::take(uint32_t made, float accuracy) {
+    accuracy_ = accuracy;
+    std::vector<IrradianceRecord> records(made);
+    queue_.copy_to_host(records.data(), records_.data() + count(), records.size() * sizeof(IrradianceRecord));
+    for (const IrradianceRecord& record : records) {
+        spheres_.push_back({record.place.position, record.radius});
+        luminances_.push_back(luminance(record.light));
+    }
+    std::vector<float> reaches = clamp_by_neighbours(spheres_);
+    std::vector<Sphere> reached = spheres_;
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+        reaches[i] = accuracy * reaches[i];
+        reached[i].radius = reaches[i];
+    }
+    const PointOctree tree = build_point_octree(reached);
+    PERTEV_CHECK(tree.nodes.size() <= nodes_.size());
+    reaches_.upload(reaches);
+    nodes_.upload(tree.nodes);
+    tree_spheres_.upload(tree.spheres);
+    tree_indices_.upload(tree.indices);
+    node_count_ = static_cast<uint32_t>(tree.nodes.size());
+}
+
+IrradianceCacheView RecordStore::view() const {
+    return {records_.data(),
+            reaches_.data(),
+            {nodes_.data(), tree_spheres_.data(), tree_indices_.data(), node_count_},
+            accuracy_};
+}
+
+float RecordStore::mean_luminance() const {
+    double sum = 0;
+    for (const float luminance : luminances_) sum += static_cast<double>(luminance);
+    return luminances_.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(luminances_.size()));
+}
+
+} // namespace pertev

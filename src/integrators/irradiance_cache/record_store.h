@@ -1,0 +1,59 @@
+#pragma once
+
+// Owns the records of a picture and the octree over them.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "device/buffer.h"
+#include "integrators/irradiance_cache/irradiance_record.h"
+#include "integrators/irradiance_cache/lookup_stages.h"
+
+namespace pertev {
+
+class RecordStore {
+public:
+    /// `queue` outlives it.
+    explicit RecordStore(Queue& queue) : queue_(queue) {}
+
+    /// Bytes that make_room() takes.
+    static std::size_t predicted_bytes(uint64_t pixels);
+    /// For a picture of so many pixels. Throws Error(OutOfMemory).
+    void make_room(uint64_t pixels);
+    std::size_t bytes() const;
+
+    /// A picture begins: no records.
+    void clear();
+    uint32_t count() const { return static_cast<uint32_t>(spheres_.size()); }
+
+    /// [pixels] of the overture.
+    RecordSite* sites() const { return sites_.data(); }
+    /// Of the first `count` sites those that records are wanted for come first, in their order, as many as there is
+    /// room for. Returns how many.
+    uint32_t gather_sites(uint32_t count);
+    /// Where the next records go: number count() is the first.
+    IrradianceRecord* records() const { return records_.data(); }
+    /// So many have been made: they serve from here on, and all are spaced anew.
+    void take(uint32_t made, float accuracy);
+
+    IrradianceCacheView view() const;
+    /// Mean of the luminance of all records' light, W/(sr m2).
+    float mean_luminance() const;
+
+private:
+    Queue& queue_;
+    uint64_t pixels_ = 0;
+    float accuracy_ = 0;
+    std::vector<Sphere> spheres_;   // of their own radii
+    std::vector<float> luminances_; // of their light
+    uint32_t node_count_ = 0;
+    Buffer<RecordSite> sites_;
+    Buffer<IrradianceRecord> records_;
+    Buffer<float> reaches_;
+    Buffer<PointOctreeNode> nodes_;
+    Buffer<Sphere> tree_spheres_;
+    Buffer<uint32_t> tree_indices_;
+};
+
+} // namespace pertev

@@ -1,0 +1,332 @@
+// Irradiance caching's parts against closed forms, and its records and pictures against what is known.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "integrators/irradiance_cache/hemisphere.h"
+#include "integrators/irradiance_cache/irradiance_cache_integrator.h"
+#include "integrators/irradiance_cache/overture_grid.h"
+#include "integrators/irradiance_cache/space_records.h"
+#include "render/film.h"
+#include "render/filter_table.h"
+#include "render/scene_on_device.h"
+#include "session/check_integrator.h"
+#include "tests/support/meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/random.h"
+#include "tests/support/room_with_ball.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr HemisphereGrid kFine = {64, 200};
+
+/// The sum over cells whose rays, world directions, `cell_of` answers.
+template <class CellOf>
+HemisphereSum sum_over(const HemisphereGrid& grid, const Frame& frame, const CellOf& cell_of) {
+    return sum_hemisphere(grid, frame, [&](uint32_t cell) {
+        return cell_of(normalize(frame.to_world(direction_in_cell(grid, cell, {0.5f, 0.5f}))));
+    });
+}
+
+void check_near(Vec3 a, Vec3 b, float within) {
+    CAPTURE(a.x);
+    CAPTURE(a.y);
+    CAPTURE(a.z);
+    CAPTURE(b.x);
+    CAPTURE(b.y);
+    CAPTURE(b.z);
+    CHECK(length(a - b) <= within);
+}
+
+} // namespace
+
+TEST_CASE("a hemisphere's cells have one cosine-weighted size, and no more rays than are asked for") {
+    for (const uint32_t rays : {16u, 100u, 768u, 65536u}) {
+        const HemisphereGrid grid = make_hemisphere_grid(rays);
+        CHECK(grid.cells() <= rays);
+        CHECK(grid.cells() > rays * 3 / 4);
+        Vec3 mean = {0, 0, 0};
+        for (uint32_t cell = 0; cell < grid.cells(); ++cell) {
+            const Vec3 w = direction_in_cell(grid, cell, {0.5f, 0.5f});
+            CHECK(w.z > 0);
+            CHECK(length(w) == doctest::Approx(1).epsilon(1e-5));
+            mean += (1.0f / static_cast<float>(grid.cells())) * w;
+        }
+        check_near(mean, {0, 0, 2.0f / 3}, 0.02f); // the mean of the cosine is 2/3
+    }
+}
+
+TEST_CASE("a turn under a sky of known gradient: its irradiance and that of the turned surface") {
+    // Under radiance 1 + b w irradiance is pi (1 + 2/3 b n): its derivative by n is 2/3 b, across n.
+    const Vec3 b = {0.3f, -0.4f, 0.2f};
+    for (const Vec3 normal : {Vec3{0, 0, 1}, normalize(Vec3{1, -2, 0.5f}), Vec3{0, -1, 0}}) {
+        const HemisphereSum sum = sum_over(kFine, make_frame(normal), [&](Vec3 w) {
+            return HemisphereCell{{1.0f + dot(b, w), 2.0f, 0.0f}, kInfinity};
+        });
+        CHECK(sum.light.r == doctest::Approx(1 + 2.0 / 3 * static_cast<double>(dot(b, normal))).epsilon(1e-3));
+        CHECK(sum.light.g == doctest::Approx(2));
+        check_near(sum.by_turn[0], (2.0f / 3) * (b - dot(b, normal) * normal), 2e-3f);
+        check_near(sum.by_turn[1], {0, 0, 0}, 1e-4f);
+        for (const Vec3 move : sum.by_move) check_near(move, {0, 0, 0}, 1e-6f); // all is far away
+        CHECK(sum.radius == kInfinity);
+    }
+}
+
+TEST_CASE("a step under a ceiling that ends: the gradient of the closed form") {
+    // Under the half x > 0 of a ceiling at height h that gives radiance 1, irradiance at x is pi (1 + x / sqrt(x^2 +
+    // h^2)) / 2. What lies behind the ceiling's edge is dark and far away.
+    const float h = 1.5f;
+    for (const float x : {-1.0f, -0.3f, 0.0f, 0.8f}) {
+        for (const float turn : {0.0f, 0.7f, 2.0f}) { // of the frame: the gradient is one of the world
+            CAPTURE(x);
+            CAPTURE(turn);
+            const Frame frame = {{std::cos(turn), std::sin(turn), 0}, {-std::sin(turn), std::cos(turn), 0}, {0, 0, 1}};
+            const HemisphereSum sum = sum_over(kFine, frame, [&](Vec3 w) {
+                const float t = h / w.z;
+                const bool meets = x + t * w.x > 0;
+                return HemisphereCell{grey(meets ? 1.0f : 0.0f), meets ? t : 1e4f};
+            });
+            const float far = std::sqrt(x * x + h * h);
+            CHECK(sum.light.r == doctest::Approx(0.5 * (1 + static_cast<double>(x / far))).epsilon(0.02));
+            check_near(sum.by_move[0], {0.5f * h * h / (far * far * far), 0, 0}, 0.02f);
+        }
+    }
+}
+
+TEST_CASE("a record's radius is the harmonic mean of distances, within limits, and its gradient's") {
+    HemisphereSum sum = sum_over(kFine, make_frame({0, 0, 1}), [](Vec3 w) {
+        return HemisphereCell{{1, 1, 1}, w.x > 0 ? 1.0f : 3.0f};
+    });
+    CHECK(sum.radius == doctest::Approx(1.5).epsilon(1e-3)); // 2 / (1 + 1/3)
+    HemisphereSum limited = sum;
+    limit_radius(limited, 0.1f, 1.2f);
+    CHECK(limited.radius == doctest::Approx(1.2));
+    for (Vec3& move : sum.by_move) move = {0, 4, 0};
+    limited = sum;
+    limit_radius(limited, 0.1f, 9); // light 1 changes by itself over 1/4 m
+    CHECK(limited.radius == doctest::Approx(0.25));
+    check_near(limited.by_move[1], {0, 4, 0}, 1e-6f);
+    limited = sum;
+    limit_radius(limited, 0.5f, 9); // kept twice as large: half the gradient
+    CHECK(limited.radius == doctest::Approx(0.5));
+    check_near(limited.by_move[1], {0, 2, 0}, 1e-5f);
+}
+
+TEST_CASE("radii are clamped by those of their neighbours, whatever the order") {
+    test::Random random(3);
+    std::vector<Sphere> records;
+    for (int i = 0; i < 700; ++i) {
+        const float x = random.unit(), y = random.unit(), z = random.unit();
+        const float share = random.unit();
+        records.push_back({{x, y, 0.1f * z}, 0.001f + 0.5f * share * share * share});
+    }
+    const std::vector<float> clamped = clamp_by_neighbours(records);
+    int smaller = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        float wanted = records[i].radius;
+        for (const Sphere& other : records) {
+            wanted = std::min(wanted, other.radius + length(other.centre - records[i].centre));
+        }
+        CHECK(clamped[i] == doctest::Approx(static_cast<double>(wanted)).epsilon(1e-5));
+        if (clamped[i] < records[i].radius) ++smaller;
+    }
+    CHECK(smaller > 100);
+}
+
+TEST_CASE("light between records is their weighted mean, and none beyond their reach") {
+    const auto record_at = [](Vec3 at, float light) {
+        IrradianceRecord record = {};
+        record.place = {at, {0, 0, 1}, 0, kBareDiffuse};
+        record.light = {light, light, light};
+        return record;
+    };
+    std::vector<IrradianceRecord> records = {record_at({0, 0, 0}, 1), record_at({1, 0, 0}, 3)};
+    records[0].by_move[0] = {0.5f, 0, 0};
+    records[0].by_turn[1] = {2, 0, 0};
+    const std::vector<float> reaches = {0.8f, 0.8f};
+    const PointOctree tree = build_point_octree(std::vector<Sphere>{{{0, 0, 0}, 0.8f}, {{1, 0, 0}, 0.8f}});
+    const IrradianceCacheView cache = {records.data(), reaches.data(), view_of(tree), 0.2f};
+    const auto at = [&](float x, Vec3 normal = {0, 0, 1}, uint32_t scatterings = 0, float z = 0) {
+        return look_up(cache, {{x, 0, z}, normal, scatterings, kBareDiffuse});
+    };
+    CHECK(at(0).weight == doctest::Approx(1)); // the other one's reach ends before
+    CHECK(at(0).light.r == doctest::Approx(1));
+    CHECK(at(-0.4f).weight == doctest::Approx(0.5));
+    CHECK(at(-0.4f).light.r == doctest::Approx(0.8)); // 1 - 0.4 * 0.5
+    CHECK(at(-0.4f).light.g == doctest::Approx(1));
+    CHECK(at(0.4f).light.r == doctest::Approx((0.5 * 1.2 + 0.25 * 3) / 0.75));
+    CHECK(at(-0.81f).weight == 0);
+    CHECK(at(1.9f).weight == 0);
+    // Turned by a, the error is sqrt(1 - cos a) = sqrt(2) sin(a / 2): all of the accuracy at 16.26 degrees.
+    const auto turned = [](float a) { return Vec3{std::sin(a), 0, std::cos(a)}; };
+    CHECK(at(0, turned(0.1f)).weight == doctest::Approx(1 - std::sqrt(2) * std::sin(0.05) / 0.2).epsilon(1e-3));
+    CHECK(at(0, turned(0.1f)).light.g == doctest::Approx(1 + 2 * std::sin(0.1)).epsilon(1e-3));
+    CHECK(at(0, turned(0.28f)).weight > 0);
+    CHECK(at(0, turned(0.29f)).weight == 0);
+    CHECK(at(0, {0, 0, 1}, 1).weight == 0); // seen past a mirror: of records of their own
+    // Above a record light may be taken from it; below it, something may stand between that it does not see.
+    CHECK(at(0, {0, 0, 1}, 0, 0.2f).weight > 0);
+    CHECK(at(0, {0, 0, 1}, 0, -0.2f).weight == 0);
+    CHECK(look_up(cache, {{0, 0, 0}, {0, 0, 1}, 0, 4}).weight == 0); // under a reflection
+}
+
+TEST_CASE("the overture's grids have each pixel in the end, and none twice in a round") {
+    for (const auto& [width, height] : {std::pair(37u, 21u), std::pair(1u, 1u), std::pair(640u, 33u)}) {
+        for (uint32_t round = 0; round < kOvertureRounds; ++round) {
+            const OvertureGrid grid = make_overture_grid(round, width, height);
+            std::vector<int> taken(std::size_t(width) * height);
+            for (uint32_t i = 0; i < grid.count(); ++i) {
+                REQUIRE(grid.pixel(i) < taken.size());
+                CHECK(++taken[grid.pixel(i)] == 1);
+            }
+            if (kOvertureSteps[round] == 1) CHECK(grid.count() == width * height);
+            if (kOvertureSteps[round] == 8 && width == 640) CHECK(grid.count() == 80 * 4);
+        }
+    }
+}
+
+namespace {
+
+/// A picture by the integrator itself, with what it can be asked.
+struct CacheRun {
+    Messages messages;
+    PreparedScene prepared;
+    Queue queue = Queue::make_cpu();
+    SceneOnDevice device;
+    SceneTracer tracer;
+    FilterTable filter;
+    PictureView picture;
+    IrradianceCacheIntegrator integrator;
+    Film film;
+
+    CacheRun(const Scene& scene, const Camera& camera, uint32_t size, const IrradianceCacheSettings& cache,
+             uint32_t samples, uint32_t max_depth = 6)
+        : prepared(prepare_scene(scene, {}, messages)), device(queue, prepared),
+          tracer(queue, *prepared.structures, default_tracers(false)), filter(queue),
+          integrator(queue, {.max_depth = max_depth}, cache, true, 1u << 20), film(queue, size, size, 0) {
+        tracer.set_surfaces(device.view());
+        picture = {device.view(),
+                   make_camera_rays(camera, filter.set(PixelFilter::Box, 0.5f), size, size, prepared.centre)};
+        integrator.begin(picture, tracer, samples);
+        integrator.render(0, samples, film.view());
+    }
+};
+
+} // namespace
+
+TEST_CASE("irradiance at records is that of brute force") {
+    const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);
+    const CacheRun run(scene, test::room_camera(), 24, {.accuracy = 0.3f, .hemisphere_rays = 6000}, 1);
+    const std::vector<IrradianceRecord> records = run.integrator.records();
+    REQUIRE(records.size() > 30);
+    Queue queue = Queue::make_cpu();
+    int compared = 0;
+    for (std::size_t i = 0; i < records.size(); i += records.size() / 12) {
+        const CachePlace& place = records[i].place;
+        const Vec3 at = place.position + run.prepared.centre;
+        if (std::abs(place.normal.y - 1) > 1e-4f || at.y > 0.01f) continue; // of the floor, whose albedo is known
+        RenderSettings settings; // light that is scattered at least twice, by path tracing, looked at from close by
+        settings.width = settings.height = 1;
+        settings.filter = PixelFilter::Box;
+        settings.path.max_depth = 6;
+        settings.path.light = PathLight::Indirect;
+        settings.samples = 1 << 14;
+        const Camera camera = test::camera_down(at + Vec3{0, 1e-3f, 0}, 1e-4f);
+        const RenderResult brute = render_picture(queue, run.prepared, camera, settings);
+        for (int k = 0; k < 3; ++k) {
+            const auto wanted = static_cast<double>(brute.picture.pixels[static_cast<std::size_t>(k)]) / 0.5;
+            CAPTURE(k);
+            CHECK(static_cast<double>(k == 0   ? records[i].light.r
+                                      : k == 1 ? records[i].light.g
+                                               : records[i].light.b) == doctest::Approx(wanted).epsilon(0.04));
+        }
+        ++compared;
+    }
+    CHECK(compared >= 3);
+}
+
+TEST_CASE("few samples of a picture find no record, and none has a record of other walks") {
+    const Scene scene = test::room_with_ball(test::of_roughness(MaterialKind::MetallicRoughness, 0),
+                                             test::of_roughness(MaterialKind::MetallicRoughness, 0.4f), false);
+    const CacheRun run(scene, test::room_camera(), 48, {.accuracy = 0.4f, .hemisphere_rays = 64}, 4);
+    const std::vector<IrradianceRecord> records = run.integrator.records();
+    CHECK(run.integrator.record_count() == records.size());
+    CHECK(records.size() < 48 * 48 / 4);
+    CHECK(run.integrator.missed_lookups() < 48 * 48 * 4 / 50);
+    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.place.scatterings == 1; }));
+    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.place.material != kBareDiffuse; }));
+    for (const IrradianceRecord& record : records) {
+        CHECK(record.radius > 0);
+        CHECK(record.light.r >= 0);
+        CHECK(is_finite(record.by_move[0]));
+        CHECK(length(record.place.normal) == doctest::Approx(1).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("a glowing room shows each scattering once, by records and by paths where there are none") {
+    const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
+    Scene scene;
+    Mesh mesh;
+    mesh.positions = sphere.positions;
+    mesh.indices = sphere.indices;
+    test::add(scene, mesh,
+              {.name = "wall", .base_color = grey(0.5f), .emission = {1, 1, 1}, .two_sided_emission = true});
+    for (const bool has_all : {true, false}) { // or records that serve less than a pixel
+        double wanted = 0;
+        for (uint32_t depth = 0; depth <= 4; ++depth) {
+            CAPTURE(has_all);
+            CAPTURE(depth);
+            wanted += std::pow(0.5, depth);
+            constexpr uint32_t kSamples = 32;
+            CacheRun run(scene, test::camera_down({0.3f, 0.2f, -0.5f}, 0.4f), 8,
+                         {.accuracy = has_all ? 0.25f : 0.01f, .hemisphere_rays = 256}, kSamples, depth);
+            double sum = 0;
+            for (uint32_t i = 0; i < 64; ++i) {
+                sum += static_cast<double>(mean_of(run.film.view().pixel(i)[0], kSamples)) / 64;
+            }
+            CHECK(sum == doctest::Approx(wanted).epsilon(0.01));
+            if (depth >= 2) CHECK((run.integrator.missed_lookups() > 64 * kSamples / 8) == !has_all);
+        }
+    }
+}
+
+TEST_CASE("marks are drawn where records are seen, and nowhere else") {
+    const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);
+    constexpr uint32_t kSize = 64;
+    IrradianceCacheSettings cache = {.accuracy = 0.8f, .hemisphere_rays = 32};
+    CacheRun plain(scene, test::room_camera(), kSize, cache, 2, 2);
+    cache.show_records = true;
+    CacheRun marked(scene, test::room_camera(), kSize, cache, 2, 2);
+    std::vector<double> nearest(std::size_t(kSize) * kSize, 1e9); // record, pixels
+    std::vector<bool> has_record(nearest.size());
+    for (const IrradianceRecord& record : plain.integrator.records()) {
+        const SeenPoint seen = see_point(plain.picture.camera.view, record.place.position);
+        has_record[static_cast<std::size_t>(seen.pixel.y) * kSize + static_cast<std::size_t>(seen.pixel.x)] = true;
+        for (std::size_t i = 0; i < nearest.size(); ++i) {
+            const double x = static_cast<double>(i % kSize) + 0.5 - static_cast<double>(seen.pixel.x);
+            const double y = static_cast<double>(i / kSize) + 0.5 - static_cast<double>(seen.pixel.y);
+            nearest[i] = std::min(nearest[i], std::hypot(x, y));
+        }
+    }
+    int with_record = 0, changed = 0, far = 0;
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+        const auto pixel = static_cast<uint32_t>(i);
+        const bool is_same = std::equal(plain.film.view().pixel(pixel), plain.film.view().pixel(pixel) + 3,
+                                        marked.film.view().pixel(pixel));
+        if (has_record[i]) {
+            ++with_record;
+            if (!is_same) ++changed;
+        }
+        if (nearest[i] < 3) continue; // a mark's radius is 1.25 pixels, a sample's place up to 0.7 from the middle
+        ++far;
+        CHECK(is_same);
+    }
+    CHECK(with_record > 20);
+    CHECK(changed > with_record * 9 / 10); // others are at an edge
+    CHECK(far > 200);
+}
