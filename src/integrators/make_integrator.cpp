@@ -4,6 +4,7 @@
 #include "integrators/bidirectional/most_joined_depth.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/photon_map/photon_map_integrator.h"
+#include "integrators/radiosity/radiosity_integrator.h"
 #include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 #include "integrators/reyes/reyes_integrator.h"
@@ -17,7 +18,8 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
             .sampler = settings.path.sampler,
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),
-            .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
+            .ambient = settings.ambient.value_or(Rgb{0, 0, 0}),
+            .radiosity = {}}; // which its integrator adds
 }
 
 SubpathSettings walk_settings(const IntegratorSettings& settings) {
@@ -103,6 +105,7 @@ uint32_t most_depth(IntegratorKind kind) {
     case IntegratorKind::Cast:
     case IntegratorKind::Whitted:
     case IntegratorKind::Distributed:
+    case IntegratorKind::Radiosity:
         return kMaxTreeDepth;
     case IntegratorKind::Bidirectional:
         return kMostJoinedDepth;
@@ -124,7 +127,7 @@ uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
            a.shading_rate == b.shading_rate && same_heights(a, b) && a.photon_map == b.photon_map &&
-           a.light_paths == b.light_paths && a.irradiance == b.irradiance;
+           a.radiosity == b.radiosity && a.light_paths == b.light_paths && a.irradiance == b.irradiance;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
@@ -148,6 +151,9 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
         return make_walks<BothDirections>(queue, settings);
     case IntegratorKind::PhotonMap:
         return std::make_unique<PhotonMapIntegrator>(queue, walk_settings(settings), settings.photon_map,
+                                                     settings.body == PathBody::Loop, settings.batch);
+    case IntegratorKind::Radiosity:
+        return std::make_unique<RadiosityIntegrator>(queue, tree_settings(settings), settings.radiosity,
                                                      settings.body == PathBody::Loop, settings.batch);
     }
     auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch,
@@ -190,6 +196,9 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
     case IntegratorKind::PhotonMap:
         static_cast<PhotonMapIntegrator&>(integrator).set_settings(walk_settings(to), to.photon_map);
         break;
+    case IntegratorKind::Radiosity:
+        static_cast<RadiosityIntegrator&>(integrator).set_settings(tree_settings(to), to.radiosity);
+        break;
     }
     return true;
 }
@@ -206,14 +215,19 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
         return PhotonMapIntegrator::predicted_bytes(walk_settings(settings), settings.photon_map, pixels,
                                                     settings.batch, in_loop, on_cuda);
     }
-    if (in_loop) return tables;
     const uint64_t all = pixels * samples;
+    if (settings.integrator == IntegratorKind::Radiosity) {
+        return RadiosityIntegrator::predicted_bytes(tree_settings(settings), settings.radiosity, all, settings.batch,
+                                                    in_loop);
+    }
+    if (in_loop) return tables;
     switch (settings.integrator) {
     case IntegratorKind::Path:
     case IntegratorKind::Hybrid:
     case IntegratorKind::Raster:
     case IntegratorKind::Reyes:
     case IntegratorKind::PhotonMap:
+    case IntegratorKind::Radiosity:
         break;
     case IntegratorKind::Cast:
         return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);

@@ -9,6 +9,7 @@
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/photon_map/photon_map_settings.h"
+#include "integrators/radiosity/radiosity_look.h"
 #include "integrators/raster/raster_settings.h"
 #include "integrators/reyes/reyes_settings.h"
 #include "math/rgb.h"
@@ -27,6 +28,7 @@ enum class IntegratorKind : uint8_t {
     Light,         // integrators/light/light.h
     Bidirectional, // integrators/bidirectional/bidirectional.h
     PhotonMap,     // integrators/photon_map/photon_map_integrator.h
+    Radiosity,     // integrators/radiosity/radiosity_integrator.h
 };
 
 struct IntegratorSettings {
@@ -40,6 +42,7 @@ struct IntegratorSettings {
     float shading_rate = 1;                    // of Reyes: no edge of a micropolygon is longer, pixels
     std::shared_ptr<const HeightMaps> heights; // of Reyes: what displaces surfaces; null: nothing
     PhotonMapSettings photon_map;              // of PhotonMap
+    RadiosityLook radiosity;                   // of Radiosity
 
     // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;

@@ -146,6 +146,12 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                           {"pertev.nearest", static_cast<int32_t>(map.nearest)},
                           {"pertev.gather", std::string(name_of(map.gather))}});
     }
+    if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity.solution) {
+        const RadiositySolution& solution = *settings.radiosity.solution;
+        append(metadata, {{"pertev.radiosity", solution.made},
+                          {"pertev.radiosity_hash", solution.hash().hex()},
+                          {"pertev.flat_patches", static_cast<int32_t>(settings.radiosity.is_flat)}});
+    }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }

@@ -22,10 +22,15 @@ FLAGS = {
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
+              "--patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver --tolerance --steps --link-error --solution "
+              "--flat-patches "
               "--real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
               "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --quiet -q --json",
+    "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
+                       "--tolerance --steps --link-error --seed --time --lamp --efficacy --allow-path --environment --environment-rotation "
+                       "--environment-scale --two-sided-lights --threads --no-bvh-cache --quiet -q --json",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
@@ -396,6 +401,7 @@ class WhatIsRendered(CliTest):
                    ["--integrator", "bidirectional"], ["--integrator", "photon_map"],
                    ["--integrator", "photon_map", "--gather", "direct"], ["--integrator", "photon_map", "--photons", "5000"],
                    ["--integrator", "photon_map", "--radius", "0.1"], ["--integrator", "photon_map", "--nearest", "5"], ["--integrator", "cast", "--ambient", "0.5"],
+                   ["--integrator", "radiosity", "--patch-size", "0.3", "--patch-rays", "16", "--subdivisions", "0"],
                    ["--integrator", "whitted", "--ambient", "0.5,0.2,0.1"],
                    ["--integrator", "raster", "--ambient", "0.5"], ["--integrator", "raster", "--wireframe", "--ambient", "0.5"],
                    ["--integrator", "reyes", "--ambient", "0.5"],
