@@ -19,7 +19,8 @@ constexpr uint32_t kIsCluster = 0x40000000u;
 constexpr bool is_cluster(uint32_t source) { return source < kIsPatch && (source & kIsCluster) != 0; }
 constexpr float kUnknown = -1;
 constexpr uint32_t kMostPasses = 24, kSweeps = 3;
-constexpr uint32_t kRaysOfLink = 8, kLightRays = 64;
+constexpr uint32_t kMostRaysOfLink = 8, kLightRays = 64;
+constexpr uint64_t kFacesAtOnce = 1024; // between two looks at whether to go on
 
 struct Link {
     PatchCode receiver;
@@ -49,18 +50,16 @@ public:
         set_limit();
     }
 
-    /// Divides links and patches once. False where there was nothing to divide.
-    bool refine() {
+    /// Divides links, and says which patches are to be divided. False where none is. `progress` is told the share that
+    /// is done; after it was false links stay as they are.
+    bool refine(const std::function<bool(double)>& progress) {
         wishes_.assign(tree_.patches.size(), 0);
-        parallel_for(links_.size(), 16, [&](uint64_t i) {
-            std::vector<Link> refined;
-            for (Link link : links_[i]) {
-                link.receiver = now(link.receiver);
-                if (!is_cluster(link.source)) link.source = now(link.source);
-                refine(link, refined);
-            }
-            links_[i] = std::move(refined);
-        });
+        bool goes_on = true;
+        for (uint64_t first = 0; first < links_.size(); first += kFacesAtOnce) {
+            const uint64_t count = std::min(kFacesAtOnce, links_.size() - first);
+            parallel_for(count, 16, [&](uint64_t k) { refine_links(links_[first + k], goes_on); });
+            goes_on = goes_on && progress(static_cast<double>(first + count) / static_cast<double>(links_.size()));
+        }
         became_.clear();
         uint64_t count = 0;
         for (const std::vector<Link>& links : links_) count += links.size();
@@ -118,6 +117,19 @@ public:
     }
 
 private:
+    void refine_links(std::vector<Link>& links, bool divides) {
+        std::vector<Link> refined;
+        for (Link link : links) {
+            link.receiver = now(link.receiver);
+            if (!is_cluster(link.source)) link.source = now(link.source);
+            if (divides) {
+                refine(link, refined);
+            } else {
+                refined.push_back(link);
+            }
+        }
+        links = std::move(refined);
+    }
     const LinkedPatch& shape(PatchCode code) const {
         return is_patch(code) ? patch_shapes_[number_of(code)] : quad_shapes_[code];
     }
@@ -236,7 +248,10 @@ private:
 
     void keep(Link link, float error, std::vector<Link>& refined) {
         if (link.factor == kUnknown && error > 0) {
-            link.factor = is_cluster(link.source) ? cluster_factor(link) : patch_factor(link);
+            // What hardly counts may be off by more.
+            const float share = limit_ > 0 ? min(error / limit_, 1.0f) : 1.0f;
+            const uint32_t rays = max(1u, static_cast<uint32_t>(share * kMostRaysOfLink));
+            link.factor = is_cluster(link.source) ? cluster_factor(link, rays) : patch_factor(link, rays);
         }
         refined.push_back(link);
     }
@@ -330,34 +345,34 @@ private:
             .x;
     }
 
-    float patch_factor(const Link& link) const {
-        Sight sights[kRaysOfLink];
-        bool met[kRaysOfLink];
+    float patch_factor(const Link& link, uint32_t rays) const {
+        Sight sights[kMostRaysOfLink];
+        bool met[kMostRaysOfLink];
         const uint32_t key = key_of(link);
         uint32_t count = 0;
-        for (uint32_t k = 0; k < kRaysOfLink; ++k) {
+        for (uint32_t k = 0; k < rays; ++k) {
             if (see(patch_of(link.receiver), patch_of(link.source), {key, k, settings_.seed}, sights[count])) ++count;
         }
         trace(sights, count, key, met);
         float sum = 0;
         for (uint32_t i = 0; i < count; ++i) sum += met[i] ? 0.0f : sights[i].factor;
-        return sum / kRaysOfLink;
+        return sum / static_cast<float>(rays);
     }
 
     /// Cosine at the receiver over pi distance^2, times how much of the cluster is seen.
-    float cluster_factor(const Link& link) const {
+    float cluster_factor(const Link& link, uint32_t rays) const {
         const Cluster& cluster = clusters_.clusters[link.source & ~kIsCluster];
         const LinkedPatch& receiver = shape(link.receiver);
         const Vec3 way = cluster.ball.centre - receiver.ball.centre;
         const float squared = length_squared(way);
         const float cosine = squared > 0 ? dot(way, receiver.normal) / sqrt(squared) : 0.0f;
         if (!(cosine > 0)) return 0;
-        Sight sights[kRaysOfLink];
-        bool met[kRaysOfLink];
+        Sight sights[kMostRaysOfLink];
+        bool met[kMostRaysOfLink];
         const uint32_t key = key_of(link);
         uint32_t count = 0;
-        for (uint32_t k = 0; k < kRaysOfLink; ++k) {
-            const uint64_t place = (uint64_t(k) << 32 | hash_words(key, k, settings_.seed).x) / kRaysOfLink;
+        for (uint32_t k = 0; k < rays; ++k) {
+            const uint64_t place = (uint64_t(k) << 32 | hash_words(key, k, settings_.seed).x) / rays;
             const auto face = cluster.first + static_cast<uint32_t>((place * cluster.count) >> 32);
             const PatchCode root = tree_.roots[clusters_.faces[face]];
             if (see(patch_of(link.receiver), patch_of(root), {key, k, settings_.seed}, sights[count])) ++count;
@@ -395,17 +410,19 @@ std::size_t most_hierarchical_bytes(uint64_t patches) {
 }
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                          const RadiositySettings& settings,
-                                          const std::function<bool(double)>& keep_going) {
+                                          const RadiositySettings& settings, const LinkProgress& progress) {
     Hierarchy hierarchy(scene, std::move(coarse), patch_size, settings);
     uint64_t passes = 0;
     double left = 1;
     bool was_interrupted = false;
+    const auto keep_going = [&](double share) {
+        was_interrupted = was_interrupted || (progress && !progress(static_cast<uint32_t>(passes), share));
+        return !was_interrupted;
+    };
     while (true) {
-        const bool divides = hierarchy.refine();
+        const bool divides = hierarchy.refine(keep_going);
         for (uint32_t k = 0; k < kSweeps; ++k) left = hierarchy.sweep();
         ++passes;
-        was_interrupted = keep_going && !keep_going(left);
         const bool is_done = !divides && !(left > static_cast<double>(settings.tolerance));
         if (is_done || was_interrupted || passes == kMostPasses) break;
         if (divides) hierarchy.divide();

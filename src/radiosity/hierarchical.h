@@ -27,12 +27,13 @@ struct HierarchicalSolution {
     bool was_interrupted = false;
 };
 
-/// `coarse`: whole triangles. They are divided until no edge is longer than `patch_size` (metres), but where the
-/// oracle asks for it alone. `keep_going` is told the share of the light that a pass has changed; false ends it. Throws
-/// Error(OverLimit) where there are more than kMostLinks links.
+/// Told the pass and the share of it that is done; false ends the solution where it is.
+using LinkProgress = std::function<bool(uint32_t pass, double share)>;
+
+/// `coarse`: whole triangles. They are divided until no edge is longer than `patch_size` (metres), but where the oracle
+/// asks for it alone. Throws Error(OverLimit) where there are more than kMostLinks links.
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                          const RadiositySettings& settings,
-                                          const std::function<bool(double left)>& keep_going = {});
+                                          const RadiositySettings& settings, const LinkProgress& progress = {});
 
 /// What it holds at most, were all patches as small as they may become.
 std::size_t most_hierarchical_bytes(uint64_t patches);

@@ -32,9 +32,9 @@ struct RadiositySettings {
     uint32_t hemicube = 128;   // pixels along an edge of a hemicube's top
     FormFactors form_factors = FormFactors::Rays;
     RadiositySolver solver = RadiositySolver::GaussSeidel;
-    float tolerance = 1e-4f;  // share of the light that may be left unsent
-    uint32_t steps = 0;       // of Southwell: patches that send at most; 0: as many as tolerance takes
-    float link_error = 0.05f; // of Hierarchical: share of the mean light that a link may be wrong by
+    float tolerance = 1e-4f; // share of the light that may be left unsent
+    uint32_t steps = 0;      // of Southwell: patches that send at most; 0: as many as tolerance takes
+    float link_error = 0.1f; // of Hierarchical: share of the mean light that a link may be wrong by
     uint32_t seed = 0;
 
     bool operator==(const RadiositySettings&) const = default;

@@ -212,9 +212,11 @@ SolvedPatches solve_rows(const SolvedScene& scene, float patch_size, const Radio
 SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const RadiositySettings& settings,
                           const SolveProgress& progress, SolveStats& stats) {
     const Stopwatch watch;
-    HierarchicalSolution solution =
-        solve_hierarchically(scene, make_patches(scene.view(), kInfinity), patch_size, settings,
-                             [&](double left) { return !progress || progress("links", std::min(1.0, 1 - left)); });
+    HierarchicalSolution solution = solve_hierarchically(
+        scene, make_patches(scene.view(), kInfinity), patch_size, settings, [&](uint32_t pass, double share) {
+            const std::string what = fmt::format("links, pass {}", pass + 1);
+            return !progress || progress(what.c_str(), share);
+        });
     stats.was_interrupted = solution.was_interrupted;
     stats.factors = solution.links;
     stats.steps = solution.passes;
