@@ -52,6 +52,8 @@ bidirectional $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator bidi
 photon_map $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator photon_map
 photon_map-direct $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator photon_map --gather direct --nearest 50
 photon_map-sky $scenes/crytek-sponza/sponza.obj --integrator photon_map --photon-search kd-tree --max-depth 6
+radiosity $scenes/cornell-box-mcguire/CornellBox-Mirror.obj --integrator radiosity --patch-size 0.3 --patch-rays 32
+radiosity-flat $scenes/sibenik/sibenik.obj --integrator radiosity --flat-patches --patch-rays 16 --subdivisions 0
 bidirectional-sky $scenes/crytek-sponza/sponza.obj --integrator bidirectional --max-depth 6
 layers $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --lpe seen=LE --lpe diffuse=L.*DE --lpe glossy=L.*[GS]E
 blurred $work/box.gltf --time 1 --shutter 0.2

@@ -206,8 +206,8 @@ private:
         const float error = error_of(link, receiver, ball);
         if (!(error > limit_)) return keep(link, error, refined);
         const bool can_divide_source = of_cluster || can_divide(link.source);
-        const bool divides_receiver =
-            can_divide(link.receiver) && (receiver.ball.radius > ball.radius || !can_divide_source);
+        const bool divides_receiver = can_divide(link.receiver) && error < kInfinity &&
+                                      (receiver.ball.radius > ball.radius || !can_divide_source);
         if (divides_receiver) {
             if (is_patch(link.receiver)) {
                 wish(link.receiver);
@@ -242,7 +242,8 @@ private:
         }
         const SentLight& sent = sent_[link.source & ~kIsCluster];
         const float most = most_form_factor(receiver, ball, kInfinity);
-        const float spread = kPi * square(ball.radius); // of what it sends, at least
+        if (most == 1 && !is_black(sent.all)) return kInfinity; // in the middle of it: it has no direction
+        const float spread = kPi * square(ball.radius);         // of what it sends, at least
         return most * luminance(sent.all) / max(spread, 1e-30f);
     }
 
