@@ -26,7 +26,8 @@ ALLOWED = {
     "shading": {"base", "math", "scene"},
     "render": {"base", "math", "image", "device", "scene", "accel", "trace", "shading"},
 }
-ALLOWED["integrators"] = ALLOWED["render"] | {"render"}
+ALLOWED["radiosity"] = ALLOWED["render"] | {"render"}
+ALLOWED["integrators"] = ALLOWED["radiosity"] | {"radiosity"}
 ALLOWED["denoise"] = ALLOWED["render"] | {"render"}
 ALLOWED["restir"] = ALLOWED["render"] | {"render"}
 ALLOWED["session"] = set(ALLOWED)
@@ -124,6 +125,9 @@ CASES = [
     ("integrators/integrator.h", '#include "formats/read_scene.h"', False),
     ("denoise/filter.h", '#include "render/film.h"', True),
     ("denoise/filter.h", '#include "integrators/integrator.h"', False),
+    ("radiosity/patches.h", '#include "render/surface.h"', True),
+    ("radiosity/patches.h", '#include "integrators/integrator.h"', False),
+    ("integrators/radiosity/radiosity.h", '#include "radiosity/patches.h"', True),
     ("restir/reservoir.h", '#include "render/surface.h"', True),
     ("restir/reservoir.h", '#include "denoise/filter.h"', False),
     ("session/open.cpp", '#include "formats/read_scene.h"', True),

@@ -58,6 +58,8 @@ photon_map-sky $scenes/crytek-sponza/sponza.obj --integrator photon_map --photon
 irradiance_cache cornell-box --integrator irradiance_cache
 irradiance_cache-mirror $scenes/cornell-box-mcguire/CornellBox-Mirror.obj --integrator irradiance_cache --accuracy 0.5
 irradiance_cache-records $scenes/sibenik/sibenik.obj --integrator irradiance_cache --show-records --max-depth 6
+radiosity $scenes/cornell-box-mcguire/CornellBox-Mirror.obj --integrator radiosity --patch-size 0.3 --patch-rays 32
+radiosity-flat $scenes/sibenik/sibenik.obj --integrator radiosity --flat-patches --patch-rays 16 --subdivisions 0
 bidirectional-sky $scenes/crytek-sponza/sponza.obj --integrator bidirectional --max-depth 6
 layers $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --lpe seen=LE --lpe diffuse=L.*DE --lpe glossy=L.*[GS]E
 blurred $work/box.gltf --time 1 --shutter 0.2

@@ -53,6 +53,9 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
     reporter.set_work("building trees");
     benched->prepared = prepare_scene(benched->scene, {}, messages);
     reporter.say_messages();
+    if (settings.integrator == IntegratorKind::Radiosity) {
+        benched->settings.radiosity = radiosity_look(flags.radiosity, benched->prepared, flags.seed, reporter);
+    }
     return benched;
 }
 

@@ -13,6 +13,7 @@ void add_render_command(CLI::App& app, int& status);
 void add_view_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_measure_command(CLI::App& app, int& status);
+void add_solve_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
 void add_lab_command(CLI::App& app, int& status);

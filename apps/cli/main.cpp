@@ -74,6 +74,7 @@ int run(int argc, char** argv, bool json) {
     add_view_command(app, status);
     add_compare_command(app, status);
     add_measure_command(app, status);
+    add_solve_command(app, status);
     add_info_command(app, status);
     add_bench_command(app, status);
     add_lab_command(app, status);

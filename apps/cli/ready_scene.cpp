@@ -75,6 +75,14 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages,
                           ready->sequence.shutter);
     ready->queue = machine.take();
+    if (settings.integrator == IntegratorKind::Radiosity) {
+        if (ready->moving->is_animated() && !flags.frames.empty()) {
+            throw Error(ErrorCode::BadInput, "--frames: radiosity is solved for one time, and this scene moves; --time "
+                                             "shows it at one (--camera-path and --turntable take it as it is)");
+        }
+        reporter.say_messages();
+        settings.radiosity = radiosity_look(flags.radiosity, ready->prepared(), flags.seed, reporter);
+    }
     return ready;
 }
 

@@ -132,6 +132,7 @@ RenderSettings light_settings(const RenderFlags& flags) {
     set_integrator(settings, flags.integrator);
     settings.photon_map = photon_map_settings(flags.photons, settings.integrator, flags.integrator);
     settings.irradiance_cache = irradiance_cache_settings(flags.cache, settings.integrator, flags.integrator);
+    check_radiosity_flags(flags.radiosity, settings.integrator, flags.integrator);
     check_integrator(settings);
     if (flags.shading_rate > 0) settings.shading_rate = flags.shading_rate;
     height_maps(flags);
@@ -185,7 +186,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->group(group);
     verb.add_option("--integrator", flags.integrator,
                     "path, or its parts direct and indirect; hybrid, cast,\nwhitted, distributed, raster, reyes; "
-                    "light, bidirectional,\nphoton_map, irradiance_cache (docs/transport.md)")
+                    "light, bidirectional,\nphoton_map, irradiance_cache, radiosity (docs/transport.md)")
         ->type_name("NAME")
         ->check(one_of(integrator_names()))
         ->capture_default_str()
@@ -220,6 +221,7 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->group(group);
     add_photon_flags(verb, flags.photons, group);
     add_irradiance_cache_flags(verb, flags.cache, group);
+    add_radiosity_flags(verb, flags.radiosity, group);
     verb.add_option("--seed", flags.seed, "of the random numbers")
         ->type_name("N")
         ->check(whole_between(0, UINT32_MAX))

@@ -9,6 +9,7 @@
 #include "apps/cli/choose_device.h"
 #include "apps/cli/irradiance_cache_flags.h"
 #include "apps/cli/photon_flags.h"
+#include "apps/cli/radiosity_flags.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
@@ -49,6 +50,7 @@ struct RenderFlags {
     std::vector<std::string> displacements; // --displacement
     PhotonFlags photons;
     IrradianceCacheFlags cache;
+    RadiosityFlags radiosity;
     float filter_radius = 0, clamp = 0;
     uint32_t max_depth = PathSettings{}.max_depth, seed = PathSettings{}.seed;
     MachineFlags machine;
@@ -72,7 +74,8 @@ std::optional<Shutter> shutter(const RenderFlags& flags);
 /// --camera-path, --turntable. `plays`: without a time, time runs.
 void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
-/// --ambient, --shading, --wireframe, --shading-rate, --displacement, those of photons and records, --seed, --filter,
+/// --ambient, --shading, --wireframe, --shading-rate, --displacement, those of photons, of records and of radiosity,
+/// --seed, --filter,
 /// --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
 

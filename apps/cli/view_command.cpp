@@ -153,6 +153,9 @@ std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSetti
     for (const std::string& name : integrator_names()) {
         set_integrator(settings, name);
         std::string why = why_dark(settings, scene);
+        if (why.empty() && settings.integrator == IntegratorKind::Radiosity && !settings.radiosity.solution) {
+            why = "radiosity: it is solved before anything is shown: pertev view --integrator radiosity";
+        }
         if (!why.empty()) dark.emplace_back(settings.integrator, std::move(why));
     }
     return dark;

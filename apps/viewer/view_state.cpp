@@ -173,7 +173,8 @@ std::vector<ViewSetting> make_settings() {
         "rasterisation first; cast, whitted and distributed: trees of rays, without most of what surfaces send on; "
         "raster: no rays at all; reyes: nor any, of micropolygons; light: particles from the lights, without what "
         "mirrors and glass show; bidirectional: all light, from both ends; photon_map: all light in the end, caustics "
-        "soon, by photons; irradiance_cache: all light, what surfaces send on nearly so, without its noise",
+        "soon, by photons; irradiance_cache: all light, what surfaces send on nearly so, without its noise; "
+        "radiosity: diffuse surfaces by patches, solved once",
         integrator_names(), [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
             RenderSettings wanted = s.picture;

@@ -5,6 +5,7 @@
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/photon_map/photon_map_integrator.h"
+#include "integrators/radiosity/radiosity_integrator.h"
 #include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 #include "integrators/reyes/reyes_integrator.h"
@@ -18,7 +19,8 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
             .sampler = settings.path.sampler,
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),
-            .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
+            .ambient = settings.ambient.value_or(Rgb{0, 0, 0}),
+            .radiosity = {}}; // which its integrator adds
 }
 
 SubpathSettings walk_settings(const IntegratorSettings& settings) {
@@ -106,6 +108,7 @@ uint32_t most_depth(IntegratorKind kind) {
     case IntegratorKind::Cast:
     case IntegratorKind::Whitted:
     case IntegratorKind::Distributed:
+    case IntegratorKind::Radiosity:
         return kMaxTreeDepth;
     case IntegratorKind::Bidirectional:
         return kMostJoinedDepth;
@@ -127,7 +130,8 @@ uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
            a.shading_rate == b.shading_rate && same_heights(a, b) && a.photon_map == b.photon_map &&
-           a.irradiance_cache == b.irradiance_cache && a.light_paths == b.light_paths && a.irradiance == b.irradiance;
+           a.irradiance_cache == b.irradiance_cache && a.radiosity == b.radiosity && a.light_paths == b.light_paths &&
+           a.irradiance == b.irradiance;
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
@@ -155,6 +159,9 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
     case IntegratorKind::IrradianceCache:
         return std::make_unique<IrradianceCacheIntegrator>(queue, walk_settings(settings), settings.irradiance_cache,
                                                            settings.body == PathBody::Loop, settings.batch);
+    case IntegratorKind::Radiosity:
+        return std::make_unique<RadiosityIntegrator>(queue, tree_settings(settings), settings.radiosity,
+                                                     settings.body == PathBody::Loop, settings.batch);
     }
     auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch,
                                                  lists_tiles(settings.integrator));
@@ -198,6 +205,8 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
         break;
     case IntegratorKind::IrradianceCache:
         static_cast<IrradianceCacheIntegrator&>(integrator).set_settings(walk_settings(to), to.irradiance_cache);
+    case IntegratorKind::Radiosity:
+        static_cast<RadiosityIntegrator&>(integrator).set_settings(tree_settings(to), to.radiosity);
         break;
     }
     return true;
@@ -218,8 +227,12 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     if (settings.integrator == IntegratorKind::IrradianceCache) {
         return IrradianceCacheIntegrator::predicted_bytes(settings.irradiance_cache, pixels, settings.batch, in_loop);
     }
-    if (in_loop) return tables;
     const uint64_t all = pixels * samples;
+    if (settings.integrator == IntegratorKind::Radiosity) {
+        return RadiosityIntegrator::predicted_bytes(tree_settings(settings), settings.radiosity, all, settings.batch,
+                                                    in_loop);
+    }
+    if (in_loop) return tables;
     switch (settings.integrator) {
     case IntegratorKind::Path:
     case IntegratorKind::Hybrid:
@@ -227,6 +240,7 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     case IntegratorKind::Reyes:
     case IntegratorKind::PhotonMap:
     case IntegratorKind::IrradianceCache:
+    case IntegratorKind::Radiosity:
         break;
     case IntegratorKind::Cast:
         return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);

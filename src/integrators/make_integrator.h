@@ -10,6 +10,7 @@
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/photon_map/photon_map_settings.h"
+#include "integrators/radiosity/radiosity_look.h"
 #include "integrators/raster/raster_settings.h"
 #include "integrators/reyes/reyes_settings.h"
 #include "math/rgb.h"
@@ -29,6 +30,7 @@ enum class IntegratorKind : uint8_t {
     Bidirectional,   // integrators/bidirectional/bidirectional.h
     PhotonMap,       // integrators/photon_map/photon_map_integrator.h
     IrradianceCache, // integrators/irradiance_cache/irradiance_cache_integrator.h
+    Radiosity,       // integrators/radiosity/radiosity_integrator.h
 };
 
 struct IntegratorSettings {
@@ -43,6 +45,7 @@ struct IntegratorSettings {
     std::shared_ptr<const HeightMaps> heights; // of Reyes: what displaces surfaces; null: nothing
     PhotonMapSettings photon_map;              // of PhotonMap
     IrradianceCacheSettings irradiance_cache;  // of IrradianceCache
+    RadiosityLook radiosity;                   // of Radiosity
 
     // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;

@@ -117,6 +117,11 @@ std::string why_dark(const RenderSettings& settings, const Scene& scene) {
                            "directional light, no environment",
                            integrator_name(settings));
     }
+    if (settings.integrator == IntegratorKind::Radiosity && !has_any_light(scene)) {
+        return "radiosity: surfaces pass light on, and this scene has none: no lamp, no point, spot or directional "
+               "light, "
+               "no environment";
+    }
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
     return fmt::format("--integrator {}: point, spot and directional lights alone light its surfaces, and {}: "
                        "--integrator distributed or path knows all lights, --ambient 0.5 lights all surfaces alike",

@@ -152,6 +152,12 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                           {"pertev.hemisphere_rays", static_cast<int32_t>(cache.hemisphere_rays)},
                           {"pertev.show_records", static_cast<int32_t>(cache.show_records)}});
     }
+    if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity.solution) {
+        const RadiositySolution& solution = *settings.radiosity.solution;
+        append(metadata, {{"pertev.radiosity", solution.made},
+                          {"pertev.radiosity_hash", solution.hash().hex()},
+                          {"pertev.flat_patches", static_cast<int32_t>(settings.radiosity.is_flat)}});
+    }
     if (settings.denoise != Denoise::None) {
         metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }

@@ -11,11 +11,15 @@ namespace {
 // A switch names each value, so that the compiler tells of one that was forgotten; these list them.
 constexpr PathLight kLights[] = {PathLight::Path, PathLight::Direct, PathLight::Indirect};
 constexpr IntegratorKind kIntegrators[] = {
-    IntegratorKind::Hybrid,  IntegratorKind::Cast, // beside Path
-    IntegratorKind::Whitted, IntegratorKind::Distributed,   IntegratorKind::Raster,    IntegratorKind::Reyes,
-    IntegratorKind::Light,   IntegratorKind::Bidirectional, IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache};
+    IntegratorKind::Hybrid,   IntegratorKind::Cast, // beside Path
+    IntegratorKind::Whitted,  IntegratorKind::Distributed,   IntegratorKind::Raster,    IntegratorKind::Reyes,
+    IntegratorKind::Light,    IntegratorKind::Bidirectional, IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache,
+    IntegratorKind::Radiosity};
 constexpr PhotonGather kGathers[] = {PhotonGather::Direct, PhotonGather::Final};
 constexpr PhotonSearch kSearches[] = {PhotonSearch::Grid, PhotonSearch::KdTree, PhotonSearch::Octree};
+constexpr FormFactors kFormFactors[] = {FormFactors::Rays, FormFactors::Hemicube};
+constexpr RadiositySolver kSolvers[] = {RadiositySolver::Southwell, RadiositySolver::GaussSeidel,
+                                        RadiositySolver::Matrix, RadiositySolver::Hierarchical};
 constexpr RasterShading kShadings[] = {RasterShading::Flat, RasterShading::Gouraud, RasterShading::Phong};
 constexpr SamplerKind kSamplers[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian,
@@ -60,6 +64,8 @@ std::string_view name_of(IntegratorKind integrator) {
         return "photon_map";
     case IntegratorKind::IrradianceCache:
         return "irradiance_cache";
+    case IntegratorKind::Radiosity:
+        return "radiosity";
     }
     return "";
 }
@@ -95,6 +101,7 @@ std::string_view integrator_name(const RenderSettings& settings) {
     case IntegratorKind::Bidirectional:
     case IntegratorKind::PhotonMap:
     case IntegratorKind::IrradianceCache:
+    case IntegratorKind::Radiosity:
         break;
     }
     return name_of(settings.integrator);
@@ -159,6 +166,11 @@ std::string_view name_of(PhotonSearch search) {
 }
 std::optional<PhotonSearch> photon_search_named(std::string_view name) { return value_named(kSearches, name); }
 std::vector<std::string> photon_search_names() { return names_of(kSearches); }
+
+std::optional<FormFactors> form_factors_named(std::string_view name) { return value_named(kFormFactors, name); }
+std::vector<std::string> form_factor_names() { return names_of(kFormFactors); }
+std::optional<RadiositySolver> solver_named(std::string_view name) { return value_named(kSolvers, name); }
+std::vector<std::string> solver_names() { return names_of(kSolvers); }
 
 std::string_view name_of(SamplerKind sampler) {
     switch (sampler) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "denoise/reconstruction_settings.h"
+#include "radiosity/radiosity_settings.h"
 #include "restir/restir_settings.h"
 #include "session/render_settings.h"
 
@@ -16,7 +17,7 @@ namespace pertev {
 
 /// The integrator, "path" by name of the part of the light that it shows: "path", "direct" or "indirect"; "hybrid",
 /// "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional", "photon_map",
-/// "irradiance_cache".
+/// "irradiance_cache", "radiosity".
 std::string_view integrator_name(const RenderSettings& settings);
 /// False, and nothing done, where there is no such integrator.
 bool set_integrator(RenderSettings& settings, std::string_view name);
@@ -34,6 +35,12 @@ std::vector<std::string> gather_names();
 std::string_view name_of(PhotonSearch search);
 std::optional<PhotonSearch> photon_search_named(std::string_view name);
 std::vector<std::string> photon_search_names();
+
+/// Of radiosity, whose values have their names in radiosity/radiosity_settings.h.
+std::optional<FormFactors> form_factors_named(std::string_view name);
+std::vector<std::string> form_factor_names();
+std::optional<RadiositySolver> solver_named(std::string_view name);
+std::vector<std::string> solver_names();
 
 std::string_view name_of(SamplerKind sampler);
 std::optional<SamplerKind> sampler_named(std::string_view name);

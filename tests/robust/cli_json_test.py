@@ -23,7 +23,7 @@ class Errors(CliTest):
         return last
 
     def test_an_error_of_the_line_is_an_object_for_every_verb_and_without_one(self):
-        for verb in ["", "render", "measure", "info", "compare", "bench", "bench rays", "bench build", "bench render", "lab",
+        for verb in ["", "render", "measure", "solve radiosity", "info", "compare", "bench", "bench rays", "bench build", "bench render", "lab",
                      "lab --thesis"]:
             for rest, says in [("--foo --json", "--foo"), ("--json --foo", "--foo"), ("--json --threads", "--threads")]:
                 with self.subTest(verb=verb, rest=rest):
@@ -33,7 +33,7 @@ class Errors(CliTest):
         self.assertIn("render", self.fail_in_json(2, "--json")["text"])
 
     def test_an_error_of_a_verb_is_an_object(self):
-        for line in ["render nowhere.obj -o x.png", "info nowhere.obj", "compare nowhere.exr nowhere.exr",
+        for line in ["render nowhere.obj -o x.png", "solve radiosity nowhere.obj -o x.rad", "info nowhere.obj", "compare nowhere.exr nowhere.exr",
                      "bench --scene nowhere.obj", "bench rays --scene nowhere.obj", "bench render --scene nowhere.obj",
                      "lab nowhere.obj", "lab --thesis nowhere.obj"]:
             with self.subTest(line=line):

@@ -23,10 +23,15 @@ FLAGS = {
               "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
               "--accuracy --hemisphere-rays --show-records "
+              "--patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver --tolerance --steps --link-error --solution "
+              "--flat-patches "
               "--real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
               "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --quiet -q --json",
+    "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
+                       "--tolerance --steps --link-error --seed --time --lamp --efficacy --allow-path --environment --environment-rotation "
+                       "--environment-scale --two-sided-lights --threads --no-bvh-cache --quiet -q --json",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
@@ -400,6 +405,7 @@ class WhatIsRendered(CliTest):
                    ["--integrator", "irradiance_cache"], ["--integrator", "irradiance_cache", "--accuracy", "0.7"],
                    ["--integrator", "irradiance_cache", "--hemisphere-rays", "50"],
                    ["--integrator", "irradiance_cache", "--show-records"], ["--integrator", "cast", "--ambient", "0.5"],
+                   ["--integrator", "radiosity", "--patch-size", "0.3", "--patch-rays", "16", "--subdivisions", "0"],
                    ["--integrator", "whitted", "--ambient", "0.5,0.2,0.1"],
                    ["--integrator", "raster", "--ambient", "0.5"], ["--integrator", "raster", "--wireframe", "--ambient", "0.5"],
                    ["--integrator", "reyes", "--ambient", "0.5"],

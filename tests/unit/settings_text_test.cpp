@@ -32,7 +32,7 @@ TEST_CASE("every value has a name") {
     CHECK(tone_map_names() == std::vector<std::string>{"srgb", "agx", "aces", "neutral"});
     CHECK(integrator_names() == std::vector<std::string>{"path", "direct", "indirect", "hybrid", "cast", "whitted",
                                                          "distributed", "raster", "reyes", "light", "bidirectional",
-                                                         "photon_map", "irradiance_cache"});
+                                                         "photon_map", "irradiance_cache", "radiosity"});
     CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion"});
 }
 

@@ -70,8 +70,10 @@ private:
 struct Cast;
 struct Whitted;
 struct Distributed;
+struct Radiosity;
 extern template class RayTreeIntegrator<Cast>;
 extern template class RayTreeIntegrator<Whitted>;
 extern template class RayTreeIntegrator<Distributed>;
+extern template class RayTreeIntegrator<Radiosity>;
 
 } // namespace pertev

@@ -6,6 +6,7 @@
 
 #include "math/rgb.h"
 #include "math/sampler.h"
+#include "radiosity/radiosity_view.h"
 
 namespace pertev {
 
@@ -18,7 +19,7 @@ struct RayTreeSettings {
     bool has_ambient = false; // it was asked for; else the integrator has its own
     Rgb ambient = {0, 0, 0};
 
-    bool operator==(const RayTreeSettings&) const = default;
+    RadiosityView radiosity; // of Radiosity: what surfaces receive; on the device
 };
 
 /// What the random numbers of a sample are drawn by.

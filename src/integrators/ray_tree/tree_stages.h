@@ -103,7 +103,7 @@ private:
             }
         }
         if (surface.is_unlit || ray.depth >= settings.max_depth) return;
-        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface, time};
+        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface, time, {hit.u, hit.v}};
         ask_for_lights(vertex);
         if (is_last) Algorithm::follow(vertex);
     }

@@ -50,6 +50,7 @@ struct TreeVertex {
     const PendingRay& ray; // that ends here
     const Surface& surface;
     float time; // of all rays of the tree
+    Vec2 place; // on the triangle: weights of its second and third corner
 
     HD Vec3 wo() const { return -ray.direction; }
     HD uint32_t number() const { return state.rays - 1; }

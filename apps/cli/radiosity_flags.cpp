@@ -1,0 +1,176 @@
+#include "apps/cli/radiosity_flags.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "base/byte_units.h"
+#include "base/message_text.h"
+#include "session/settings_text.h"
+
+namespace pertev {
+namespace {
+
+std::pair<const char*, bool> given_flags_of_solving(const RadiosityFlags& flags) {
+    for (const auto& [flag, is_given] :
+         {std::pair("--patch-size", flags.patch_size > 0), std::pair("--subdivisions", flags.subdivisions.has_value()),
+          std::pair("--contrast", flags.contrast > 0), std::pair("--form-factors", !flags.form_factors.empty()),
+          std::pair("--patch-rays", flags.rays > 0), std::pair("--hemicube", flags.hemicube > 0),
+          std::pair("--solver", !flags.solver.empty()), std::pair("--tolerance", flags.tolerance > 0),
+          std::pair("--steps", flags.steps > 0), std::pair("--link-error", flags.link_error > 0)}) {
+        if (is_given) return {flag, true};
+    }
+    return {"", false};
+}
+
+} // namespace
+
+void add_solving_flags(CLI::App& verb, RadiosityFlags& flags, const char* group) {
+    const RadiositySettings defaults;
+    verb.add_option("--patch-size", flags.patch_size,
+                    "of radiosity: no edge of a patch is longer (a 16th of the\nscene's longest side)")
+        ->type_name("METRES")
+        ->check(length_m())
+        ->group(group);
+    verb.add_option("--subdivisions", flags.subdivisions,
+                    fmt::format("of radiosity: how often patches are divided where light\nchanges over them ({})",
+                                defaults.subdivisions))
+        ->type_name("N")
+        ->check(whole_between(0, kMostSubdivisions))
+        ->group(group);
+    verb.add_option("--contrast", flags.contrast,
+                    fmt::format("of radiosity: it changes there, by this share ({})", defaults.contrast))
+        ->type_name("X")
+        ->check(number_above_zero())
+        ->group(group);
+    verb.add_option("--form-factors", flags.form_factors,
+                    fmt::format("of radiosity: rays or hemicube ({})", name_of(defaults.form_factors)))
+        ->type_name("NAME")
+        ->check(one_of(form_factor_names()))
+        ->group(group);
+    verb.add_option("--patch-rays", flags.rays, fmt::format("of radiosity: rays of a patch ({})", defaults.rays))
+        ->type_name("N")
+        ->check(whole_between(kLeastPatchRays, kMostPatchRays))
+        ->group(group);
+    verb.add_option("--hemicube", flags.hemicube,
+                    fmt::format("of radiosity by hemicubes: pixels along an edge of the top ({})", defaults.hemicube))
+        ->type_name("PIXELS")
+        ->check(whole_between(kLeastHemicube, kMostHemicube))
+        ->group(group);
+    verb.add_option(
+            "--solver", flags.solver,
+            fmt::format("of radiosity: gauss-seidel, southwell (progressive refinement),\nmatrix or hierarchical ({})",
+                        name_of(defaults.solver)))
+        ->type_name("NAME")
+        ->check(one_of(solver_names()))
+        ->group(group);
+    verb.add_option("--tolerance", flags.tolerance,
+                    fmt::format("of radiosity: share of the light that may be left ({})", defaults.tolerance))
+        ->type_name("X")
+        ->check(number_above_zero(1))
+        ->group(group);
+    verb.add_option("--steps", flags.steps,
+                    "of southwell: at most so many patches send; what is left is\nshown as ambient light (any number)")
+        ->type_name("N")
+        ->check(whole_between(1, UINT32_MAX))
+        ->group(group);
+    verb.add_option("--link-error", flags.link_error,
+                    fmt::format("of hierarchical: a link may be wrong by this share of the mean\nlight ({})",
+                                defaults.link_error))
+        ->type_name("X")
+        ->check(number_above_zero())
+        ->group(group);
+}
+
+void add_radiosity_flags(CLI::App& verb, RadiosityFlags& flags, const char* group) {
+    add_solving_flags(verb, flags, group);
+    verb.add_option("--solution", flags.solution,
+                    "of radiosity: a file that pertev solve radiosity wrote (the\nscene is solved first)")
+        ->type_name("FILE")
+        ->check(file_name())
+        ->group(group);
+    verb.add_flag("--flat-patches", flags.flat_patches, "of radiosity: each patch evenly lit, as it was solved")
+        ->group(group);
+}
+
+RadiositySettings radiosity_settings(const RadiosityFlags& flags, uint32_t seed) {
+    RadiositySettings settings;
+    settings.patch_size = flags.patch_size;
+    settings.seed = seed;
+    if (flags.subdivisions) settings.subdivisions = *flags.subdivisions;
+    if (flags.contrast > 0) settings.contrast = flags.contrast;
+    if (flags.tolerance > 0) settings.tolerance = flags.tolerance;
+    if (flags.rays > 0) settings.rays = flags.rays;
+    if (flags.hemicube > 0) settings.hemicube = flags.hemicube / 2 * 2; // the sides have half of them
+    if (!flags.form_factors.empty()) settings.form_factors = *form_factors_named(flags.form_factors);
+    if (!flags.solver.empty()) settings.solver = *solver_named(flags.solver);
+    settings.steps = flags.steps;
+    if (flags.link_error > 0) settings.link_error = flags.link_error;
+    refuse(flags.link_error > 0 && settings.solver != RadiositySolver::Hierarchical,
+           "--link-error: of --solver hierarchical");
+    refuse(flags.hemicube > 0 && settings.form_factors != FormFactors::Hemicube,
+           "--hemicube: of --form-factors hemicube");
+    refuse(flags.steps > 0 && settings.solver != RadiositySolver::Southwell, "--steps: of --solver southwell");
+    refuse(flags.tolerance > 0 && settings.solver == RadiositySolver::Matrix,
+           "--tolerance: --solver matrix leaves nothing; leave out one of them");
+    refuse(flags.contrast > 0 && settings.subdivisions == 0, "--contrast: with --subdivisions 0 no patch is divided");
+    return settings;
+}
+
+void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrator, const std::string& name) {
+    const auto [flag, is_given] = given_flags_of_solving(flags);
+    if (integrator != IntegratorKind::Radiosity) {
+        refuse(is_given, fmt::format("{}: of --integrator radiosity; {} has no patches", flag, name));
+        refuse(!flags.solution.empty(), fmt::format("--solution: of --integrator radiosity; {} has none", name));
+        refuse(flags.flat_patches, fmt::format("--flat-patches: of --integrator radiosity; {} has none", name));
+        return;
+    }
+    refuse(is_given && !flags.solution.empty(),
+           fmt::format("{}: --solution has been solved already; leave out one of them", flag));
+    refuse(!flags.solution.empty() && !std::filesystem::exists(flags.solution),
+           fmt::format("--solution {}: there is no such file", flags.solution));
+    radiosity_settings(flags, 0);
+}
+
+SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiositySettings& settings, Reporter& reporter) {
+    listen_for_interrupt();
+    reporter.set_work("solving radiosity");
+    const uint64_t patches = predicted_patches(prepared, settings);
+    const std::size_t bytes = predicted_bytes(patches, settings);
+    reporter.say(fmt::format("radiosity: at most {} of {:.4g} m, {:.0f} MiB of this machine's memory",
+                             counted(patches, "patch's side"), patch_size_of(prepared, settings), mebibytes(bytes)));
+    reporter.event(fmt::format(R"({{"event":"radiosity","most_patches":{},"patch_size":{},"predicted_bytes":{}}})",
+                               patches, patch_size_of(prepared, settings), bytes));
+    SolvedRadiosity solved = solve_radiosity(prepared, settings, [&](const char* what, double share) {
+        reporter.progress(share, what);
+        return !interrupted();
+    });
+    reporter.end_progress();
+    const SolveStats& stats = solved.stats;
+    reporter.say(
+        fmt::format("{} patches send, {} are shown; {} form factors ({:.0f} bytes a patch) in {:.2f} s, "
+                    "solved in {:.2f} s ({} steps, {:.2g} left), divided in {:.2f} s",
+                    stats.patches, stats.shown, stats.factors,
+                    static_cast<double>(stats.bytes) / static_cast<double>(std::max<uint64_t>(stats.patches, 1)),
+                    stats.factor_seconds, stats.solve_seconds, stats.steps, stats.left, stats.divide_seconds));
+    reporter.event(fmt::format(
+        R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"steps":{},"left":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{}}})",
+        stats.patches, stats.shown, stats.factors, stats.bytes, stats.steps, json_number(stats.left),
+        stats.factor_seconds, stats.solve_seconds, stats.divide_seconds, json_string(solved.solution.hash().hex()),
+        stats.was_interrupted));
+    return solved;
+}
+
+RadiosityLook radiosity_look(const RadiosityFlags& flags, const PreparedScene& prepared, uint32_t seed,
+                             Reporter& reporter) {
+    RadiositySolution solution = flags.solution.empty()
+                                     ? solve_and_report(prepared, radiosity_settings(flags, seed), reporter).solution
+                                     : read_solution(flags.solution, *prepared.scene);
+    return {std::make_shared<const RadiositySolution>(std::move(solution)), flags.flat_patches};
+}
+
+} // namespace pertev

@@ -1,0 +1,91 @@
+// pertev solve radiosity SCENE -o FILE: light that does not depend on a camera, solved once for any number of pictures.
+
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "accel/bvh/bvh_cache.h"
+#include "apps/cli/choose_device.h"
+#include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/radiosity_flags.h"
+#include "apps/cli/scene_options.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/write_file_atomically.h"
+#include "session/check_integrator.h"
+#include "session/moving_scene.h"
+
+namespace pertev {
+namespace {
+
+struct SolveFlags {
+    SceneOptions scene;
+    std::string output;
+    RadiosityFlags radiosity;
+    std::optional<double> time_s;
+    uint32_t seed = 0, threads = 0;
+    bool no_cache = false;
+    ReportFlags report;
+};
+
+int solve(const SolveFlags& flags) {
+    Reporter reporter(flags.report);
+    Messages& messages = reporter.messages();
+    const RadiositySettings settings = radiosity_settings(flags.radiosity, flags.seed); // before anything is read
+    check_writable(flags.output);
+    set_thread_count(static_cast<int>(flags.threads));
+    reporter.set_work(fmt::format("loading {}", flags.scene.scene));
+    Scene scene = load_scene(flags.scene, messages);
+    RenderSettings shown;
+    shown.integrator = IntegratorKind::Radiosity;
+    check_light(shown, scene, messages);
+    PrepareOptions prepare = prepare_options(shown, false);
+    prepare.may_be_better = true;
+    if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
+    reporter.set_work("building trees");
+    const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
+    reporter.say_messages();
+    const SolvedRadiosity solved = solve_and_report(moving.prepared(), settings, reporter);
+    reporter.set_work("writing");
+    write_solution(flags.output, solved.solution);
+    reporter.output(flags.output);
+    const bool cut_short = solved.stats.was_interrupted;
+    reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, cut_short ? ", as far as it was solved" : "",
+                             solved.solution.hash().hex()));
+    return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
+}
+
+} // namespace
+
+void add_solve_command(CLI::App& app, int& status) {
+    CLI::App& all = *app.add_subcommand("solve", "Solve a scene's light once, for any number of pictures");
+    all.require_subcommand(1);
+    CLI::App& verb = *all.add_subcommand("radiosity", "Of diffuse surfaces, by patches: pertev render --integrator "
+                                                      "radiosity --solution FILE shows it");
+    const auto flags = std::make_shared<SolveFlags>();
+    add_scene_name(verb, flags->scene);
+    verb.add_option("-o,--output", flags->output, "the solution")->type_name("FILE")->check(file_name())->required();
+    add_solving_flags(verb, flags->radiosity, "Radiosity");
+    verb.add_option("--seed", flags->seed, "of the random numbers")
+        ->type_name("N")
+        ->check(whole_between(0, UINT32_MAX))
+        ->capture_default_str()
+        ->group("Radiosity");
+    verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
+        ->type_name("SECONDS")
+        ->check(number_between(-1e9f, 1e9f));
+    add_allow_path(verb, flags->scene.allowed_paths);
+    add_light_options(verb, flags->scene);
+    verb.add_option("--threads", flags->threads, "of the CPU (all)")
+        ->type_name("N")
+        ->check(whole_between(1, 4096))
+        ->group("Machine");
+    verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");
+    add_report_flags(verb, flags->report);
+    verb.callback([flags, &status] { status = solve(*flags); });
+}
+
+} // namespace pertev

@@ -1,0 +1,48 @@
+// Each patch in turn gathers what all others send by now, until a sweep changes hardly anything. The matrix is
+// diagonally dominant, so that it comes to an end.
+
+#include "radiosity/radiosity_system.h"
+
+namespace pertev {
+namespace {
+
+double sum_of(Rgb c) { return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b); }
+constexpr uint64_t kMostSweeps = 10000; // of reflectances near 1
+
+} // namespace
+
+SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double tolerance, const KeepSolving& keep_going) {
+    const std::size_t count = system.patches.size();
+    SolvedSystem solved;
+    solved.irradiance.assign(count, {});
+    std::vector<Rgb> radiosity(count);
+    for (std::size_t i = 0; i < count; ++i) radiosity[i] = system.patches[i].exitance;
+    do {
+        double changed = 0, all = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const SystemPatch& patch = system.patches[i];
+            double r = 0, g = 0, b = 0;
+            for (const FormFactor& from : system.row(i)) {
+                const auto factor = static_cast<double>(from.factor);
+                const Rgb sent = radiosity[from.patch];
+                r += factor * static_cast<double>(sent.r);
+                g += factor * static_cast<double>(sent.g);
+                b += factor * static_cast<double>(sent.b);
+            }
+            const Rgb gathered = {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
+            solved.irradiance[i] = system.direct[i] + gathered;
+            const Rgb now = patch.exitance + patch.reflectance * solved.irradiance[i];
+            const auto area = static_cast<double>(patch.area);
+            const Rgb change = now - radiosity[i];
+            changed += area * sum_of({abs(change.r), abs(change.g), abs(change.b)});
+            all += area * sum_of(now);
+            radiosity[i] = now;
+        }
+        ++solved.steps;
+        solved.left = all > 0 ? changed / all : 0;
+        if (keep_going && !keep_going(solved.left)) break;
+    } while (solved.left > tolerance && solved.steps < kMostSweeps);
+    return solved;
+}
+
+} // namespace pertev

@@ -1,0 +1,98 @@
+#include "radiosity/light_rays.h"
+
+#include "math/sampler.h"
+#include "render/find_hits.h"
+#include "shading/power_heuristic.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kRaysAtOnce = 64;
+
+struct AskedLight {
+    Ray ray;
+    TriangleId target;
+    Rgb irradiance;            // of lights that are no patches
+    PatchCode lamp = kNoPatch; // else the patch,
+    float factor = 0;          // and what it counts for
+    uint32_t key = 0;
+};
+
+} // namespace
+
+float LightRays::weight_of_light(float light_pdf, float cosine) const {
+    if (hemisphere == 0) return 1;
+    return power_heuristic(static_cast<float>(count) * light_pdf,
+                           static_cast<float>(hemisphere) * pdf_cosine_hemisphere(cosine));
+}
+
+float LightRays::weight_of_hemisphere(float light_pdf, float cosine) const {
+    if (count == 0 || !(light_pdf > 0)) return 1;
+    return power_heuristic(static_cast<float>(hemisphere) * pdf_cosine_hemisphere(cosine),
+                           static_cast<float>(count) * light_pdf);
+}
+
+PatchPlace place_on_patch(const SceneView& scene, const Patch& patch, Vec2 u) {
+    const PlacedTriangle triangle = place_on(scene, patch, patch.corners.place(sample_uniform_triangle(u)));
+    return {triangle.position, triangle.error, normal_of(scene, patch, triangle)};
+}
+
+void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, const LightRays& rays,
+                    FormFactorRow& row) {
+    const SceneView& view = scene.scene.view();
+    const LightSetView& lights = view.lights;
+    if (lights.choice.starts == nullptr) return;
+    AskedLight asked[kRaysAtOnce];
+    bool met[kRaysAtOnce];
+    const float each = 1.0f / static_cast<float>(rays.count);
+    for (uint32_t first = 0; first < rays.count; first += kRaysAtOnce) {
+        uint32_t count = 0;
+        for (uint32_t k = first; k < min(rays.count, first + kRaysAtOnce); ++k) {
+            const SampleKey of_ray = {key.pixel, k, key.seed};
+            const Vec2 on_patch = sample_2d(SamplerKind::Sobol, of_ray, kGroupLights);
+            const PatchPlace place = place_on_patch(view, patch, on_patch);
+            const SampleBits u = sample_bits(SamplerKind::Sobol, of_ray, kGroupLights, Pair::Last);
+            LightSample light;
+            if (!sample_light(lights, place.position, u, light)) continue;
+            const float cosine = dot(light.wi, place.normal);
+            if (!(cosine > 0)) continue;
+            const bool is_lamp = light.instance != kNoLight;
+            if (is_lamp && !rays.finds_lamps) continue;
+            AskedLight& to = asked[count];
+            to = {};
+            to.key = coin_key(of_ray, 0, true);
+            if (is_lamp) {
+                const uint32_t side = side_met(view, light.instance, light.primitive, light.wi);
+                Vec3 weights = {1.0f - light.b1 - light.b2, light.b1, light.b2};
+                to.lamp = scene.sources.view().find(face_of(view, light.instance, light.primitive, side), weights);
+                if (!is_patch(to.lamp)) continue;
+                const bool is_hole = view.any_alpha != 0 && !AcceptHit{view, {}, {}, to.key}.passes_alpha(
+                                                                light.instance, light.primitive, light.b1, light.b2);
+                if (is_hole) continue;
+                to.factor = rays.weight_of_light(light.pdf, cosine) * each * cosine * kInvPi / light.pdf;
+            } else {
+                const bool is_sky = !light.is_delta;
+                const float weight = is_sky && !rays.finds_sky_alone ? rays.weight_of_light(light.pdf, cosine) : 1.0f;
+                to.irradiance = (weight * each * cosine / light.pdf) * light.radiance;
+            }
+            to.ray = ray_to_light(light, place.position, place.error, place.normal);
+            if (!light.is_delta) to.target = {light.instance, light.primitive};
+            ++count;
+        }
+        const auto accept_of = [&](uint32_t i) {
+            return AcceptHit{view, {patch.instance, patch.primitive}, asked[i].target, asked[i].key};
+        };
+        find_occlusions(
+            scene.scene.trees(), count, RayOrder::Scattered, [&](uint32_t i) { return asked[i].ray; }, accept_of, met);
+        for (uint32_t i = 0; i < count; ++i) {
+            if (met[i]) continue;
+            if (is_patch(asked[i].lamp)) {
+                row.factors.push_back({number_of(asked[i].lamp), asked[i].factor});
+            } else {
+                row.direct += asked[i].irradiance;
+            }
+        }
+    }
+}
+
+} // namespace pertev

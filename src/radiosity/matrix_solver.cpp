@@ -1,0 +1,77 @@
+// The system as one matrix, solved by elimination: what Goral et al. 1984 do. No row changes places: the diagonal
+// dominates. One matrix a channel, as reflectances differ.
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "radiosity/radiosity_settings.h"
+#include "radiosity/radiosity_system.h"
+
+namespace pertev {
+namespace {
+
+double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : k == 1 ? c.g : c.b); }
+
+/// Radiosities of channel `k`; empty where it was to end.
+std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSolving& keep_going) {
+    const std::size_t n = system.patches.size();
+    std::vector<double> matrix(n * n, 0.0), b(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const SystemPatch& patch = system.patches[i];
+        const double reflectance = channel(patch.reflectance, k);
+        matrix[i * n + i] = 1;
+        for (const FormFactor& from : system.row(i)) {
+            matrix[i * n + from.patch] -= reflectance * static_cast<double>(from.factor);
+        }
+        b[i] = channel(patch.exitance, k) + reflectance * channel(system.direct[i], k);
+    }
+    for (std::size_t pivot = 0; pivot < n; ++pivot) {
+        const double* from = matrix.data() + pivot * n;
+        parallel_for(n - pivot - 1, 32, [&](uint64_t below) {
+            double* row = matrix.data() + (pivot + 1 + below) * n;
+            if (row[pivot] == 0) return;
+            const double factor = row[pivot] / from[pivot];
+            for (std::size_t column = pivot; column < n; ++column) row[column] -= factor * from[column];
+            b[pivot + 1 + below] -= factor * b[pivot];
+        });
+        const double left = static_cast<double>(3 - k) / 3 - static_cast<double>(pivot) / static_cast<double>(3 * n);
+        if (pivot % 64 == 0 && keep_going && !keep_going(left)) return {};
+    }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t column = i + 1; column < n; ++column) b[i] -= matrix[i * n + column] * b[column];
+        b[i] /= matrix[i * n + i];
+    }
+    return b;
+}
+
+} // namespace
+
+SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going) {
+    const std::size_t n = system.patches.size();
+    if (n > kMostMatrixPatches) {
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("--solver matrix: {} patches; at most {} (--solver gauss-seidel or southwell solves "
+                                "more, a larger --patch-size makes fewer)",
+                                n, kMostMatrixPatches));
+    }
+    SolvedSystem solved;
+    std::vector<double> radiosity[3];
+    for (int k = 0; k < 3; ++k) {
+        radiosity[k] = eliminate(system, k, keep_going);
+        if (radiosity[k].empty() && n > 0) throw Error(ErrorCode::Interrupted, "interrupted");
+    }
+    solved.steps = n;
+    for (std::size_t i = 0; i < n; ++i) {
+        double gathered[3] = {};
+        for (const FormFactor& from : system.row(i)) {
+            for (int k = 0; k < 3; ++k) gathered[k] += static_cast<double>(from.factor) * radiosity[k][from.patch];
+        }
+        solved.irradiance.push_back(system.direct[i] + Rgb{static_cast<float>(gathered[0]),
+                                                           static_cast<float>(gathered[1]),
+                                                           static_cast<float>(gathered[2])});
+    }
+    return solved;
+}
+
+} // namespace pertev

@@ -1,0 +1,83 @@
+#pragma once
+
+// Where on a triangle which patch lies. Each side of a triangle is a face with a tree of its own: a quad divides what
+// it stands for into four by the middles of the edges, and the leaves are patches.
+//
+// Faces are numbered 2 t + s, t being the triangle's number in the scene (SceneView::first_triangle) and s its side: 0
+// where its geometric normal points to, 1 behind it.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/vec2.h"
+#include "math/vec3.h"
+
+namespace pertev {
+
+/// What a root or a child of a quad says: a patch's number with kIsPatch, a quad's number, or kNoPatch.
+using PatchCode = uint32_t;
+inline constexpr PatchCode kIsPatch = 0x80000000u, kNoPatch = 0xffffffffu;
+HD inline constexpr bool is_patch(PatchCode code) { return code >= kIsPatch && code != kNoPatch; }
+HD inline constexpr uint32_t number_of(PatchCode code) { return code & ~kIsPatch; }
+
+/// Children at the corners, then the one in the middle, whose corners are the middles of the edges opposite to them. A
+/// child that is a quad has the greater number.
+struct PatchQuad {
+    PatchCode child[4];
+};
+
+struct PatchTreeView {
+    const PatchCode* roots; // [faces]
+    const PatchQuad* quads;
+
+    /// The patch of `face` at `weights`, those of the triangle's corners; the weights become those of the patch's
+    /// corners. kNoPatch where the face has none.
+    HD PatchCode find(uint32_t face, Vec3& weights) const {
+        PatchCode code = roots[face];
+        while (code < kIsPatch) code = quads[code].child[descend(weights)];
+        return code;
+    }
+
+    /// Which child `weights` lie in; they become those of its corners.
+    HD static uint32_t descend(Vec3& weights) {
+        const Vec3 twice = 2.0f * weights;
+        if (twice.x >= 1) {
+            weights = {twice.x - 1.0f, twice.y, twice.z};
+            return 0;
+        }
+        if (twice.y >= 1) {
+            weights = {twice.x, twice.y - 1.0f, twice.z};
+            return 1;
+        }
+        if (twice.z >= 1) {
+            weights = {twice.x, twice.y, twice.z - 1.0f};
+            return 2;
+        }
+        weights = {1.0f - twice.x, 1.0f - twice.y, 1.0f - twice.z};
+        return 3;
+    }
+};
+
+/// Corners of a patch, places on its triangle (weights of the second and third corner).
+struct PatchCorners {
+    Vec2 at[3] = {{0, 0}, {1, 0}, {0, 1}};
+
+    HD PatchCorners child(uint32_t number) const {
+        const Vec2 ab = 0.5f * (at[0] + at[1]), bc = 0.5f * (at[1] + at[2]), ca = 0.5f * (at[2] + at[0]);
+        switch (number) {
+        case 0:
+            return {{at[0], ab, ca}};
+        case 1:
+            return {{ab, at[1], bc}};
+        case 2:
+            return {{ca, bc, at[2]}};
+        default:
+            return {{bc, ca, ab}};
+        }
+    }
+    /// `b`: weights of the second and third corner of the patch.
+    HD Vec2 place(Vec2 b) const { return at[0] + (b.x * (at[1] - at[0]) + b.y * (at[2] - at[0])); }
+    HD Vec2 middle() const { return place({1.0f / 3, 1.0f / 3}); }
+};
+
+} // namespace pertev

@@ -1,0 +1,51 @@
+#pragma once
+
+// What a radiosity solution is asked for beside its scene.
+
+#include <cstdint>
+
+namespace pertev {
+
+/// How much of the light that leaves a patch arrives at which others.
+enum class FormFactors : uint8_t {
+    Rays,     // by rays through the scene: radiosity/ray_rows.cpp
+    Hemicube, // by projection on half a cube: radiosity/hemicube.h
+};
+
+/// How the system of linear equations is solved. All of them come to one solution.
+enum class RadiositySolver : uint8_t {
+    Southwell,    // progressive refinement: the patch with most unsent light sends next
+    GaussSeidel,  // each patch gathers in turn
+    Matrix,       // elimination
+    Hierarchical, // by links of patches and clusters of all sizes: radiosity/hierarchical.h
+};
+
+/// As on the command line: "rays", "gauss-seidel".
+const char* name_of(FormFactors method);
+const char* name_of(RadiositySolver solver);
+
+struct RadiositySettings {
+    float patch_size = 0;      // metres: no edge of a patch is longer; 0: kPatchOfScene of the scene's longest side
+    uint32_t subdivisions = 2; // how often a patch is divided where light changes over it
+    float contrast = 0.1f;     // it changes there: by this share of the mean of its corners
+    uint32_t rays = 256;       // of a patch
+    uint32_t hemicube = 128;   // pixels along an edge of a hemicube's top
+    FormFactors form_factors = FormFactors::Rays;
+    RadiositySolver solver = RadiositySolver::GaussSeidel;
+    float tolerance = 1e-4f; // share of the light that may be left unsent
+    uint32_t steps = 0;      // of Southwell: patches that send at most; 0: as many as tolerance takes
+    float link_error = 0.1f; // of Hierarchical: share of the mean light that a link may be wrong by
+    uint32_t seed = 0;
+
+    bool operator==(const RadiositySettings&) const = default;
+};
+
+inline constexpr float kPatchOfScene = 1.0f / 16;
+inline constexpr uint32_t kMostPatches = 1u << 25;
+inline constexpr uint32_t kMostSubdivisions = 8;
+inline constexpr uint32_t kLeastPatchRays = 16, kMostPatchRays = 1u << 20;
+inline constexpr uint32_t kLeastHemicube = 8, kMostHemicube = 2048;
+inline constexpr uint64_t kMostLinks = uint64_t(1) << 27; // RadiositySolver::Hierarchical: 1.5 GiB
+inline constexpr uint32_t kMostMatrixPatches = 6000;      // RadiositySolver::Matrix: 275 MiB, a minute
+
+} // namespace pertev

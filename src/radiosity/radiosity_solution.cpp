@@ -1,0 +1,160 @@
+#include "radiosity/radiosity_solution.h"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/read_file.h"
+#include "base/write_file_atomically.h"
+
+namespace pertev {
+namespace {
+
+constexpr char kMagic[16] = {'p', 'e', 'r', 't', 'e', 'v', ' ', 'r', 'a', 'd', 'i', 'o', 's', 'i', 't', '1'};
+
+/// What a file begins with; then its text, roots, quads and patches.
+struct Header {
+    char magic[16];
+    uint64_t text, roots, quads, patches; // bytes; elements
+    Hash128 geometry, content;            // of all that follows, and of the ambient light
+    float ambient[3];
+    uint32_t unused;
+};
+static_assert(sizeof(Header) == 96);
+
+Hash128 content_hash(const RadiositySolution& solution) {
+    Hasher hasher;
+    const float ambient[] = {solution.ambient.r, solution.ambient.g, solution.ambient.b};
+    hasher.add_values(std::span<const float>(ambient));
+    hasher.add(std::as_bytes(std::span(solution.made)));
+    hasher.add(std::as_bytes(std::span(solution.roots)));
+    hasher.add(std::as_bytes(std::span(solution.quads)));
+    hasher.add(std::as_bytes(std::span(solution.patches)));
+    return hasher.result();
+}
+
+[[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
+    throw Error(ErrorCode::BadInput, fmt::format("{}: {}", path.string(), why));
+}
+
+/// Copies the next of `bytes` and leaves the rest.
+template <class T>
+void take(std::span<const std::byte>& bytes, std::span<T> to) {
+    if (!to.empty()) std::memcpy(to.data(), bytes.data(), to.size_bytes());
+    bytes = bytes.subspan(to.size_bytes());
+}
+
+/// Whether looking up ends, at a patch that is there.
+bool is_sound(const RadiositySolution& solution) {
+    const auto is_code = [&](PatchCode code, std::size_t least_quad) {
+        if (code == kNoPatch) return true;
+        if (is_patch(code)) return number_of(code) < solution.patches.size();
+        return code >= least_quad && code < solution.quads.size();
+    };
+    const auto is_root = [&](PatchCode code) { return is_code(code, 0); };
+    if (!std::ranges::all_of(solution.roots, is_root)) return false;
+    for (std::size_t i = 0; i < solution.quads.size(); ++i) {
+        for (const PatchCode code : solution.quads[i].child) {
+            if (!is_code(code, i + 1)) return false;
+        }
+    }
+    return true;
+}
+
+bool is_light(Rgb c) { return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0; }
+
+bool has_light_alone(const RadiositySolution& solution) {
+    return is_light(solution.ambient) && std::ranges::all_of(solution.patches, [](const PatchLight& patch) {
+               return is_light(patch.mean) && std::ranges::all_of(patch.corner, is_light);
+           });
+}
+
+} // namespace
+
+Hash128 RadiositySolution::hash() const { return content_hash(*this); }
+
+Hash128 geometry_hash(const Scene& scene) {
+    Hasher hasher;
+    for (const Mesh& mesh : scene.meshes) {
+        hasher.add_value(static_cast<uint64_t>(mesh.positions.size()));
+        hasher.add(std::as_bytes(std::span(mesh.positions)));
+        hasher.add_value(static_cast<uint64_t>(mesh.indices.size()));
+        hasher.add_values(std::span<const uint32_t>(mesh.indices));
+    }
+    for (const Instance& instance : scene.instances) {
+        hasher.add_value(instance.mesh);
+        hasher.add_value(instance.material);
+        hasher.add_value(static_cast<uint32_t>(instance.is_hidden));
+        if (!instance.is_hidden) hasher.add(std::as_bytes(std::span(&instance.world_from_local, 1)));
+    }
+    return hasher.result();
+}
+
+void write_solution(const std::filesystem::path& path, const RadiositySolution& solution) {
+    Header header = {};
+    std::memcpy(header.magic, kMagic, sizeof kMagic);
+    header.text = solution.made.size();
+    header.roots = solution.roots.size();
+    header.quads = solution.quads.size();
+    header.patches = solution.patches.size();
+    header.geometry = solution.geometry;
+    header.content = content_hash(solution);
+    header.ambient[0] = solution.ambient.r, header.ambient[1] = solution.ambient.g,
+    header.ambient[2] = solution.ambient.b;
+    std::vector<std::byte> bytes;
+    bytes.reserve(sizeof header + solution.made.size() + solution.bytes());
+    const auto append = [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+    append(std::as_bytes(std::span(&header, 1)));
+    append(std::as_bytes(std::span(solution.made)));
+    append(std::as_bytes(std::span(solution.roots)));
+    append(std::as_bytes(std::span(solution.quads)));
+    append(std::as_bytes(std::span(solution.patches)));
+    write_file_atomically(path, bytes);
+}
+
+RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene) {
+    const std::vector<std::byte> file = read_file(path);
+    std::span<const std::byte> bytes = file;
+    Header header;
+    if (bytes.size() < sizeof header) refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
+    take(bytes, std::span(&header, 1));
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
+        refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
+    }
+    constexpr uint64_t kMost = uint64_t(1) << 40; // so that no sum below passes 64 bits
+    const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMost;
+    const uint64_t size = !has_sizes ? 0
+                                     : header.text + header.roots * sizeof(PatchCode) +
+                                           header.quads * sizeof(PatchQuad) + header.patches * sizeof(PatchLight);
+    if (!has_sizes || size != bytes.size()) {
+        refuse_file(path, fmt::format("a radiosity solution that was cut short or damaged: {} bytes, it says {}",
+                                      file.size(), sizeof header + size));
+    }
+    RadiositySolution solution;
+    solution.geometry = header.geometry;
+    solution.ambient = {header.ambient[0], header.ambient[1], header.ambient[2]};
+    solution.made.resize(header.text);
+    solution.roots.resize(header.roots);
+    solution.quads.resize(header.quads);
+    solution.patches.resize(header.patches);
+    take(bytes, std::span(solution.made));
+    take(bytes, std::span(solution.roots));
+    take(bytes, std::span(solution.quads));
+    take(bytes, std::span(solution.patches));
+    if (content_hash(solution) != header.content || !is_sound(solution) || !has_light_alone(solution)) {
+        refuse_file(path, "a radiosity solution that was damaged: what it holds is not what was written");
+    }
+    uint64_t triangles = 0;
+    for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
+    if (solution.geometry != geometry_hash(scene) || solution.roots.size() != 2 * triangles) {
+        refuse_file(path,
+                    "a radiosity solution of another scene, or of this one before its surfaces were changed (pertev "
+                    "solve radiosity makes a new one)");
+    }
+    return solution;
+}
+
+} // namespace pertev

@@ -1,0 +1,44 @@
+#pragma once
+
+// A radiosity solution: the irradiance of every patch of a scene's surfaces. It does not depend on a camera, so that
+// one file serves any number of pictures of the scene.
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "radiosity/radiosity_view.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+struct RadiositySolution {
+    Hash128 geometry;             // geometry_hash of its scene
+    std::string made;             // by which settings, a JSON object
+    std::vector<PatchCode> roots; // [faces]
+    std::vector<PatchQuad> quads;
+    std::vector<PatchLight> patches;
+    Rgb ambient; // RadiosityView's
+
+    std::size_t bytes() const {
+        return roots.size() * sizeof(PatchCode) + quads.size() * sizeof(PatchQuad) +
+               patches.size() * sizeof(PatchLight);
+    }
+    RadiosityView view() const { return {{roots.data(), quads.data()}, patches.data(), ambient}; }
+    /// Of all its bytes.
+    Hash128 hash() const;
+};
+
+/// Changes with the vertices, triangles and materials' numbers of every instance and with where it stands.
+Hash128 geometry_hash(const Scene& scene);
+
+/// Throws Error(FileWrite).
+void write_solution(const std::filesystem::path& path, const RadiositySolution& solution);
+
+/// Throws Error(BadInput) that says why where there is no such file, where it is none, damaged or cut short, or where
+/// it is of another scene: whatever it holds, what is returned is safe to look things up in.
+RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene);
+
+} // namespace pertev

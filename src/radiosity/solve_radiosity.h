@@ -1,0 +1,53 @@
+#pragma once
+
+// Solves a scene's radiosity, on the host by all threads: patches, a row of form factors for each, the linear system,
+// then patches are divided where light changes over them, and each part gathers what the system's patches send.
+//
+// Source: Goral et al. 1984; patches that send and smaller ones that receive: Cohen, Greenberg, Immel, Brock, "An
+// Efficient Radiosity Approach for Realistic Image Synthesis", IEEE CG&A 6(3), 1986.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "radiosity/radiosity_settings.h"
+#include "radiosity/radiosity_solution.h"
+#include "render/prepare_scene.h"
+
+namespace pertev {
+
+/// What is being done, and the share of it that is done, [0, 1]. False ends it: see solve_radiosity.
+using SolveProgress = std::function<bool(const char* what, double share)>;
+
+struct SolveStats {
+    uint64_t patches = 0, shown = 0; // that send; that are shown
+    uint64_t factors = 0;            // not 0
+    uint64_t steps = 0;              // SolvedSystem's
+    double left = 0;                 // SolvedSystem's
+    double factor_seconds = 0, solve_seconds = 0, divide_seconds = 0;
+    std::size_t bytes = 0; // that the system took, of the host's memory
+    bool was_interrupted = false;
+};
+
+struct SolvedRadiosity {
+    RadiositySolution solution;
+    SolveStats stats;
+};
+
+/// Metres: what is asked for, or kPatchOfScene of the scene's longest side.
+float patch_size_of(const PreparedScene& prepared, const RadiositySettings& settings);
+
+/// Of the host's memory that solve_radiosity takes for so many patches, at most.
+std::size_t predicted_bytes(uint64_t patches, const RadiositySettings& settings);
+/// Patches at most that the scene will be divided into, before they are subdivided.
+uint64_t predicted_patches(const PreparedScene& prepared, const RadiositySettings& settings);
+
+/// The same bytes for any number of threads. Where `progress` returns false during form factors Error(Interrupted) is
+/// thrown; later the solution has what has been solved by then. Throws as SolvedScene and make_patches.
+SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
+                                const SolveProgress& progress = {});
+
+/// As a JSON object: what makes the bytes of the solution.
+std::string json_of(const RadiositySettings& settings);
+
+} // namespace pertev

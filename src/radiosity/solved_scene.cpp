@@ -1,0 +1,27 @@
+#include "radiosity/solved_scene.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace pertev {
+
+SolvedScene::SolvedScene(const PreparedScene& prepared) : queue_(Queue::make_cpu()) {
+    if (!prepared.poses.empty()) {
+        throw Error(
+            ErrorCode::BadInput,
+            fmt::format("radiosity: skins or morph targets move the vertices of this scene's meshes ({} of them), "
+                        "and patches stay where they are; --integrator path knows such scenes",
+                        prepared.poses.size()));
+    }
+    scene_.emplace(queue_, prepared);
+    if (scene_->view().first_triangle == nullptr || scene_->view().triangle_count >= 1u << 30) {
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("radiosity: {} triangles in all instances of the scene; at most {}",
+                                scene_->view().triangle_count, (1u << 30) - 1));
+    }
+    tracer_.emplace(queue_, *prepared.structures, default_tracers(false));
+    tracer_->set_surfaces(scene_->view());
+}
+
+} // namespace pertev

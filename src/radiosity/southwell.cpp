@@ -1,0 +1,134 @@
+// Southwell's relaxation: the patch with the most unsent light sends it, to all that receive of it, and so on. Where
+// this ends early most of the light is there, and what is not is shown as ambient light.
+
+#include <bit>
+
+#include "radiosity/radiosity_system.h"
+
+namespace pertev {
+namespace {
+
+struct Receiver {
+    uint32_t patch;
+    float factor; // from the receiver to the sender
+};
+
+/// Of each patch, those that receive of it, by ascending number.
+class Receivers {
+public:
+    explicit Receivers(const RadiositySystem& system)
+        : starts_(system.patches.size() + 1), all_(system.factor_count()) {
+        for (const std::vector<FormFactor>& row : system.rows) {
+            for (const FormFactor& from : row) ++starts_[from.patch + 1];
+        }
+        for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
+        std::vector<uint64_t> next(starts_.begin(), starts_.end() - 1);
+        for (std::size_t i = 0; i < system.patches.size(); ++i) {
+            for (const FormFactor& from : system.row(i)) {
+                all_[next[from.patch]++] = {static_cast<uint32_t>(i), from.factor};
+            }
+        }
+    }
+    std::span<const Receiver> of(std::size_t sender) const {
+        return {all_.data() + starts_[sender], static_cast<std::size_t>(starts_[sender + 1] - starts_[sender])};
+    }
+
+private:
+    std::vector<uint64_t> starts_;
+    std::vector<Receiver> all_;
+};
+
+/// The patch with most unsent light; the first of several. A tree of winners, so that a change costs its height.
+class MostUnsent {
+public:
+    explicit MostUnsent(std::size_t count) : leaves_(std::bit_ceil(count)), most_(2 * leaves_, 0.0) {}
+
+    void set(std::size_t patch, double light) {
+        std::size_t at = leaves_ + patch;
+        most_[at] = light;
+        for (at /= 2; at > 0; at /= 2) {
+            const double larger = std::max(most_[2 * at], most_[2 * at + 1]);
+            if (most_[at] == larger) return; // nothing changes above
+            most_[at] = larger;
+        }
+    }
+    std::size_t first() const {
+        std::size_t at = 1;
+        while (at < leaves_) at = most_[2 * at] >= most_[2 * at + 1] ? 2 * at : 2 * at + 1;
+        return at - leaves_;
+    }
+
+private:
+    std::size_t leaves_;
+    std::vector<double> most_;
+};
+
+double light_of(const SystemPatch& patch, Rgb unsent) {
+    return static_cast<double>(patch.area) *
+           (static_cast<double>(unsent.r) + static_cast<double>(unsent.g) + static_cast<double>(unsent.b));
+}
+
+/// What unsent light would be everywhere if it were spread evenly, with all of its reflections.
+Rgb ambient_of(const RadiositySystem& system, const std::vector<Rgb>& unsent) {
+    double area = 0, sum[3] = {}, reflected[3] = {};
+    for (std::size_t i = 0; i < unsent.size(); ++i) {
+        const SystemPatch& patch = system.patches[i];
+        const auto size = static_cast<double>(patch.area);
+        const Rgb u = unsent[i], r = patch.reflectance;
+        area += size;
+        sum[0] += size * static_cast<double>(u.r), reflected[0] += size * static_cast<double>(r.r);
+        sum[1] += size * static_cast<double>(u.g), reflected[1] += size * static_cast<double>(r.g);
+        sum[2] += size * static_cast<double>(u.b), reflected[2] += size * static_cast<double>(r.b);
+    }
+    if (!(area > 0)) return {};
+    const auto of = [&](int k) { return static_cast<float>(sum[k] / area / std::max(1 - reflected[k] / area, 1e-3)); };
+    return {of(0), of(1), of(2)};
+}
+
+} // namespace
+
+SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance, uint64_t steps,
+                                const KeepSolving& keep_going) {
+    const std::size_t count = system.patches.size();
+    SolvedSystem solved;
+    solved.irradiance = system.direct;
+    std::vector<Rgb> unsent(count);
+    MostUnsent most(count);
+    double all = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const SystemPatch& patch = system.patches[i];
+        unsent[i] = patch.exitance + patch.reflectance * system.direct[i];
+        most.set(i, light_of(patch, unsent[i]));
+        all += light_of(patch, unsent[i]);
+    }
+    const Receivers receivers(system);
+    double left = all; // rounds a little each step; counted anew now and then
+    const auto count_left = [&] {
+        left = 0;
+        for (std::size_t i = 0; i < count; ++i) left += light_of(system.patches[i], unsent[i]);
+        solved.left = all > 0 ? left / all : 0;
+    };
+    count_left();
+    constexpr uint64_t kLook = 256;
+    while (solved.left > tolerance && (steps == 0 || solved.steps < steps)) {
+        const std::size_t sender = most.first();
+        const Rgb sent = unsent[sender];
+        unsent[sender] = {};
+        most.set(sender, 0);
+        for (const Receiver& receiver : receivers.of(sender)) {
+            const Rgb received = receiver.factor * sent;
+            const SystemPatch& patch = system.patches[receiver.patch];
+            solved.irradiance[receiver.patch] += received;
+            unsent[receiver.patch] += patch.reflectance * received;
+            most.set(receiver.patch, light_of(patch, unsent[receiver.patch]));
+        }
+        if (++solved.steps % kLook != 0) continue;
+        count_left();
+        if (keep_going && !keep_going(solved.left)) break;
+    }
+    count_left();
+    solved.ambient = ambient_of(system, unsent);
+    return solved;
+}
+
+} // namespace pertev

@@ -1,0 +1,115 @@
+// The one-picture law for pictures of a radiosity solution: the same bytes for any number of threads, any split of the
+// samples, all stages over all samples or a few a thread. With --device cuda the GPU joins in.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "radiosity/solve_radiosity.h"
+#include "session/session.h"
+#include "tests/support/check_one_picture.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+RadiosityLook look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RadiositySettings settings;
+    settings.patch_size = patch_size;
+    settings.rays = rays;
+    settings.subdivisions = 1;
+    return {std::make_shared<const RadiositySolution>(solve_radiosity(prepared, settings).solution), false};
+}
+
+RenderSettings shown(const RadiosityLook& look) {
+    RenderSettings settings;
+    settings.width = 37; // odd on purpose: tiles do not fit
+    settings.height = 21;
+    settings.samples = 4;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+    settings.transparent = true;
+    settings.integrator = IntegratorKind::Radiosity;
+    settings.path.max_depth = 6;
+    settings.radiosity = look;
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, bodies or how many are in flight") {
+    RenderSettings settings = shown(look_at_mixed_scene(1));
+    for (const bool is_flat : {false, true}) {
+        settings.radiosity.is_flat = is_flat;
+        const test::CheckedPicture reference = test::check_one_picture(test::make_mixed_scene(), settings);
+        CHECK(reference.rays.bounce > 37 * 21 / 10); // mirrors and glass
+        CHECK(reference.rays.shadow == 0);
+    }
+}
+
+TEST_CASE("a picture of radiosity tells the same of the first surface as path tracing, and of what emits") {
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings = shown(look_at_mixed_scene(2));
+    const auto layers_of = [&](IntegratorKind integrator) {
+        settings.integrator = integrator;
+        RenderResult result = test::render(queue, test::make_mixed_scene(), test::camera_with_lens(), settings);
+        std::ranges::fill(result.picture.pixels, 0.0f);
+        return test::render_hash(result);
+    };
+    CHECK(layers_of(IntegratorKind::Radiosity) == layers_of(IntegratorKind::Path));
+    settings.path.max_depth = 0;
+    settings.integrator = IntegratorKind::Radiosity;
+    const Hash128 seen = test::checked_picture(queue, test::make_mixed_scene(), settings).hash;
+    settings.integrator = IntegratorKind::Path;
+    CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
+}
+
+TEST_CASE("a session goes to radiosity, another solution and back, and each picture is whole") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const RadiosityLook looks[] = {look_at_mixed_scene(2), look_at_mixed_scene(1)};
+    RenderSettings settings = shown(looks[0]);
+    Session session(queue, prepared, test::camera_with_lens(), settings);
+    for (const auto& [integrator, number] :
+         {std::pair(IntegratorKind::Radiosity, 0), std::pair(IntegratorKind::Path, 0),
+          std::pair(IntegratorKind::Radiosity, 1), std::pair(IntegratorKind::Radiosity, 0)}) {
+        settings.integrator = integrator;
+        settings.radiosity = looks[number];
+        session.set_settings(settings);
+        CHECK(session.render(settings.samples) == settings.samples);
+        CHECK(test::render_hash(session.result()) ==
+              test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings)));
+    }
+    settings.radiosity.solution.reset();
+    session.set_settings(settings);
+    CHECK(test::bad_input_message([&] { session.render(1); }) ==
+          "--integrator radiosity: there is no solution to show");
+    RadiositySolution other = *looks[0].solution;
+    other.roots.pop_back();
+    settings.radiosity.solution = std::make_shared<const RadiositySolution>(std::move(other));
+    session.set_settings(settings);
+    CHECK(test::bad_input_message([&] { session.render(1); }).find("of another scene") != std::string::npos);
+}
+
+TEST_CASE("memory of pictures of radiosity is said beforehand") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = shown(look_at_mixed_scene(2));
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        Queue queue = test::queue_asked_for();
+        Session session(queue, prepared, test::camera_with_lens(), settings);
+        session.render(settings.samples);
+        const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
+        CHECK(queue.allocated_bytes() >= predicted);
+        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
+    }
+}

@@ -1,0 +1,136 @@
+// Hierarchical radiosity: its links against rows of form factors, light that is known, and how few they are.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/parallel_for.h"
+#include "radiosity/cluster_tree.h"
+#include "tests/support/radiosity_scenes.h"
+#include "tests/support/random.h"
+
+using namespace pertev;
+
+namespace {
+
+Scene room_with_boxes() {
+    Scene scene = test::closed_box(test::white(0.6f));
+    test::add(scene, test::sheet({0, 0.98f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}),
+              test::lamp_material(0, 5)); // its front down
+    test::add(scene, test::sheet({-0.3f, -0.2f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), test::white(0.4f));
+    return scene;
+}
+
+SolvedRadiosity solved_by(const Scene& scene, RadiositySolver solver, float patch_size, float link_error = 0.05f) {
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RadiositySettings settings;
+    settings.solver = solver;
+    settings.patch_size = patch_size;
+    settings.link_error = link_error;
+    settings.subdivisions = 0;
+    return solve_radiosity(prepared, settings);
+}
+
+/// Root of the mean squared difference of what is shown all over the scene, over the mean.
+double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
+    double squares = 0, sum = 0, count = 0;
+    test::Random random(3);
+    for (uint32_t face = 0; face < a.roots.size(); ++face) {
+        for (int i = 0; i < 64; ++i) {
+            const Vec2 at = sample_uniform_triangle(random.pair());
+            const auto x = static_cast<double>(a.view().irradiance(face, at.x, at.y).g),
+                       y = static_cast<double>(b.view().irradiance(face, at.x, at.y).g);
+            squares += (x - y) * (x - y), sum += y, count += 1;
+        }
+    }
+    return std::sqrt(squares / count) / (sum / count);
+}
+
+} // namespace
+
+TEST_CASE("links come to the light that rows of form factors find, the nearer the less they may be wrong by") {
+    const Scene scene = room_with_boxes();
+    const SolvedRadiosity rows = solved_by(scene, RadiositySolver::GaussSeidel, 0.2f);
+    double before = 1e9;
+    uint64_t links_before = 0;
+    for (const float link_error : {0.8f, 0.2f, 0.05f}) {
+        const SolvedRadiosity links = solved_by(scene, RadiositySolver::Hierarchical, 0.2f, link_error);
+        const double difference = difference_of(links.solution, rows.solution);
+        CAPTURE(link_error);
+        CAPTURE(difference);
+        CHECK(difference < 1.05 * before); // few links may be lucky
+        CHECK(links.stats.factors > links_before);
+        CHECK(links.stats.left < 1e-3);
+        before = difference;
+        links_before = links.stats.factors;
+    }
+    CHECK(before < 0.05);
+    // All pairs of patches would be this many.
+    CHECK(links_before < rows.stats.patches * rows.stats.patches / 10);
+}
+
+TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by links too") {
+    const float reflectance = 0.5f;
+    const SolvedRadiosity solved =
+        solved_by(test::closed_box(test::lamp_material(reflectance, 1)), RadiositySolver::Hierarchical, 0.4f, 0.02f);
+    const double known = 3.14159265 / (1 - static_cast<double>(reflectance));
+    double sum = 0;
+    for (uint32_t triangle = 0; triangle < 12; ++triangle) {
+        for (const Vec2 at : {Vec2{0.3f, 0.3f}, Vec2{0.1f, 0.5f}, Vec2{0.7f, 0.2f}}) {
+            sum += static_cast<double>(solved.solution.view().irradiance(2 * triangle, at.x, at.y).g) / 36;
+        }
+    }
+    CHECK(sum == doctest::Approx(known).epsilon(0.03));
+}
+
+TEST_CASE("links make the same bytes by any number of threads") {
+    const Scene scene = room_with_boxes();
+    const Hash128 reference = solved_by(scene, RadiositySolver::Hierarchical, 0.5f).solution.hash();
+    for (const int threads : {1, 5}) {
+        set_thread_count(threads);
+        CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f).solution.hash() == reference);
+    }
+    set_thread_count(0);
+    CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() != reference);
+}
+
+TEST_CASE("what a cluster sends is known by direction") {
+    test::Random random(9);
+    SentLight sent;
+    std::vector<Vec3> normals;
+    for (int i = 0; i < 200; ++i) {
+        Vec3 normal = random.direction();
+        normal.z = abs(normal.z); // a hill
+        normals.push_back(normal);
+        sent.add(normal, {0.5f, 1, 0});
+    }
+    for (int i = 0; i < 50; ++i) {
+        const Vec3 direction = random.direction();
+        double exact = 0;
+        for (const Vec3 normal : normals) exact += static_cast<double>(max(dot(normal, direction), 0.0f));
+        CHECK(std::abs(static_cast<double>(sent.towards(direction).g) - exact) < 0.06 * 200);
+        CHECK(sent.towards(direction).b == 0);
+    }
+}
+
+TEST_CASE("clusters hold each face once, within their balls") {
+    test::Random random(4);
+    std::vector<uint32_t> faces;
+    std::vector<Ball> balls;
+    for (uint32_t i = 0; i < 1000; ++i) {
+        faces.push_back(7 * i);
+        balls.push_back({random.point(-3, 3), random.within(0.01f, 0.5f)});
+    }
+    const ClusterTree tree = make_clusters(faces, balls);
+    CHECK(tree.clusters.size() == 1999);
+    std::vector<uint32_t> found = tree.faces;
+    std::ranges::sort(found);
+    CHECK(found == faces);
+    for (const Cluster& cluster : tree.clusters) {
+        for (uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+            const Ball& ball = balls[tree.faces[i] / 7];
+            CHECK(length(ball.centre - cluster.ball.centre) + ball.radius <= 1.0001f * cluster.ball.radius);
+        }
+    }
+}

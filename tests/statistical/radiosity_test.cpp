@@ -1,0 +1,126 @@
+// Radiosity against light that is known, and against path tracing: its error falls with the size of its patches, to a
+// stated bound.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "session/open_scene.h"
+#include "tests/support/meshes.h"
+#include "tests/support/options.h"
+#include "tests/support/radiosity_scenes.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+RadiosityLook solved(const PreparedScene& prepared, const RadiositySettings& settings) {
+    return {std::make_shared<const RadiositySolution>(solve_radiosity(prepared, settings).solution), false};
+}
+
+Image shown_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
+                    const RadiosityLook& look) {
+    settings.integrator = IntegratorKind::Radiosity;
+    settings.radiosity = look;
+    return render_picture(queue, prepared, camera, settings).picture;
+}
+
+/// Root of the mean of (a - b)^2 / (b^2 + 0.01): pixels with the lamp in them, far brighter than all others, count as
+/// others do.
+double relative_difference(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const auto x = static_cast<double>(a.pixels[i]), y = static_cast<double>(b.pixels[i]);
+        sum += (x - y) * (x - y) / (y * y + 0.01);
+    }
+    return std::sqrt(sum / static_cast<double>(a.pixels.size()));
+}
+
+} // namespace
+
+TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 - r)") {
+    Messages messages;
+    const float reflectance = 0.6f, radiance = 2;
+    const Scene scene = test::closed_box(test::lamp_material(reflectance, radiance));
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const double known = std::numbers::pi * static_cast<double>(radiance) / (1 - static_cast<double>(reflectance));
+    for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
+        for (const RadiositySolver solver :
+             {RadiositySolver::Southwell, RadiositySolver::GaussSeidel, RadiositySolver::Matrix}) {
+            RadiositySettings settings;
+            settings.patch_size = 0.8f;
+            settings.rays = 64;
+            settings.hemicube = 32;
+            settings.tolerance = 1e-6f;
+            settings.form_factors = method;
+            settings.solver = solver;
+            const RadiositySolution solution = solve_radiosity(prepared, settings).solution;
+            const RadiosityView view = solution.view();
+            for (uint32_t triangle = 0; triangle < 12; ++triangle) {
+                const Rgb inside = view.irradiance(2 * triangle, 0.3f, 0.2f);
+                const auto received = static_cast<double>(inside.g); // what all others send
+                CHECK(received == doctest::Approx(known).epsilon(2e-4));
+            }
+        }
+    }
+}
+
+TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and shows its albedo") {
+    Messages messages;
+    const Scene scene = test::make_furnace_scene(0.7f);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
+        RadiositySettings settings;
+        settings.patch_size = 0.7f;
+        settings.rays = method == FormFactors::Rays ? 64 : 4096; // hemicubes see the sky by a quarter as many
+        settings.hemicube = 8;
+        settings.form_factors = method;
+        settings.subdivisions = 0;
+        const RadiosityLook look = solved(prepared, settings);
+        Camera camera;
+        camera.world_from_camera = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
+        camera.fov_y = 0.1f; // within the sphere
+        RenderSettings picture;
+        picture.width = picture.height = 8;
+        picture.samples = 4;
+        Queue queue = test::queue_asked_for();
+        const Image image = shown_picture(queue, prepared, camera, picture, look);
+        for (const float value : image.pixels) CHECK(static_cast<double>(value) == doctest::Approx(0.7).epsilon(0.01));
+    }
+}
+
+TEST_CASE("radiosity comes to path tracing's picture of the Cornell box as patches become smaller") {
+    Messages messages;
+    const Scene scene = open_scene({.scene = "cornell-box"}, messages);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::queue_asked_for();
+    RenderSettings picture;
+    picture.width = picture.height = 20;
+    picture.filter = PixelFilter::Box;
+    picture.path.max_depth = 32;
+    picture.samples = 1024;
+    const Camera camera = scene.cameras.front();
+    const Image reference = render_picture(queue, prepared, camera, picture).picture;
+    picture.samples = 64;
+    const auto look_by = [&](float patch_of_scene, uint32_t subdivisions) {
+        RadiositySettings settings;
+        settings.patch_size = patch_of_scene * max_component(bounds_of(scene).size());
+        settings.subdivisions = subdivisions;
+        return solved(prepared, settings);
+    };
+    double before = 1e9;
+    for (const float size : {1.0f / 2, 1.0f / 4, 1.0f / 8, 1.0f / 16}) {
+        const Image image = shown_picture(queue, prepared, camera, picture, look_by(size, 0));
+        const double error = relative_difference(image, reference);
+        CAPTURE(size);
+        CAPTURE(error);
+        CHECK(error < 0.8 * before);
+        before = error;
+    }
+    CHECK(before < 0.05);
+    const Image divided = shown_picture(queue, prepared, camera, picture, look_by(1.0f / 8, 2));
+    CHECK(relative_difference(divided, reference) < 0.05);
+    CHECK(test::mean_of(divided) == doctest::Approx(test::mean_of(reference)).epsilon(0.01));
+}

@@ -1,0 +1,210 @@
+// Patches, what is shown of them, and the file that a solution is kept in.
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "base/read_file.h"
+#include "integrators/make_integrator.h"
+#include "radiosity/corner_light.h"
+#include "tests/support/options.h"
+#include "tests/support/radiosity_scenes.h"
+#include "tests/support/random.h"
+#include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+RadiositySettings quick_settings() {
+    RadiositySettings settings;
+    settings.patch_size = 0.8f;
+    settings.rays = 64;
+    return settings;
+}
+
+Scene lit_box() {
+    Scene scene = test::closed_box(test::white(0.5f));
+    test::add(scene, test::sheet({0.2f, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}), test::lamp_material(0, 5));
+    return scene;
+}
+
+RadiositySolution solution_of(const Scene& scene, const RadiositySettings& settings = quick_settings()) {
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    return solve_radiosity(prepared, settings).solution;
+}
+
+void write_bytes(const std::filesystem::path& path, const std::vector<std::byte>& bytes) {
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+} // namespace
+
+TEST_CASE("patches cover their triangles, no edge is longer than asked for, and each place finds its own") {
+    test::PatchedScene patched(lit_box(), 0.8f);
+    double area = 0;
+    for (const Patch& patch : patched.tree.patches) {
+        if (patch.side() == 0 && patch.instance < 6) area += static_cast<double>(patch.area);
+        const PlacedTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+        for (int k = 0; k < 3; ++k) {
+            const Vec2 a = patch.corners.at[k], b = patch.corners.at[(k + 1) % 3];
+            CHECK(length(triangle.at(a.x, a.y) - triangle.at(b.x, b.y)) <= 0.8f);
+        }
+    }
+    CHECK(area == doctest::Approx(24).epsilon(1e-5));
+    for (uint32_t i = 0; i < 40; i += 7) patched.tree.split(patched.solved.view(), i);
+    std::size_t looked_up = 0;
+    for (uint32_t i = 0; i < patched.tree.patches.size(); ++i) {
+        const Patch& patch = patched.tree.patches[i];
+        for (const Vec2 b : {Vec2{0.2f, 0.3f}, Vec2{0.6f, 0.3f}, Vec2{0.1f, 0.8f}}) {
+            const Vec2 at = patch.corners.place(b);
+            Vec3 weights = {1.0f - at.x - at.y, at.x, at.y};
+            CHECK(patched.tree.view().find(patch.face, weights) == (kIsPatch | i));
+            CHECK(weights.y == doctest::Approx(b.x).epsilon(1e-4));
+            CHECK(weights.z == doctest::Approx(b.y).epsilon(1e-4));
+            ++looked_up;
+        }
+    }
+    CHECK(looked_up == 3 * patched.tree.patches.size());
+}
+
+TEST_CASE("light that is shown has no gap where a patch meets smaller ones") {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 1), test::white(0.5f));
+    test::PatchedScene patched(std::move(scene), 1.5f); // four patches a triangle
+    for (const uint32_t i : {0u, 0u, 3u}) patched.tree.split(patched.solved.view(), i);
+    std::vector<Rgb> irradiance;
+    for (const Patch& patch : patched.tree.patches) {
+        const Vec2 middle = patch.corners.middle();
+        irradiance.push_back(grey(1 + middle.x + 3 * middle.y * middle.y));
+    }
+    const SceneView& view = patched.solved.view();
+    const std::vector<PatchLight> lights = light_corners(view, patched.tree, irradiance, 2);
+    const RadiosityView shown = {patched.tree.view(), lights.data(), {}};
+    // Across each edge of each patch, from both sides.
+    int compared = 0;
+    for (const Patch& patch : patched.tree.patches) {
+        if (patch.side() != 0) continue;
+        const Vec2 middle = patch.corners.middle();
+        for (int k = 0; k < 3; ++k) {
+            const Vec2 a = patch.corners.at[k], b = patch.corners.at[(k + 1) % 3];
+            for (const float t : {0.1f, 0.3f, 0.7f, 0.9f}) {
+                const Vec2 edge = a + t * (b - a);
+                const Vec2 inside = edge + 1e-3f * (middle - edge), outside = edge - 1e-3f * (middle - edge);
+                if (min(outside.x, min(outside.y, 1 - outside.x - outside.y)) < 0) continue;
+                const Rgb one = shown.irradiance(patch.face, inside.x, inside.y),
+                          other = shown.irradiance(patch.face, outside.x, outside.y);
+                CHECK(abs(one.r - other.r) < 0.02f);
+                ++compared;
+            }
+        }
+    }
+    CHECK(compared > 100);
+    const RadiosityView flat = {patched.tree.view(), lights.data(), grey(7), true};
+    CHECK(flat.irradiance(patched.tree.patches[5].face, patched.tree.patches[5].corners.middle().x,
+                          patched.tree.patches[5].corners.middle().y) == irradiance[5] + grey(7));
+}
+
+TEST_CASE("a solution comes back from its file, and another scene's or a damaged one is refused") {
+    const std::filesystem::path path = test::scratch_folder() / "solution";
+    const Scene scene = lit_box();
+    const RadiositySolution solution = solution_of(scene);
+    write_solution(path, solution);
+    const RadiositySolution back = read_solution(path, scene);
+    CHECK(back.hash() == solution.hash());
+    CHECK(back.geometry == solution.geometry);
+    CHECK(back.made == solution.made);
+
+    const auto why = [&](const Scene& of) { return test::bad_input_message([&] { read_solution(path, of); }); };
+    Scene moved = scene;
+    moved.instances[6].world_from_local = make_translation({0, 0, 0.01f});
+    CHECK(why(moved).find("of another scene") != std::string::npos);
+    Scene dented = scene;
+    dented.meshes[0].positions[1].x += 0x1p-20f;
+    CHECK(why(dented).find("of another scene") != std::string::npos);
+    Scene brighter = scene; // the same surfaces
+    brighter.materials[6].emission = grey(50);
+    CHECK(why(brighter) == "no error");
+
+    const std::vector<std::byte> whole = read_file(path);
+    for (const std::size_t length :
+         {std::size_t(0), std::size_t(15), std::size_t(95), whole.size() / 2, whole.size() - 1}) {
+        write_bytes(path, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)});
+        CHECK(why(scene) != "no error");
+    }
+    test::Random random(5);
+    for (int i = 0; i < 300; ++i) { // a bit somewhere
+        std::vector<std::byte> damaged = whole;
+        const std::size_t at = i < 96 ? static_cast<std::size_t>(i) : random.below(static_cast<uint32_t>(whole.size()));
+        if (at >= 92 && at < 96) continue; // no part of it
+        damaged[at] ^= std::byte(1u << random.below(8));
+        write_bytes(path, damaged);
+        CAPTURE(at);
+        CHECK(why(scene) != "no error");
+    }
+    std::filesystem::remove(path);
+    CHECK(why(scene) != "no error");
+}
+
+TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {
+    const Scene scene = lit_box();
+    for (const auto& [method, solver] : {std::pair(FormFactors::Rays, RadiositySolver::Southwell),
+                                         std::pair(FormFactors::Hemicube, RadiositySolver::GaussSeidel),
+                                         std::pair(FormFactors::Rays, RadiositySolver::Matrix)}) {
+        RadiositySettings settings = quick_settings();
+        settings.rays = 16;
+        settings.hemicube = 16;
+        settings.form_factors = method;
+        settings.solver = solver;
+        const Hash128 reference = solution_of(scene, settings).hash();
+        for (const int threads : {1, 5}) {
+            set_thread_count(threads);
+            CHECK(solution_of(scene, settings).hash() == reference);
+        }
+        set_thread_count(0);
+        settings.seed = 1;
+        CHECK(solution_of(scene, settings).hash() != reference);
+    }
+}
+
+TEST_CASE("a scene that cannot be solved is refused in a line") {
+    const auto why = [](const Scene& scene, RadiositySettings settings) {
+        const auto error = test::thrown_error([&] { solution_of(scene, settings); });
+        return error ? std::string(error->what()) : std::string("no error");
+    };
+    Scene mirrors;
+    test::add(mirrors, test::floor_at(0, 1), test::mirror());
+    test::add(mirrors, test::floor_at(1, 1), test::lamp_material(0, 1));
+    CHECK(why(mirrors, quick_settings()).find("no surface of this scene reflects diffusely") != std::string::npos);
+    RadiositySettings tiny = quick_settings();
+    tiny.patch_size = 1e-4f;
+    CHECK(why(lit_box(), tiny).find("--patch-size 0.0001: divides this scene into") != std::string::npos);
+    const auto stop = [](const char*, double) { return false; };
+    Messages messages;
+    const Scene scene = lit_box();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto error = test::thrown_error([&] { solve_radiosity(prepared, quick_settings(), stop); });
+    CHECK(error.has_value());
+    CHECK(error->code() == ErrorCode::Interrupted);
+}
+
+TEST_CASE("the memory of a system is said beforehand") {
+    Messages messages;
+    const Scene scene = lit_box();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
+        RadiositySettings settings = quick_settings();
+        settings.form_factors = method;
+        settings.hemicube = 16;
+        const uint64_t patches = predicted_patches(prepared, settings);
+        const SolveStats stats = solve_radiosity(prepared, settings).stats;
+        CHECK(stats.patches <= patches);
+        CHECK(patches <= 2 * stats.patches);
+        CHECK(stats.bytes <= predicted_bytes(patches, settings));
+    }
+}

@@ -1,0 +1,134 @@
+// The solvers of a radiosity system: all come to the same light, each on the way that it says.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "radiosity/radiosity_settings.h"
+#include "radiosity/radiosity_system.h"
+#include "tests/support/random.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+/// Patches of different sizes in a closed room whose form factors keep F_ij A_i = F_ji A_j.
+RadiositySystem room_of(std::size_t count, float reflectance, float exitance) {
+    RadiositySystem system;
+    double all = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float area = 1.0f + static_cast<float>(i % 5);
+        const float shade = static_cast<float>(i % 3) / 3.0f;
+        system.patches.push_back(
+            {area, {reflectance, reflectance * shade, 0.5f * reflectance}, i % 7 == 0 ? grey(exitance) : Rgb{}});
+        system.direct.push_back(i % 4 == 1 ? Rgb{0.5f, 0.25f, 0} : Rgb{});
+        all += static_cast<double>(area);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        std::vector<FormFactor> row; // as inside a sphere: the share of its area
+        for (uint32_t j = 0; j < count; ++j) {
+            row.push_back({j, static_cast<float>(static_cast<double>(system.patches[j].area) / all)});
+        }
+        system.rows.push_back(row);
+    }
+    return system;
+}
+
+double difference(const SolvedSystem& a, const SolvedSystem& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.irradiance.size(); ++i) {
+        const Rgb d = a.irradiance[i] + a.ambient - (b.irradiance[i] + b.ambient);
+        largest = std::max(largest, static_cast<double>(max_component(Rgb{abs(d.r), abs(d.g), abs(d.b)})));
+    }
+    return largest;
+}
+
+} // namespace
+
+TEST_CASE("all solvers come to the light that is known inside a sphere") {
+    const RadiositySystem system = room_of(40, 0.8f, 2);
+    const SolvedSystem southwell = solve_by_southwell(system, 1e-7, 0);
+    const SolvedSystem gauss_seidel = solve_by_gauss_seidel(system, 1e-8);
+    const SolvedSystem matrix = solve_by_matrix(system);
+    CHECK(difference(southwell, matrix) < 1e-5);
+    CHECK(difference(gauss_seidel, matrix) < 1e-5);
+    // Every patch gathers the same: mean of E + r direct, over 1 - mean r, by area.
+    double area = 0, sent = 0, reflected = 0;
+    for (std::size_t i = 0; i < system.patches.size(); ++i) {
+        const SystemPatch& patch = system.patches[i];
+        const auto size = static_cast<double>(patch.area);
+        area += size;
+        sent += size * static_cast<double>(patch.exitance.g + patch.reflectance.g * system.direct[i].g);
+        reflected += size * static_cast<double>(patch.reflectance.g);
+    }
+    const double known = sent / area / (1 - reflected / area);
+    for (std::size_t i = 0; i < system.patches.size(); ++i) {
+        CHECK(static_cast<double>(matrix.irradiance[i].g - system.direct[i].g) == doctest::Approx(known).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("Southwell sends from the patch with most unsent light, the first of several") {
+    RadiositySystem system;
+    // Four patches in a row; each sends to the next one alone. Nothing is reflected, so that each sends what it has.
+    for (const float exitance : {1.0f, 3.0f, 3.0f, 2.0f}) system.patches.push_back({1, {}, grey(exitance)});
+    system.patches[2].area = 1;
+    system.direct.assign(4, {});
+    system.rows = {{}, {{0, 1.0f}}, {{1, 1.0f}}, {{2, 1.0f}}};
+    const auto received = [&](uint64_t steps) {
+        std::vector<float> light;
+        for (const Rgb irradiance : solve_by_southwell(system, 0, steps).irradiance) light.push_back(irradiance.r);
+        return light;
+    };
+    CHECK(received(1) == std::vector<float>{0, 0, 3, 0}); // patch 1, though 2 has as much
+    CHECK(received(2) == std::vector<float>{0, 0, 3, 3});
+    CHECK(received(3) == std::vector<float>{0, 0, 3, 3}); // 3, whom nobody sees
+    CHECK(received(4) == std::vector<float>{0, 1, 3, 3});
+    system.patches[0].area = 4; // as a whole it has more
+    CHECK(received(1) == std::vector<float>{0, 1, 0, 0});
+}
+
+TEST_CASE("unsent light is shown as ambient light, and all of it is there from the start") {
+    const RadiositySystem system = room_of(40, 0.8f, 2);
+    const SolvedSystem whole = solve_by_matrix(system);
+    double before = 1e30;
+    for (const uint64_t steps : {1u, 5u, 20u, 100u, 1000u}) {
+        const SolvedSystem part = solve_by_southwell(system, 0, steps);
+        CHECK(part.steps == steps);
+        CHECK(part.left < before);
+        before = part.left;
+        CHECK(part.ambient.r > 0);
+        // Inside a sphere light is spread evenly, so that what is shown is right all the time.
+        CHECK(difference(part, whole) < 1e-4);
+    }
+    CHECK(max_component(solve_by_gauss_seidel(system, 1e-6).ambient) == 0);
+}
+
+TEST_CASE("no light is lost or made: what patches absorb is what is emitted") {
+    const RadiositySystem system = room_of(60, 0.9f, 3);
+    const SolvedSystem solved = solve_by_gauss_seidel(system, 1e-9);
+    double emitted = 0, absorbed = 0;
+    for (std::size_t i = 0; i < system.patches.size(); ++i) {
+        const SystemPatch& patch = system.patches[i];
+        const auto area = static_cast<double>(patch.area);
+        emitted += area * static_cast<double>(patch.exitance.b + system.direct[i].b);
+        absorbed += area * static_cast<double>((1 - patch.reflectance.b) * solved.irradiance[i].b);
+    }
+    CHECK(absorbed == doctest::Approx(emitted).epsilon(1e-5));
+}
+
+TEST_CASE("a solution ends when it is asked to, or is close enough") {
+    const RadiositySystem system = room_of(300, 0.95f, 1);
+    int asked = 0;
+    const auto end_after_three = [&](double) { return ++asked < 3; };
+    CHECK(solve_by_gauss_seidel(system, 0, end_after_three).steps == 3);
+    const SolvedSystem rough = solve_by_southwell(system, 0.1, 0), fine = solve_by_southwell(system, 1e-3, 0);
+    CHECK(rough.left <= 0.1);
+    CHECK(fine.left <= 1e-3);
+    CHECK(rough.steps < fine.steps);
+    RadiositySystem large;
+    large.patches.resize(kMostMatrixPatches + 1);
+    const auto error = test::thrown_error([&] { solve_by_matrix(large); });
+    CHECK(test::says(error, "--solver matrix: 6001 patches; at most 6000"));
+    CHECK(error->code() == ErrorCode::OverLimit);
+}
