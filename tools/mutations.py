@@ -134,8 +134,8 @@ MUTATIONS = [
                                                     "return fma(a.x, b.x, a.y * b.y) + a.z * b.z;")],
              ["consistency/contraction"]),
     Mutation("contraction allowed in one module",
-             [edit("src/CMakeLists.txt", "pertev_module(integrators pertev_render)",
-                   "pertev_module(integrators pertev_render)\n"
+             [edit("src/CMakeLists.txt", "pertev_module(integrators pertev_radiosity)",
+                   "pertev_module(integrators pertev_radiosity)\n"
                    "target_compile_options(pertev_integrators PRIVATE -ffp-contract=fast)")],
              ["sources/flags"]),
     Mutation("the first hit of several at one t wins",
@@ -264,9 +264,9 @@ MUTATIONS = [
                    "picture_.scene.any_hidden_back != 0")],
              ["unit/hidden_back"]),
     Mutation("hidden backs are those of the world's winding",
-             [edit("src/render/accept_hit.h", "transform_vector(placed.local_from_world, at_rest)) > 0;",
-                   "transform_vector(placed.local_from_world, at_rest)) *\n"
-                   "                   (placed.is_mirrored != 0 ? -1.0f : 1.0f) > 0;")],
+             [edit("src/render/accept_hit.h", "transform_vector(placed.local_from_world, direction)) > 0;",
+                   "transform_vector(placed.local_from_world, direction)) *\n"
+                   "               (placed.is_mirrored != 0 ? -1.0f : 1.0f) > 0;")],
              ["unit/hidden_back"]),
     Mutation("the film loses a carry", [edit("src/render/fixed_sum.h",
                                              "value.high += old + value.low < old ? 1 : 0;",

@@ -75,8 +75,7 @@ std::optional<Shutter> shutter(const RenderFlags& flags);
 void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays);
 /// Of these, the ones that say which light is asked for and by how many samples: --spp, --integrator, --max-depth,
 /// --ambient, --shading, --wireframe, --shading-rate, --displacement, those of photons, of records and of radiosity,
-/// --seed, --filter,
-/// --filter-radius.
+/// --seed, --filter, --filter-radius.
 void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group);
 
 /// Of --iso, --f-number and --shutter-time; none: they are not given.
