@@ -205,6 +205,7 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
         break;
     case IntegratorKind::IrradianceCache:
         static_cast<IrradianceCacheIntegrator&>(integrator).set_settings(walk_settings(to), to.irradiance_cache);
+        break;
     case IntegratorKind::Radiosity:
         static_cast<RadiosityIntegrator&>(integrator).set_settings(tree_settings(to), to.radiosity);
         break;
