@@ -379,7 +379,4 @@ MUTATIONS = [
              [edit("src/integrators/irradiance_cache/hemisphere_stages.h", "cache.store_sight(i, {{0, 0, 0}, 0});",
                    "cache.store_sight(i, {{1, 1, 1}, 0});")],
              ["unit/irradiance_cache", "statistical/irradiance_cache"]),
-    Mutation("light that other lobes send on is not made up for where few walks go on by it",
-             [edit("src/integrators/irradiance_cache/cache_stages.h", "(1.0f / chance) * others", "others")],
-             ["statistical/irradiance_cache"]),
 ]
