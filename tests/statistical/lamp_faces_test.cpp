@@ -44,12 +44,12 @@ double floor_radiance() {
     return static_cast<double>(kAlbedo * kRadiance) / 3.141592653589793 * 4 * (x / p * std::atan(x / p));
 }
 
-struct Patch {
+struct SeenFloor {
     double mean, error;
 };
 
 /// Of a tiny patch of the scene, between lamp and floor: down at the floor, or up at the lamp from `y`.
-Patch look(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
+SeenFloor look(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
     RenderSettings settings;
     settings.width = settings.height = 32;
     settings.samples = static_cast<uint32_t>(test::effort(64, 1024));
@@ -85,7 +85,7 @@ TEST_CASE("a lamp shines from its front or from both faces, however its light is
                 const bool is_lit = faces_down || is_two_sided;
                 for (const LightStrategy strategy : test::kLightStrategies) {
                     CAPTURE(static_cast<int>(strategy));
-                    const Patch floor = look(scene, {.strategy = strategy});
+                    const SeenFloor floor = look(scene, {.strategy = strategy});
                     CAPTURE(floor.mean);
                     CAPTURE(floor.error);
                     CHECK(std::abs(floor.mean - (is_lit ? floor_radiance() : 0)) <= 4 * floor.error + 1e-3);
@@ -104,7 +104,7 @@ TEST_CASE("a clamp leaves light that was scattered once alone, however it is fou
     const Scene scene = lamp_over_floor(true, false, false);
     for (const LightStrategy strategy : test::kLightStrategies) {
         CAPTURE(static_cast<int>(strategy));
-        const Patch floor = look(scene, {.strategy = strategy, .clamp = 5});
+        const SeenFloor floor = look(scene, {.strategy = strategy, .clamp = 5});
         CAPTURE(floor.mean);
         CAPTURE(floor.error);
         CHECK(std::abs(floor.mean - floor_radiance()) <= 4 * floor.error + 1e-3);
