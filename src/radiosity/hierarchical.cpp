@@ -308,8 +308,8 @@ private:
         TriangleId start, target;
         float factor;
     };
-    /// Between places on two patches; false where they turn away from each other.
-    bool see(const Patch& receiver, const Patch& source, SampleKey key, Sight& sight) const {
+    /// Between places on two patches, of one of `parts` of the source; false where they turn away from each other.
+    bool see(const Patch& receiver, const Patch& source, uint32_t parts, SampleKey key, Sight& sight) const {
         const PatchPlace from = place_on_patch(view_, receiver, sample_2d(SamplerKind::Sobol, key, 0));
         const PatchPlace to = place_on_patch(view_, source, sample_2d(SamplerKind::Sobol, key, 0, Pair::Last));
         const Vec3 way = to.position - from.position;
@@ -319,7 +319,8 @@ private:
         const float cosines = dot(direction, from.normal) * -dot(direction, to.normal);
         if (!(dot(direction, from.normal) > 0) || !(dot(direction, to.normal) < 0)) return false;
         // A disk's form factor (Wallace et al. 1989), which stays below 1 where they are near.
-        sight.factor = cosines * source.area / (kPi * squared + source.area);
+        const float area = source.area / static_cast<float>(parts);
+        sight.factor = cosines * area / (kPi * squared + area);
         sight.ray.origin = offset_ray_origin(from.position, from.error, from.normal, direction);
         sight.ray.direction = offset_ray_origin(to.position, to.error, to.normal, -direction) - sight.ray.origin;
         sight.ray.t_min = 0;
@@ -352,12 +353,13 @@ private:
         const uint32_t key = key_of(link);
         uint32_t count = 0;
         for (uint32_t k = 0; k < rays; ++k) {
-            if (see(patch_of(link.receiver), patch_of(link.source), {key, k, settings_.seed}, sights[count])) ++count;
+            if (see(patch_of(link.receiver), patch_of(link.source), rays, {key, k, settings_.seed}, sights[count]))
+                ++count;
         }
         trace(sights, count, key, met);
         float sum = 0;
         for (uint32_t i = 0; i < count; ++i) sum += met[i] ? 0.0f : sights[i].factor;
-        return sum / static_cast<float>(rays);
+        return sum;
     }
 
     /// Cosine at the receiver over pi distance^2, times how much of the cluster is seen.
@@ -376,7 +378,7 @@ private:
             const uint64_t place = (uint64_t(k) << 32 | hash_words(key, k, settings_.seed).x) / rays;
             const auto face = cluster.first + static_cast<uint32_t>((place * cluster.count) >> 32);
             const PatchCode root = tree_.roots[clusters_.faces[face]];
-            if (see(patch_of(link.receiver), patch_of(root), {key, k, settings_.seed}, sights[count])) ++count;
+            if (see(patch_of(link.receiver), patch_of(root), 1, {key, k, settings_.seed}, sights[count])) ++count;
         }
         if (count == 0) return 0;
         trace(sights, count, key, met);

@@ -29,7 +29,7 @@ class Radiosity(CliTest):
         hashes = {self.solve(*COARSE, *flags)[0]["hash"]
                   for flags in [[], ["--solver", "southwell"], ["--solver", "matrix"], ["--seed", "1"],
                                 ["--solver", "southwell", "--steps", "20"], ["--form-factors", "hemicube", "--hemicube", "16"],
-                                ["--environment", "1,1,1"], ["--lamp", "light=100"]]}
+                                ["--environment", "1,1,1"], ["--lamp", "light=100lm"]]}
         self.assertEqual(len(hashes), 8)
         self.assertEqual(self.solve(*COARSE, "--threads", "1")[0]["hash"], told["hash"])
 
