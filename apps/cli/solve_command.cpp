@@ -63,8 +63,8 @@ int solve(const SolveFlags& flags) {
 void add_solve_command(CLI::App& app, int& status) {
     CLI::App& all = *app.add_subcommand("solve", "Solve a scene's light once, for any number of pictures");
     all.require_subcommand(1);
-    CLI::App& verb = *all.add_subcommand("radiosity", "Of diffuse surfaces, by patches: pertev render --integrator "
-                                                      "radiosity --solution FILE shows it");
+    CLI::App& verb =
+        *all.add_subcommand("radiosity", "Of diffuse surfaces, by patches; the integrator radiosity shows it");
     const auto flags = std::make_shared<SolveFlags>();
     add_scene_name(verb, flags->scene);
     verb.add_option("-o,--output", flags->output, "the solution")->type_name("FILE")->check(file_name())->required();

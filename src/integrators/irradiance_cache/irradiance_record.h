@@ -34,6 +34,7 @@ struct alignas(16) IrradianceRecord {
     Rgb light;       // irradiance over pi, W/(sr m2)
     Vec3 by_turn[3]; // what `light` grows by with a step of the normal, of each channel; across the normal
     Vec3 by_move[3]; // and with a step of the place, in a metre
+    float unused[2] = {};
 };
 static_assert(sizeof(IrradianceRecord) == 128);
 
