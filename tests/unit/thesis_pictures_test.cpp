@@ -94,6 +94,7 @@ TEST_CASE(
     const auto [hard_steps, hard_white] = look_at_picture("3.3");
     const auto [soft_steps, soft_white] = look_at_picture("3.4");
     const auto [indirect_steps, indirect_white] = look_at_picture("3.6");
+    CHECK(hard_steps > 1.3 * soft_steps);
     CHECK(soft_steps > 1.3 * indirect_steps);
     CHECK(soft_white > indirect_white);
 }
