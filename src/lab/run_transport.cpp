@@ -64,7 +64,7 @@ public:
             report_.triangles = prepared_.triangles;
             turns_left_ = static_cast<double>(settings_.repetitions) *
                           static_cast<double>(std::ranges::count(report_.rows, "", &TransportRow::refused));
-            make_reference();
+            if (turns_left_ > 0) make_reference();
             for (uint32_t repetition = 0; repetition < settings_.repetitions; ++repetition) {
                 for (TransportRow& row : report_.rows) {
                     if (row.refused.empty()) take_turn(row, repetition);
@@ -125,8 +125,8 @@ private:
         const double turn_s = turns_ > 0 ? turns_s_ / turns_ : share_s();
         const double left_s = left_of_that_s + turns_left_ * turn_s;
         share_ = std::max(share_, left_s > 0 ? now_s / (now_s + left_s) : share_);
-        if (keep_going_ && !keep_going_({share_, doing, share_of_that, now_s, nullptr, nullptr}))
-            throw TransportStopped{};
+        const LabProgress now = {share_, doing, share_of_that, now_s, nullptr, nullptr};
+        if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
     }
 
     /// Adds samples to the session's film; `left_s` of this turn are left before that. Returns the seconds that took.

@@ -96,7 +96,7 @@ TransportTable equal_samples_table(const TransportScene& scene) {
 
 std::string describe_reference(const TransportReference& reference) {
     if (!reference.file.empty()) return reference.file + "; its own noise is not known";
-    if (!reference.rel_mse) return reference.integrator + "; it was not finished";
+    if (!reference.rel_mse) return reference.integrator + "; it was not made";
     return fmt::format("{}, {} samples of each pixel, {:.3g} s; its own noise: relMSE {:.2g}, HDR-FLIP of one half "
                        "against the other {:.2g}",
                        reference.integrator, reference.samples, reference.seconds, *reference.rel_mse,

@@ -11,12 +11,14 @@ import time
 
 from cli_run import PATIENCE_S, PROGRAM, SANITIZED, CliTest, main, write
 
-SMALL = ["--size", "12x12", "--max-depth", "3", "--spp", "4", "--repetitions", "3", "--reference-spp", "8", "--device", "cpu"]
+SMALL = {"--size": "12x12", "--max-depth": 3, "--spp": 4, "--repetitions": 3, "--reference-spp": 8, "--device": "cpu"}
 
 
 class Transport(CliTest):
     def transport(self, *arguments):
-        return ["lab", "--transport", *SMALL, *(str(argument) for argument in arguments)]
+        """A command line, small where it does not say otherwise."""
+        left = [str(part) for pair in SMALL.items() if pair[0] not in arguments for part in pair]
+        return ["lab", "--transport", *left, *(str(argument) for argument in arguments)]
 
     def read(self, name):
         with open(self.path(name), encoding="utf-8", newline="") as file:
