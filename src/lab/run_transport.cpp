@@ -87,7 +87,8 @@ private:
             check_camera(picture, camera_);
             check_light(picture, scene_, notes);
         } catch (const Error& error) {
-            return error.what();
+            const std::string why = error.what(), flag = fmt::format("--integrator {}: ", integrator);
+            return why.starts_with(flag) ? why.substr(flag.size()) : why;
         }
         return {};
     }
@@ -97,7 +98,8 @@ private:
         if (!settings_.reference) {
             reference.integrator = settings_.reference_integrator;
             if (const std::string why = why_not(reference.integrator); !why.empty()) {
-                throw Error(ErrorCode::BadInput, fmt::format("the reference cannot be made: {}", why));
+                throw Error(ErrorCode::BadInput,
+                            fmt::format("the reference cannot be made by {}: {}", reference.integrator, why));
             }
             reference.lacks = light_lacking(reference.integrator, scene_);
             return;
@@ -129,12 +131,21 @@ private:
         if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
     }
 
-    /// Adds samples to the session's film; `left_s` of this turn are left before that. Returns the seconds that took.
-    double render(Session& session, uint32_t samples, const std::string& doing, double left_s) {
+    /// What a turn has left after so many seconds for so many samples.
+    double left_of_turn_s(const TransportRow& row, double seconds, uint32_t samples) const {
+        if (!row.repetitions.empty()) return std::max(0.0, row.repetitions.front().back().seconds - seconds);
+        const double to_most_s = seconds / std::max(1u, samples) * (settings_.max_samples - samples);
+        return std::max(0.0, std::min(share_s() - seconds, samples > 0 ? to_most_s : share_s()));
+    }
+
+    /// Adds samples to the session's film, which took `before_s` to come to. Returns the seconds that took.
+    double render(Session& session, const TransportRow& row, uint32_t samples, const std::string& doing,
+                  double before_s) {
         double seconds = 0;
         session.render(samples, [&](const RenderProgress& now) {
             seconds = now.seconds;
-            progress(doing, std::clamp(1 - (left_s - seconds) / share_s(), 0.0, 1.0), std::max(0.0, left_s - seconds));
+            const double done_s = before_s + seconds, left_s = left_of_turn_s(row, done_s, now.samples_done);
+            progress(doing, done_s / (done_s + left_s), left_s);
             return true;
         });
         return seconds;
@@ -187,7 +198,7 @@ private:
         const Stopwatch watch;
         const std::string doing = fmt::format("{}, {} of {}", row.name, number + 1, settings_.repetitions);
         turns_left_ -= 1;
-        progress(doing, 0, share_s());
+        progress(doing, 0, left_of_turn_s(row, 0, 0));
         const std::size_t before = queue_.allocated_bytes();
         Repetition figures;
         std::vector<Image> pictures;
@@ -195,7 +206,7 @@ private:
         try {
             Session session(queue_, prepared_, camera_,
                             settings_of(settings_, row.name, repetition_seed(settings_, number)));
-            render(session, 1, doing, share_s()); // memory, caches and the driver's first launch are not timed
+            render(session, row, 1, doing, 0); // memory, caches and the driver's first launch are not timed
             session.cut();
             try {
                 add_figures(session, row, number, doing, figures, pictures);
@@ -223,7 +234,7 @@ private:
                      Repetition& figures, std::vector<Image>& pictures) {
         double seconds = 0;
         for (uint32_t samples = 1;;) {
-            seconds += render(session, samples - session.history().samples, doing, share_s() - seconds);
+            seconds += render(session, row, samples - session.history().samples, doing, seconds);
             figures.push_back({.samples = samples, .seconds = seconds});
             pictures.push_back(session.picture());
             if (number > 0) {
