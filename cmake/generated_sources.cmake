@@ -3,6 +3,10 @@
 set(PERTEV_GENERATED_DIR ${PROJECT_BINARY_DIR}/generated)
 set(PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/cornell-box/cornell-box.gltf
     ${PROJECT_SOURCE_DIR}/scenes/many-lights/many-lights.gltf)
+foreach(name blind caustic door uplight)
+  list(APPEND PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/transport/${name}.obj)
+  list(APPEND PERTEV_BUILTIN_MATERIALS ${PROJECT_SOURCE_DIR}/scenes/transport/${name}.mtl)
+endforeach()
 
 add_custom_target(pertev_version BYPRODUCTS ${PERTEV_GENERATED_DIR}/version.cpp
   COMMAND ${CMAKE_COMMAND} -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
@@ -13,7 +17,7 @@ add_dependencies(pertev_base pertev_version)
 
 list(JOIN PERTEV_BUILTIN_SCENES "|" scene_files)
 add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp
-  DEPENDS ${PERTEV_BUILTIN_SCENES} ${PROJECT_SOURCE_DIR}/cmake/embed_scenes.cmake
+  DEPENDS ${PERTEV_BUILTIN_SCENES} ${PERTEV_BUILTIN_MATERIALS} ${PROJECT_SOURCE_DIR}/cmake/embed_scenes.cmake
           ${PROJECT_SOURCE_DIR}/cmake/builtin_scenes.cpp.in
   COMMAND ${CMAKE_COMMAND} "-DFILES=${scene_files}" -DOUTPUT=${PERTEV_GENERATED_DIR}/builtin_scenes.cpp
           -P ${PROJECT_SOURCE_DIR}/cmake/embed_scenes.cmake

@@ -16,6 +16,7 @@
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/thesis_command.h"
+#include "apps/cli/transport_command.h"
 #include "base/error.h"
 #include "lab/list_combinations.h"
 #include "lab/ray_sets.h"
@@ -33,7 +34,8 @@ struct LabFlags {
     std::string order = "on", persistent = "both", size, depths;
     std::string output;
     uint32_t runs = 20, count = 0;
-    bool no_heat_maps = false, thesis = false;
+    bool no_heat_maps = false, thesis = false, transport = false;
+    TransportFlags of_transport;
     MachineFlags machine;
     ReportFlags report;
 };
@@ -135,10 +137,14 @@ void say_refusals(const LabFlags& flags, const LabReport& report, Reporter& repo
 int run(const LabFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
-    if (!flags.thesis && flags.scene.scene.empty()) {
-        throw Error(ErrorCode::BadInput, "lab: SCENE is required (or --thesis)");
+    if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
+        throw Error(ErrorCode::BadInput, "lab: SCENE is required (or --thesis, or --transport)");
     }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
+    if (flags.transport) {
+        reporter.set_work("loading");
+        return run_transport_command(*queue, flags.scene, flags.of_transport, flags.size, flags.output, reporter);
+    }
     LabSettings settings = lab_settings(flags, queue->is_cuda());
     reporter.set_work("loading");
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
@@ -178,7 +184,8 @@ void add_switch(CLI::App& verb, const char* flag, std::string& value, const char
 } // namespace
 
 void add_lab_command(CLI::App& app, int& status) {
-    CLI::App& verb = *app.add_subcommand("lab", "Every structure and every walk side by side, on your scene and card");
+    CLI::App& verb = *app.add_subcommand(
+        "lab", "Every structure and every walk side by side, on your scene and card; or every integrator");
     const auto flags = std::make_shared<LabFlags>();
     add_view_options(verb, flags->scene);
     CLI::Option* scene = verb.get_option("SCENE");
@@ -209,7 +216,8 @@ void add_lab_command(CLI::App& app, int& status) {
         ->check(one_of(names_of(all_tests())))
         ->capture_default_str();
     add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
-    verb.add_option("--size", flags->size, "camera rays (1024x768)")->type_name("WIDTHxHEIGHT");
+    verb.add_option("--size", flags->size, "camera rays (1024x768; with --transport pictures of 256x256)")
+        ->type_name("WIDTHxHEIGHT");
     verb.add_option("--depths", flags->depths,
                     fmt::format("frames of paths of FIRST to LAST rays, LAST at most {}; LAST\nalone is 1-LAST (1-3; "
                                 "with --thesis 1-8)",
@@ -230,15 +238,21 @@ void add_lab_command(CLI::App& app, int& status) {
     CLI::Option* thesis = verb.add_flag(
         "--thesis", flags->thesis,
         "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found under PERTEV_SCENES), depths 1-8");
+    CLI::Option* transport =
+        verb.add_flag("--transport", flags->transport,
+                      "integrators side by side in place of walks: error over time,\nagainst a reference");
     for (const char* flag : {"--structures", "--walks", "--rta", "--order", "--tests", "--persistent", "--rays",
                              "--count", "--no-heat-maps"}) {
         thesis->excludes(verb.get_option(flag)); // it is what the thesis compared
+        transport->excludes(verb.get_option(flag));
     }
+    for (const char* flag : {"--thesis", "--depths", "--runs"}) transport->excludes(verb.get_option(flag));
+    add_transport_flags(verb, transport, flags->of_transport);
     CLI::Option* output =
         verb.add_option(
                 "-o,--output", flags->output,
                 "write report.html, .csv, .json and heat maps here; with --thesis\nthesis.html, its figures and "
-                "pictures, thesis-1 and -2.csv and .json")
+                "pictures, thesis-1 and -2.csv and .json;\nwith --transport transport.html, .csv and .json")
             ->type_name("DIR");
     add_machine_flags(verb, flags->machine);
     add_report_flags(verb, flags->report);

@@ -160,9 +160,14 @@ AlphaStatistics look_at_channel(const TextureImage& image, int channel) {
 } // namespace
 
 std::map<std::string, MtlMaterial> read_mtl(const fs::path& path, TextureLoader& loader, Messages& messages) {
+    return read_mtl(read_file(path), path, loader, messages);
+}
+
+std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, const fs::path& path,
+                                            TextureLoader& loader, Messages& messages) {
     std::map<std::string, MtlMaterial> materials;
     Converter converter(path, loader);
-    for (const MtlStatements& said : parse_mtl(read_file(path), path.string(), messages)) {
+    for (const MtlStatements& said : parse_mtl(bytes, path.string(), messages)) {
         if (said.name.empty() || materials.contains(said.name)) continue;
         materials.emplace(said.name, converter.convert(said));
     }

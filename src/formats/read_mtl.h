@@ -12,8 +12,10 @@
 //   else                                        Diffuse of Kd; without Kd, grey as where there is no material
 // Ns to GGX: alpha = sqrt(2 / (Ns + 2)) (Walter et al., EGSR 2007, section 5.2). d < 1 alone, and map_d, are alpha.
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,9 @@ struct MtlMaterial {
 /// Error(BadInput) when the file cannot be read or, with the line, when a number of it cannot.
 std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, TextureLoader& loader,
                                             Messages& messages);
+/// The same from memory; `path` starts every message.
+std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                                            TextureLoader& loader, Messages& messages);
 
 /// Second step, when `material.material` (textures renumbered by the loader) is decided on: reads the alpha mode and
 /// channel off the images; drops a map_bump that holds heights, with a warning.

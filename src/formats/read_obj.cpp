@@ -158,17 +158,11 @@ Material grey_material(const std::string& name, const ObjData& data) {
     return material;
 }
 
-} // namespace
-
-Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
-    const std::string file = path.string();
-    const ObjData data = parse_obj(read_file(path), file, messages);
-
+/// `loader` knows the textures of `materials`.
+Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
+                 const std::string& file, const ReadOptions& options, Messages& messages) {
     Scene scene;
     scene.meshes.resize(data.groups.size());
-    TextureLoader loader(access, messages);
-    std::map<std::string, MtlMaterial> materials;
-    if (!options.geometry_only) materials = read_materials(data, path, access, loader, messages);
     std::size_t unknown = 0;
     std::string first_unknown;
     for (uint32_t i = 0; i < data.groups.size(); ++i) {
@@ -211,6 +205,25 @@ Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions
     }
     warn_of_textures_without_coordinates(scene, data, file, messages);
     return scene;
+}
+
+} // namespace
+
+Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
+    const ObjData data = parse_obj(read_file(path), path.string(), messages);
+    TextureLoader loader(access, messages);
+    std::map<std::string, MtlMaterial> materials;
+    if (!options.geometry_only) materials = read_materials(data, path, access, loader, messages);
+    return make_scene(data, materials, loader, path.string(), options, messages);
+}
+
+Scene read_obj(const fs::path& path, const ObjTexts& texts, const FileAccess& access, const ReadOptions& options,
+               Messages& messages) {
+    const ObjData data = parse_obj(texts.geometry, path.string(), messages);
+    TextureLoader loader(access, messages);
+    std::map<std::string, MtlMaterial> materials;
+    if (!options.geometry_only) materials = read_mtl(texts.materials, path, loader, messages);
+    return make_scene(data, materials, loader, path.string(), options, messages);
 }
 
 } // namespace pertev

@@ -42,6 +42,9 @@ const FormatReader* find_reader(const std::filesystem::path& path) {
 Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     const FileAccess access(path, options.allowed_paths);
     if (const auto bytes = builtin_scene(path.string())) {
+        if (const auto materials = builtin_materials(path.string())) {
+            return read_obj(path, ObjTexts{*bytes, *materials}, access, options, messages);
+        }
         return read_gltf(path, {bytes->begin(), bytes->end()}, access, options, messages);
     }
     if (const FormatReader* reader = find_reader(path)) return reader->read(path, access, options, messages);

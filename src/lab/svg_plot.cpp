@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "math/portable_math.h"
+
 namespace pertev {
 namespace {
 
@@ -34,6 +36,68 @@ std::string rect(double x, double y, double width, double height, const BarStyle
     return fmt::format(
         R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}"{}><title>{}</title></rect>)", x, y,
         width, height, style.is_hollow ? "#fff" : color, style.is_hollow ? outline : "", html_text(tip));
+}
+
+double log10_of(double value) { return static_cast<double>(log2(static_cast<float>(value))) * 0.30102999566; }
+
+/// From least to most, straight or in logarithms.
+class Axis {
+public:
+    Axis(bool is_log, double least, double most) : is_log_(is_log), least_(least), most_(most) {}
+
+    /// 0 at the least, 1 at the most; of logarithms 0 for what has none.
+    double place(double value) const {
+        if (!is_log_) return (value - least_) / (most_ - least_);
+        if (!(value > 0)) return 0;
+        return (log10_of(value) - log10_of(least_)) / (log10_of(most_) - log10_of(least_));
+    }
+    /// Every `step` from the least on; of logarithms every power of ten, and where these are few, 2 and 5 of each.
+    std::vector<double> ticks(double step) const {
+        std::vector<double> at;
+        if (!is_log_) {
+            for (int i = 0; least_ + i * step <= most_; ++i) at.push_back(least_ + i * step);
+            return at;
+        }
+        const bool few = log10_of(most_) - log10_of(least_) < 3;
+        double power = 1;
+        while (power > least_) power /= 10;
+        while (power * 10 < least_) power *= 10;
+        for (; power <= most_; power *= 10) {
+            for (const double part : {1.0, 2.0, 5.0}) {
+                const double value = part * power;
+                if ((few || part == 1) && value >= least_ && value <= most_) at.push_back(value);
+            }
+        }
+        return at;
+    }
+
+private:
+    bool is_log_;
+    double least_, most_;
+};
+
+/// `shows` says which points are drawn, `place` where. Without its label.
+template <class Shows, class Place>
+std::string draw_curve(const Curve& curve, const char* color, bool is_dashed, const Shows& shows, const Place& place) {
+    std::string points, highs, lows, marks;
+    for (std::size_t k = 0; k < curve.points.size(); ++k) {
+        if (!shows(curve.points[k])) continue;
+        const auto [x, y] = place(curve.points[k]);
+        points += fmt::format("{:.1f},{:.1f} ", x, y);
+        marks += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="2.5" fill="{}"><title>{}: {:g}</title></circle>)", x,
+                             y, color, html_text(curve.label), curve.points[k].second);
+        if (k >= curve.band.size()) continue;
+        const auto [least, largest] = curve.band[k];
+        highs += fmt::format("{:.1f},{:.1f} ", x, place({curve.points[k].first, largest}).second);
+        lows = fmt::format("{:.1f},{:.1f} ", x, place({curve.points[k].first, least}).second) + lows;
+    }
+    std::string drawn;
+    if (!highs.empty()) {
+        drawn = fmt::format(R"(<polygon points="{}{}" fill="{}" fill-opacity="0.15"/>)", highs, lows, color);
+    }
+    drawn += fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"{}/>)", points, color,
+                         is_dashed ? R"( stroke-dasharray="5 3")" : "");
+    return curve.is_level ? drawn : drawn + marks;
 }
 
 std::string svg(double width, double height, const std::string& title, const std::string& content) {
@@ -120,44 +184,42 @@ std::string svg_bars(const std::string& title, const std::string& unit, const st
 }
 
 std::string svg_curves(const std::string& title, const std::string& x_label, const std::string& y_label,
-                       const std::vector<Curve>& curves) {
+                       const std::vector<Curve>& curves, const PlotAxes& axes) {
     constexpr double plot_width = 500, height = 380, left = 70, top = 40, bottom = 45;
-    double most_x = 0, most_y = 0, least_x = 1e300;
+    const auto shows = [&](const std::pair<double, double>& p) {
+        return (p.first > 0 || !axes.log_x) && (p.second > 0 || !axes.log_y) && std::isfinite(p.second);
+    };
+    double most_x = 0, most_y = 0, least_x = 1e300, least_y = 1e300;
     for (const Curve& curve : curves) {
         for (const auto& [x, y] : curve.points) {
-            most_x = std::max(most_x, x), least_x = std::min(least_x, x), most_y = std::max(most_y, y);
+            if (!axes.log_y && !std::isfinite(y)) return {};
+            if (!shows({x, y})) continue;
+            most_x = std::max(most_x, x), least_x = std::min(least_x, x);
+            most_y = std::max(most_y, y), least_y = std::min(least_y, y);
         }
     }
-    if (!(most_y > 0) || !std::isfinite(most_y) || !(most_x > least_x)) return {};
+    if (!(most_y > 0) || !(most_x > least_x)) return {};
     const double right = 40 + label_width(curves, 100), width = left + plot_width + right;
     constexpr double plot_height = height - top - bottom;
-    const auto at_x = [&](double x) { return left + (x - least_x) / (most_x - least_x) * plot_width; };
-    const auto at_y = [&](double y) { return top + (1 - y / most_y) * plot_height; };
+    const Axis along(axes.log_x, least_x, most_x);
+    const Axis up = axes.log_y ? Axis(true, least_y / 1.2, most_y * 1.2) : Axis(false, 0, most_y);
+    const auto at_x = [&](double x) { return left + along.place(x) * plot_width; };
+    const auto at_y = [&](double y) { return top + (1 - std::clamp(up.place(y), 0.0, 1.0)) * plot_height; };
     std::string content;
-    const double step_y = axis_step(most_y, 6), step_x = std::max(1.0, axis_step(most_x - least_x, 10));
-    for (int i = 0; i * step_y <= most_y; ++i) {
-        const double y = i * step_y;
+    for (const double y : up.ticks(axis_step(most_y, 6))) {
         content += line(left, at_y(y), left + plot_width, at_y(y), "#ddd");
         content += text_at(left - 6, at_y(y) + 4, "end", fmt::format("{:g}", y));
     }
-    for (int i = 0; least_x + i * step_x <= most_x; ++i) {
-        const double x = least_x + i * step_x;
+    for (const double x : along.ticks(std::max(1.0, axis_step(most_x - least_x, 10)))) {
         content += line(at_x(x), top + plot_height, at_x(x), top + plot_height + 4, "#000");
         content += text_at(at_x(x), top + plot_height + 16, "middle", fmt::format("{:g}", x));
     }
     content += line(left, top + plot_height, left + plot_width, top + plot_height, "#000");
     content += text_at(left + plot_width / 2, height - 10, "middle", x_label) + text_at(8, top - 8, "start", y_label);
+    const auto place = [&](const std::pair<double, double>& p) { return std::pair(at_x(p.first), at_y(p.second)); };
     for (std::size_t i = 0; i < curves.size(); ++i) {
-        const char* color = kColors[i % std::size(kColors)];
-        std::string points;
-        for (const auto& [x, y] : curves[i].points) points += fmt::format("{:.1f},{:.1f} ", at_x(x), at_y(y));
-        content += fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"{}/>)", points, color,
-                               i < std::size(kColors) ? "" : R"( stroke-dasharray="5 3")");
-        for (const auto& [x, y] : curves[i].points) {
-            content +=
-                fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="2.5" fill="{}"><title>{}: {:g}</title></circle>)",
-                            at_x(x), at_y(y), color, html_text(curves[i].label), y);
-        }
+        const char* color = curves[i].is_level ? "#888" : kColors[i % std::size(kColors)];
+        content += draw_curve(curves[i], color, curves[i].is_level || i >= std::size(kColors), shows, place);
         const double y = top + 14 * static_cast<double>(i);
         content += fmt::format(R"(<rect x="{:.0f}" y="{:.0f}" width="10" height="10" fill="{}"/>)", width - right + 20,
                                y, color);

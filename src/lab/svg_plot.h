@@ -36,12 +36,19 @@ std::string svg_bars(const std::string& title, const std::string& unit, const st
 
 struct Curve {
     std::string label;
-    std::vector<std::pair<double, double>> points; // x rising
+    std::vector<std::pair<double, double>> points;    // x rising
+    std::vector<std::pair<double, double>> band = {}; // least and largest y at each point; empty: none
+    bool is_level = false;                            // a dashed grey line without marks
 };
 
-/// At most ten curves show well. The vertical axis starts at 0. Nothing where all points have one x, or no height.
+struct PlotAxes {
+    bool log_x = false, log_y = false; // such an axis leaves out what is not above 0
+};
+
+/// At most ten curves show well. A vertical axis that is not logarithmic starts at 0. Nothing where all points have one
+/// x, or no height.
 std::string svg_curves(const std::string& title, const std::string& x_label, const std::string& y_label,
-                       const std::vector<Curve>& curves);
+                       const std::vector<Curve>& curves, const PlotAxes& axes = {});
 
 /// Steps of 1, 2 or 5 times a power of ten: at most `count` of them from 0 to `most` > 0.
 double axis_step(double most, int count);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "lab/html_table.h"
 #include "lab/svg_plot.h"
 #include "lab/text_table.h"
 #include "lab/write_html.h"
@@ -213,14 +214,7 @@ ThesisFigure figure_of(const ThesisReport& thesis, const char* number, const std
 }
 
 std::string html_of(const Table& table) {
-    std::string rows;
-    for (std::size_t i = 0; i < table.rows.size(); ++i) {
-        const char* tag = i == 0 ? "th" : "td";
-        rows += "<tr>";
-        for (const std::string& text : table.rows[i]) rows += fmt::format("<{0}>{1}</{0}>", tag, html_text(text));
-        rows += "</tr>\n";
-    }
-    return fmt::format("<h2>{}</h2>\n<table>{}</table>\n", html_text(table.title), rows);
+    return fmt::format("<h2>{}</h2>\n{}", html_text(table.title), html_table(table.rows));
 }
 
 std::string pictures_of(const ThesisReport& thesis) {

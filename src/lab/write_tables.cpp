@@ -3,27 +3,12 @@
 #include <fmt/format.h>
 
 #include "base/json_text.h"
+#include "lab/csv_line.h"
 
 namespace pertev {
 namespace {
 
-using Cells = std::vector<std::string>;
-
-std::string csv_text(const std::string& text) {
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) {
-        quoted += c;
-        if (c == '"') quoted += c;
-    }
-    return quoted + '"';
-}
-
-std::string csv_line(const Cells& cells) {
-    std::string line;
-    for (const std::string& cell : cells) line += (&cell == cells.data() ? "" : ",") + csv_text(cell);
-    return line + '\n';
-}
+using Cells = CsvCells;
 
 template <class T>
 std::string number(const T& value) {

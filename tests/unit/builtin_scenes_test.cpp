@@ -68,6 +68,24 @@ TEST_CASE("in the Cornell box the red wall is on the camera's left and the green
     CHECK(dot(forward, centre("short block")) > 0);
 }
 
+TEST_CASE("scenes of narrow light are part of the program with their materials") {
+    for (const char* name : {"blind", "caustic", "door", "uplight"}) {
+        CAPTURE(name);
+        REQUIRE(builtin_materials(name));
+        Messages messages;
+        const Scene scene = read_scene(name, {}, messages);
+        CHECK(messages.all().empty());
+        CHECK(scene.materials[instance_named(scene, "lamp").material].emission.r == 60);
+    }
+    Messages messages;
+    const Scene caustic = read_scene("caustic", {}, messages);
+    const Material& glass = caustic.materials[instance_named(caustic, "glass").material];
+    CHECK(glass.kind == MaterialKind::Dielectric);
+    CHECK(glass.ior == 1.5f);
+    CHECK_FALSE(builtin_materials("cornell-box"));
+    CHECK_FALSE(builtin_materials("caustics"));
+}
+
 TEST_CASE("a name that is no built-in scene finds nothing") {
     CHECK_FALSE(builtin_scene("cornell"));
     CHECK_FALSE(builtin_scene(""));

@@ -26,13 +26,9 @@ CameraView stage_camera(uint32_t side) {
 }
 
 /// A wall that faces the camera at 5 m, all of one object. Its right half can be made another in one way at a time.
+const Float4 kWallGuide = pack({{0, 0, 1}, 1, 5, 7});
 struct Wall {
-    std::vector<Float4> guide;
-
-    Wall() {
-        const Guide facing = {{0, 0, 1}, 1, 5, 7};
-        guide.assign(kStagePixels, pack(facing));
-    }
+    std::vector<Float4> guide = std::vector<Float4>(kStagePixels, kWallGuide);
 
     void set_right(const Guide& g) {
         for (uint32_t i = 0; i < kStagePixels; ++i) {

@@ -1,0 +1,205 @@
+#include "apps/cli/transport_command.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/lab_files.h"
+#include "apps/cli/lab_scene.h"
+#include "apps/cli/parse_values.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/version.h"
+#include "image/read_image.h"
+#include "lab/run_transport.h"
+#include "lab/transport_light.h"
+#include "lab/transport_presets.h"
+#include "lab/write_transport.h"
+#include "session/settings_text.h"
+#include "session/survey/default_light.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kReferenceSamples = 1024, kReferenceSamplesCuda = 16384;
+constexpr const char* kAllPresets = "all";
+
+/// A scene that is read, as it is to be measured.
+struct Subject {
+    std::string name, shows, reference_integrator;
+    Scene scene;
+    Camera camera;
+};
+
+Subject read_subject(SceneOptions options, const TransportPreset* preset, float aspect, Messages& messages) {
+    Subject subject;
+    if (preset != nullptr) options.scene = preset->scene;
+    subject.scene = read_lab_scene(options, messages);
+    add_default_light(subject.scene, messages);
+    subject.name = preset != nullptr ? preset->name : lab_scene_title(options.scene);
+    subject.shows = preset != nullptr ? preset->shows : "";
+    subject.reference_integrator =
+        preset != nullptr ? preset->reference_integrator : default_reference_integrator(subject.scene);
+    subject.camera = preset != nullptr ? choose_camera(camera_choice(*preset), subject.scene, aspect, messages)
+                                       : choose_camera(options, subject.scene, aspect, messages);
+    return subject;
+}
+
+/// Null stands for the scene of the command line.
+std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const TransportFlags& flags) {
+    if (flags.preset.empty() && !scene.scene.empty()) return {nullptr};
+    refuse(!scene.scene.empty(), "--preset: it has a scene of its own; leave out SCENE or --preset");
+    std::vector<const TransportPreset*> presets;
+    for (const TransportPreset& preset : transport_presets()) {
+        const std::string wanted = flags.preset.empty() ? "cornell" : flags.preset;
+        if (wanted == kAllPresets || wanted == preset.name) presets.push_back(&preset);
+    }
+    const CameraChoice camera = camera_choice(scene);
+    refuse(!camera.camera.empty() || camera.eye || camera.target || camera.up || camera.fov_deg || camera.projection ||
+               camera.view_height,
+           "--preset: it has a camera of its own; name a SCENE to see it by another");
+    refuse(presets.size() > 1 && !flags.reference.empty(), "--reference: is of one scene; name one preset");
+    return presets;
+}
+
+TransportSettings settings_of(const TransportFlags& flags, const std::string& size, bool is_cuda, Messages& messages) {
+    TransportSettings settings;
+    for (const std::string& name : flags.integrators) {
+        if (std::ranges::find(settings.integrators, name) == settings.integrators.end()) {
+            settings.integrators.push_back(name);
+        }
+    }
+    if (settings.integrators.empty()) settings.integrators = transport_integrators();
+    settings.repetitions = flags.repetitions, settings.seconds = flags.seconds;
+    settings.max_samples = flags.max_samples;
+    std::tie(settings.picture.width, settings.picture.height) = parse_size("--size", size.empty() ? "256x256" : size);
+    settings.picture.path.max_depth = flags.max_depth;
+    settings.picture.path.seed = flags.seed;
+    settings.reference_samples = flags.reference_samples > 0 ? flags.reference_samples
+                                 : is_cuda                   ? kReferenceSamplesCuda
+                                                             : kReferenceSamples;
+    if (!flags.reference.empty()) {
+        settings.reference = read_image(flags.reference, &messages);
+        settings.reference_file = flags.reference;
+    }
+    return settings;
+}
+
+void write_files(const std::filesystem::path& folder, const TransportReport& report) {
+    write_text(folder / "transport.csv", csv_of(report));
+    write_text(folder / "transport.json", json_of(report) + '\n');
+    write_text(folder / "transport.html", html_of(report));
+}
+
+} // namespace
+
+int run_transport_command(Queue& queue, const SceneOptions& scene, const TransportFlags& flags, const std::string& size,
+                          const std::string& output, Reporter& reporter) {
+    const std::vector<const TransportPreset*> presets = presets_of(scene, flags);
+    TransportSettings settings = settings_of(flags, size, queue.is_cuda(), reporter.messages());
+    std::vector<Subject> subjects; // all are read before the first is measured
+    for (const TransportPreset* preset : presets) {
+        subjects.push_back(read_subject(scene, preset, aspect_of(settings.picture.width, settings.picture.height),
+                                        reporter.messages()));
+    }
+    if (!output.empty()) check_lab_folder(output);
+    reporter.say_messages();
+    listen_for_interrupt();
+
+    TransportReport report = {.device = queue.device_name(),
+                              .commit = fmt::format("{} {}", version(), git_commit()),
+                              .threads = static_cast<uint32_t>(thread_count()),
+                              .width = settings.picture.width,
+                              .height = settings.picture.height,
+                              .max_depth = settings.picture.path.max_depth,
+                              .repetitions = settings.repetitions,
+                              .seed = settings.picture.path.seed,
+                              .seconds = settings.seconds};
+    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter, {});
+    const double count = static_cast<double>(subjects.size());
+    double before_s = 0;
+    for (std::size_t i = 0; i < subjects.size() && !report.interrupted; ++i) {
+        const Subject& subject = subjects[i];
+        settings.reference_integrator =
+            flags.reference_integrator.empty() ? subject.reference_integrator : flags.reference_integrator;
+        double seconds = 0;
+        TransportScene measured =
+            run_transport(queue, subject.scene, subject.camera, settings, [&](const LabProgress& now) {
+                seconds = now.seconds;
+                LabProgress of_all = now; // every scene takes about as long
+                of_all.share = (static_cast<double>(i) + now.share) / count;
+                of_all.seconds = before_s + now.seconds;
+                of_all.doing = fmt::format("{}: {}", subject.name, now.doing);
+                return show(of_all);
+            });
+        before_s += seconds;
+        measured.name = subject.name, measured.shows = subject.shows;
+        report.interrupted = measured.interrupted;
+        if (has_findings(measured) || !measured.interrupted) report.scenes.push_back(std::move(measured));
+        if (!output.empty() && has_findings(report)) write_files(output, report);
+    }
+    reporter.end_progress();
+    reporter.event(json_of(report));
+    if (!has_findings(report) && report.interrupted) {
+        reporter.say("interrupted before anything was measured; nothing is written");
+        return exit_status(ErrorCode::Interrupted);
+    }
+    reporter.answer(text_of(report));
+    if (!output.empty() && has_findings(report)) {
+        reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "transport.html").string()));
+    }
+    if (!has_findings(report)) {
+        throw Error(ErrorCode::BadInput, "none of the integrators can render this; their reasons are above");
+    }
+    return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;
+}
+
+void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags& flags) {
+    const char* group = "Light transport (--transport)";
+    std::vector<std::string> presets = {kAllPresets};
+    for (const TransportPreset& preset : transport_presets()) presets.emplace_back(preset.name);
+    const auto add = [&](CLI::Option* option, const char* type) {
+        return option->type_name(type)->group(group)->needs(transport);
+    };
+    add(verb.add_option("--preset", flags.preset,
+                        fmt::format("a built-in scene with its camera, in place of SCENE:\n{} (cornell)",
+                                    fmt::join(presets, ", "))),
+        "NAME")
+        ->check(one_of(presets));
+    add(verb.add_option("--integrators", flags.integrators, "some of the integrators (all but direct and indirect)"),
+        "NAME,...")
+        ->delimiter(',')
+        ->check(one_of(integrator_names()));
+    add(verb.add_option("--seconds", flags.seconds, "of rendering for each integrator, all repetitions together"), "S")
+        ->check(number_above_zero(1e6f))
+        ->capture_default_str();
+    add(verb.add_option("--repetitions", flags.repetitions, "pictures of each integrator, by different seeds"), "N")
+        ->check(whole_between(1, kMostRepetitions))
+        ->capture_default_str();
+    add(verb.add_option("--spp", flags.max_samples, "samples of each pixel at most, of one repetition"), "N")
+        ->check(whole_between(1, 1u << 20))
+        ->capture_default_str();
+    add(verb.add_option("--reference", flags.reference,
+                        "a picture without noise (.exr, .hdr), of the same size and\ndepth; else one is made"),
+        "FILE")
+        ->check(file_name());
+    add(verb.add_option("--reference-integrator", flags.reference_integrator,
+                        "that it is made by (path; bidirectional where it is better)"),
+        "NAME")
+        ->check(one_of({"path", "bidirectional", "photon_map"}));
+    add(verb.add_option("--reference-spp", flags.reference_samples, "samples of each of its pixels (1024; CUDA 16384)"),
+        "N")
+        ->check(whole_between(2, 1u << 24));
+    add(verb.add_option("--max-depth", flags.max_depth, "scatterings of a light path at most"), "N")
+        ->check(whole_between(0, 255))
+        ->capture_default_str();
+    add(verb.add_option("--seed", flags.seed, "of the first repetition"), "N")
+        ->check(whole_between(0, 0x7fffffff))
+        ->capture_default_str();
+}
+
+} // namespace pertev

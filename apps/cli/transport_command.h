@@ -1,0 +1,37 @@
+#pragma once
+
+// pertev lab --transport
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/cli/reporter.h"
+#include "apps/cli/scene_options.h"
+#include "device/queue.h"
+
+namespace CLI {
+class App;
+class Option;
+} // namespace CLI
+
+namespace pertev {
+
+struct TransportFlags {
+    std::string preset; // empty: SCENE, or where that is not given either, cornell
+    std::vector<std::string> integrators;
+    double seconds = 10;
+    uint32_t repetitions = 4, max_samples = 1u << 16, max_depth = 8, seed = 0;
+    std::string reference, reference_integrator;
+    uint32_t reference_samples = 0; // 0: by the device
+};
+
+/// Beside --transport itself, which each of them needs.
+void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags& flags);
+
+/// Measures the scene, or the presets, that are asked for; `size` and `output` are lab's flags, or empty. Returns the
+/// exit status. Throws Error.
+int run_transport_command(Queue& queue, const SceneOptions& scene, const TransportFlags& flags, const std::string& size,
+                          const std::string& output, Reporter& reporter);
+
+} // namespace pertev

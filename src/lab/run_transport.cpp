@@ -1,0 +1,307 @@
+#include "lab/run_transport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "image/auto_exposure.h"
+#include "image/flip.h"
+#include "image/metrics.h"
+#include "image/tone_map_image.h"
+#include "lab/describe_camera.h"
+#include "lab/transport_light.h"
+#include "session/check_integrator.h"
+#include "session/session.h"
+#include "session/settings_text.h"
+
+namespace pertev {
+namespace {
+
+struct TransportStopped {};
+
+RenderSettings settings_of(const TransportSettings& settings, const std::string& integrator, uint32_t seed) {
+    RenderSettings picture = settings.picture;
+    if (!set_integrator(picture, integrator)) {
+        throw Error(ErrorCode::BadInput, fmt::format("{}: no such integrator; there are {}", integrator,
+                                                     fmt::join(integrator_names(), ", ")));
+    }
+    picture.path.seed = seed;
+    return picture;
+}
+
+/// Mean of two, which a picture of as many samples of each is.
+Image mean_of(const Image& a, const Image& b) {
+    Image mean = a;
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * a.pixels[i] + 0.5f * b.pixels[i];
+    return mean;
+}
+
+class TransportRunner {
+public:
+    TransportRunner(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
+                    const std::function<bool(const LabProgress&)>& keep_going)
+        : queue_(queue), scene_(scene), camera_(camera), settings_(settings), keep_going_(keep_going) {
+        report_.camera = describe_camera(camera);
+        for (const std::string& name : settings.integrators) {
+            settings_of(settings, name, 0);
+            report_.rows.push_back({.name = name, .light = light_of(name, scene)});
+            TransportRow& row = report_.rows.back();
+            row.finds_all = row.light == kAllLight;
+            row.refused = why_not(name);
+        }
+        check_reference();
+    }
+
+    TransportScene run() {
+        try {
+            progress("building trees");
+            Messages messages; // said when the scene was read
+            prepared_ = prepare_scene(scene_, prepare_options(settings_.picture, queue_.is_cuda()), messages);
+            report_.triangles = prepared_.triangles;
+            turns_left_ = static_cast<double>(settings_.repetitions) *
+                          static_cast<double>(std::ranges::count(report_.rows, "", &TransportRow::refused));
+            if (turns_left_ > 0) make_reference();
+            for (uint32_t repetition = 0; repetition < settings_.repetitions; ++repetition) {
+                for (TransportRow& row : report_.rows) {
+                    if (row.refused.empty()) take_turn(row, repetition);
+                }
+            }
+        } catch (const TransportStopped&) {
+            report_.interrupted = true;
+        }
+        add_notes();
+        return std::move(report_);
+    }
+
+private:
+    /// Empty where it can render the scene.
+    std::string why_not(const std::string& integrator) const {
+        try {
+            const RenderSettings picture = settings_of(settings_, integrator, 0);
+            Messages notes;
+            check_integrator(picture);
+            check_camera(picture, camera_);
+            check_light(picture, scene_, notes);
+        } catch (const Error& error) {
+            const std::string why = error.what(), flag = fmt::format("--integrator {}: ", integrator);
+            return why.starts_with(flag) ? why.substr(flag.size()) : why;
+        }
+        return {};
+    }
+
+    void check_reference() {
+        TransportReference& reference = report_.reference;
+        if (!settings_.reference) {
+            reference.integrator = settings_.reference_integrator;
+            if (const std::string why = why_not(reference.integrator); !why.empty()) {
+                throw Error(ErrorCode::BadInput,
+                            fmt::format("the reference cannot be made by {}: {}", reference.integrator, why));
+            }
+            reference.lacks = light_lacking(reference.integrator, scene_);
+            return;
+        }
+        reference.file = settings_.reference_file;
+        const Image& given = *settings_.reference;
+        const RenderSettings& picture = settings_.picture;
+        if (given.width != picture.width || given.height != picture.height) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--reference {}: it is {}x{}, the pictures {}x{}; --size {}x{} makes them alike",
+                                    reference.file, given.width, given.height, picture.width, picture.height,
+                                    given.width, given.height));
+        }
+        if (!std::ranges::all_of(given.pixels, [](float value) { return std::isfinite(value); })) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--reference {}: it has values that are not finite", reference.file));
+        }
+    }
+
+    double share_s() const { return settings_.seconds / settings_.repetitions; }
+
+    void progress(const std::string& doing, double share_of_that = 0, double left_of_that_s = 0) {
+        const double now_s = watch_.seconds();
+        // Each turn takes its share of the time, and what the turns so far took beside theirs.
+        const double turn_s = turns_ > 0 ? turns_s_ / turns_ : share_s();
+        const double left_s = left_of_that_s + turns_left_ * turn_s;
+        share_ = std::max(share_, left_s > 0 ? now_s / (now_s + left_s) : share_);
+        const LabProgress now = {share_, doing, share_of_that, now_s, nullptr, nullptr};
+        if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
+    }
+
+    /// What a turn has left after so many seconds for so many samples.
+    double left_of_turn_s(const TransportRow& row, double seconds, uint32_t samples) const {
+        if (!row.repetitions.empty()) return std::max(0.0, row.repetitions.front().back().seconds - seconds);
+        const double to_most_s = seconds / std::max(1u, samples) * (settings_.max_samples - samples);
+        return std::max(0.0, std::min(share_s() - seconds, samples > 0 ? to_most_s : share_s()));
+    }
+
+    /// Adds samples to the session's film, which took `before_s` to come to. Returns the seconds that took.
+    double render(Session& session, const TransportRow& row, uint32_t samples, const std::string& doing,
+                  double before_s) {
+        double seconds = 0;
+        session.render(samples, [&](const RenderProgress& now) {
+            seconds = now.seconds;
+            const double done_s = before_s + seconds, left_s = left_of_turn_s(row, done_s, now.samples_done);
+            progress(doing, done_s / (done_s + left_s), left_s);
+            return true;
+        });
+        return seconds;
+    }
+
+    /// One of the two halves of the reference.
+    Image render_half(uint32_t half, uint32_t samples) {
+        TransportReference& reference = report_.reference;
+        const std::string doing = fmt::format("reference by {}", reference.integrator);
+        progress(doing);
+        Session session(queue_, prepared_, camera_,
+                        settings_of(settings_, reference.integrator, reference_seed(settings_, half)));
+        double seconds = 0;
+        session.render(samples, [&](const RenderProgress& now) {
+            seconds = now.seconds;
+            const double share = (static_cast<double>(now.samples_done) / samples + half) / 2;
+            const double all_s = reference.seconds + seconds;
+            progress(doing, share, all_s / share - all_s);
+            return true;
+        });
+        reference.seconds += seconds;
+        return session.picture();
+    }
+
+    void make_reference() {
+        if (settings_.reference) {
+            reference_ = *settings_.reference;
+        } else {
+            const uint32_t samples = std::max(1u, settings_.reference_samples / 2);
+            const Image halves[2] = {render_half(0, samples), render_half(1, samples)};
+            VarianceOfPictures variance;
+            for (const Image& half : halves) variance.add(half);
+            std::vector<std::size_t> all(std::size_t(halves[0].width) * halves[0].height);
+            std::iota(all.begin(), all.end(), std::size_t(0));
+            report_.reference.samples = 2 * samples;
+            report_.reference.rel_mse = variance.over(all).rel_mse / 2; // of the mean of two
+            report_.reference.flip = hdr_flip(halves[0], halves[1]).mean;
+            reference_ = mean_of(halves[0], halves[1]);
+        }
+        exposure_stops_ = auto_exposure_stops(reference_, ToneMap::Agx);
+        add_picture("the reference", reference_);
+    }
+
+    void add_picture(const std::string& caption, const Image& picture) {
+        report_.pictures.push_back({caption, tone_map_image(picture, ToneMap::Agx, exposure_stops_, false)});
+    }
+
+    /// One repetition of one integrator.
+    void take_turn(TransportRow& row, uint32_t number) {
+        const Stopwatch watch;
+        const std::string doing = fmt::format("{}, {} of {}", row.name, number + 1, settings_.repetitions);
+        turns_left_ -= 1;
+        progress(doing, 0, left_of_turn_s(row, 0, 0));
+        const std::size_t before = queue_.allocated_bytes();
+        Repetition figures;
+        std::vector<Image> pictures;
+        bool stopped = false;
+        try {
+            Session session(queue_, prepared_, camera_,
+                            settings_of(settings_, row.name, repetition_seed(settings_, number)));
+            render(session, row, 1, doing, 0); // memory, caches and the driver's first launch are not timed
+            session.cut();
+            try {
+                add_figures(session, row, number, doing, figures, pictures);
+            } catch (const TransportStopped&) {
+                stopped = true;
+            }
+            row.bytes = std::max(row.bytes, queue_.allocated_bytes() - before);
+            row.invalid_samples += session.stats().invalid_samples;
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::OutOfMemory && error.code() != ErrorCode::OverLimit &&
+                error.code() != ErrorCode::BadInput) {
+                throw;
+            }
+            turns_left_ -= static_cast<double>(settings_.repetitions - 1 - number);
+            row.refused = error.what();
+            row.repetitions.clear();
+            return;
+        }
+        if (number == 0 || !stopped) compare(row, number, std::move(figures), pictures);
+        turns_ += 1, turns_s_ += watch.seconds();
+        if (stopped) throw TransportStopped{};
+    }
+
+    void add_figures(Session& session, const TransportRow& row, uint32_t number, const std::string& doing,
+                     Repetition& figures, std::vector<Image>& pictures) {
+        double seconds = 0;
+        for (uint32_t samples = 1;;) {
+            seconds += render(session, row, samples - session.history().samples, doing, seconds);
+            figures.push_back({.samples = samples, .seconds = seconds});
+            pictures.push_back(session.picture());
+            if (number > 0) {
+                const Repetition& first = row.repetitions.front();
+                if (figures.size() >= first.size()) return;
+                samples = first[figures.size()].samples;
+            } else {
+                if (2 * seconds > share_s() || samples > settings_.max_samples / 2) return;
+                samples *= 2;
+            }
+        }
+    }
+
+    /// A repetition without figures leaves nothing.
+    void compare(TransportRow& row, uint32_t number, Repetition figures, const std::vector<Image>& pictures) {
+        if (figures.empty()) return;
+        std::vector<const Image*> all;
+        for (const Image& picture : pictures) all.push_back(&picture);
+        const std::vector<FlipResult> flips = hdr_flips(all, reference_);
+        for (std::size_t i = 0; i < figures.size(); ++i) {
+            figures[i].rel_mse = relative_error(pictures[i], reference_, 1.0).rel_mse;
+            figures[i].flip = flips[i].mean;
+        }
+        if (number == 0) {
+            add_picture(fmt::format("{}, {} samples, {:.3g} s, relMSE {:.3g}", row.name, figures.back().samples,
+                                    figures.back().seconds, figures.back().rel_mse),
+                        pictures.back());
+        }
+        row.repetitions.push_back(std::move(figures));
+    }
+
+    void add_notes() {
+        const TransportReference& reference = report_.reference;
+        if (!reference.lacks.empty()) report_.notes.push_back("the reference lacks " + reference.lacks);
+        for (const TransportRow& row : report_.rows) {
+            if (row.invalid_samples > 0) {
+                report_.notes.push_back(
+                    fmt::format("{}: {} samples were not finite and count as black", row.name, row.invalid_samples));
+            }
+            const std::vector<TransportPoint> points = points_of(row);
+            if (points.empty() || !reference.rel_mse || !row.finds_all) continue;
+            if (points.back().rel_mse.mean < 10 * *reference.rel_mse) {
+                report_.notes.push_back(fmt::format(
+                    "{}: the reference's own noise is {:.0f} % of its last relMSE; --reference-spp makes it less",
+                    row.name, 100 * *reference.rel_mse / points.back().rel_mse.mean));
+            }
+        }
+    }
+
+    Queue& queue_;
+    const Scene& scene_;
+    const Camera& camera_;
+    const TransportSettings& settings_;
+    const std::function<bool(const LabProgress&)>& keep_going_;
+    TransportScene report_;
+    PreparedScene prepared_;
+    Image reference_;
+    float exposure_stops_ = 0;
+    Stopwatch watch_;
+    double share_ = 0, turns_left_ = 0, turns_ = 0, turns_s_ = 0;
+};
+
+} // namespace
+
+TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
+                             const std::function<bool(const LabProgress&)>& keep_going) {
+    return TransportRunner(queue, scene, camera, settings, keep_going).run();
+}
+
+} // namespace pertev

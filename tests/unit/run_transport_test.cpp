@@ -1,0 +1,130 @@
+// Integrators measured in earnest, small, on the CPU.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "lab/run_transport.h"
+#include "session/choose_camera.h"
+#include "session/open_scene.h"
+#include "tests/support/thrown_error.h"
+
+using namespace pertev;
+
+namespace {
+
+struct SmallRun {
+    Scene scene;
+    Camera camera;
+    Queue queue = Queue::make_cpu();
+    TransportSettings settings;
+
+    SmallRun() {
+        Messages messages;
+        scene = open_scene({.scene = "cornell-box"}, messages);
+        camera = choose_camera({}, scene, 1, messages);
+        settings.integrators = {"path"};
+        settings.picture.width = settings.picture.height = 16;
+        settings.picture.path.max_depth = 4;
+        settings.seconds = 1000; // max_samples ends it
+        settings.max_samples = 64;
+        settings.reference_samples = 1024;
+    }
+    TransportScene run(const std::function<bool(const LabProgress&)>& keep_going = {}) {
+        return run_transport(queue, scene, camera, settings, keep_going);
+    }
+};
+
+const TransportRow& row_named(const TransportScene& scene, const std::string& name) {
+    return *std::ranges::find(scene.rows, name, &TransportRow::name);
+}
+
+} // namespace
+
+TEST_CASE("path's error falls as one over its samples, and the reference's noise is what it is") {
+    SmallRun small;
+    small.settings.integrators = {"path", "hybrid", "cast"};
+    double last_share = 0;
+    bool shares_rise = true;
+    const TransportScene scene = small.run([&](const LabProgress& now) {
+        shares_rise &= now.share >= last_share && now.share <= 1;
+        last_share = now.share;
+        return true;
+    });
+    CHECK(shares_rise);
+    CHECK(last_share > 0.5);
+    CHECK_FALSE(scene.interrupted);
+    const std::vector<TransportPoint> points = points_of(row_named(scene, "path"));
+    REQUIRE(points.size() == 7);
+    CHECK(points.back().samples == 64);
+    CHECK(points.back().repetitions == 4);
+    // Low-discrepancy samples do somewhat better than 1 / 64.
+    const double fall = points.front().rel_mse.mean / points.back().rel_mse.mean;
+    CHECK(fall > 40);
+    CHECK(fall < 300);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        CHECK(points[i].seconds.mean > points[i - 1].seconds.mean);
+        CHECK(points[i].flip.mean < 1.1 * points[i - 1].flip.mean);
+    }
+    // 16 times the samples of the last picture: a sixteenth of its noise or less.
+    REQUIRE(scene.reference.rel_mse);
+    CHECK(scene.reference.samples == 1024);
+    const double ratio = points.back().rel_mse.mean / *scene.reference.rel_mse;
+    CHECK(ratio > 8);
+    CHECK(ratio < 80);
+    // The same samples found in another way, and one that lamps alone do not light.
+    CHECK(row_named(scene, "hybrid").repetitions.back().back().rel_mse ==
+          row_named(scene, "path").repetitions.back().back().rel_mse);
+    CHECK(row_named(scene, "path").bytes > 16 * 16 * 3 * 16); // a film at least
+    CHECK(row_named(scene, "cast").repetitions.empty());
+    CHECK(row_named(scene, "cast").refused.find("lamps alone") != std::string::npos);
+    CHECK(scene.pictures.size() == 3);
+}
+
+TEST_CASE("an interrupt keeps the turns before it, and of the first what it has") {
+    SmallRun small;
+    small.settings.reference_samples = 2;
+    small.settings.max_samples = 8;
+    int seen = 0; // calls of the third turn: as below, so that it has figures when it is dropped
+    const TransportScene second =
+        small.run([&](const LabProgress& now) { return now.doing != "path, 3 of 4" || ++seen < 5; });
+    CHECK(second.interrupted);
+    REQUIRE(second.rows[0].repetitions.size() == 2);
+    CHECK(second.rows[0].repetitions[1].size() == 4);
+    int calls = 0; // one before the session is made, one after the sample that is not timed, then one a pass
+    const TransportScene first =
+        small.run([&](const LabProgress& now) { return now.doing != "path, 1 of 4" || ++calls < 5; });
+    CHECK(first.interrupted);
+    REQUIRE(first.rows[0].repetitions.size() == 1);
+    CHECK(first.rows[0].repetitions[0].size() == 2);
+    const TransportScene none = small.run([](const LabProgress& now) { return !now.doing.starts_with("reference"); });
+    CHECK(none.interrupted);
+    CHECK_FALSE(has_findings(none));
+}
+
+TEST_CASE("the budget ends a repetition before the samples that would not fit") {
+    SmallRun small;
+    small.settings.reference_samples = 2;
+    small.settings.seconds = 1e-9; // which one sample takes longer than
+    const TransportScene scene = small.run();
+    REQUIRE(scene.rows[0].repetitions.size() == 4);
+    for (const Repetition& repetition : scene.rows[0].repetitions) CHECK(repetition.size() == 1);
+}
+
+TEST_CASE("a reference that cannot be one is refused before anything is rendered") {
+    SmallRun small;
+    small.settings.reference_file = "given.exr";
+    const auto message = [&](Image reference) {
+        small.settings.reference = std::move(reference);
+        return test::bad_input_message([&] { small.run(); });
+    };
+    CHECK(message({8, 16, 3, std::vector<float>(8 * 16 * 3)}).find("given.exr: it is 8x16") != std::string::npos);
+    Image bad = {16, 16, 3, std::vector<float>(16 * 16 * 3)};
+    bad.pixels[5] = std::numeric_limits<float>::infinity();
+    CHECK(message(bad).find("not finite") != std::string::npos);
+    small.settings.reference.reset();
+    small.settings.reference_integrator = "cast";
+    CHECK(test::bad_input_message([&] { small.run(); }).find("cannot be made") != std::string::npos);
+}

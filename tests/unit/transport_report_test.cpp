@@ -1,0 +1,168 @@
+// What follows from measured errors: means and bands, equal time, equal samples, efficiency; and the report's texts.
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "lab/run_transport.h"
+#include "lab/transport_light.h"
+#include "lab/transport_presets.h"
+#include "lab/write_transport.h"
+#include "tests/support/small_lab_report.h"
+
+using namespace pertev;
+
+namespace {
+
+/// relMSE c / n after n = 1, 2, 4, 8 samples of `each_s` seconds, HDR-FLIP half of that.
+Repetition falling(double c, double each_s) {
+    Repetition repetition;
+    for (uint32_t n = 1; n <= 8; n *= 2) repetition.push_back({n, n * each_s, c / n, c / n / 2});
+    return repetition;
+}
+
+TransportRow transport_row(const char* name, std::vector<Repetition> repetitions) {
+    return {.name = name, .light = "all", .finds_all = true, .bytes = 3 << 20, .repetitions = std::move(repetitions)};
+}
+
+/// path, another of half its error that takes thrice as long, and one refused.
+TransportScene small_transport_scene() {
+    TransportScene scene = {.name = "a <b>"};
+    scene.reference = {.integrator = "path", .samples = 64, .seconds = 2, .rel_mse = 0.001, .flip = 0.01};
+    scene.rows = {transport_row("path", {falling(1, 0.1), falling(3, 0.1)}),
+                  transport_row("bidirectional", {falling(0.5, 0.3), falling(1.5, 0.3)}),
+                  {.name = "cast", .light = "L(D|G)E", .refused = "lamps alone, and \"more\""}};
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("a band is that of Student's t with one degree of freedom fewer than there are values") {
+    const std::array<double, 4> values = {1, 2, 3, 6};
+    const Estimate e = estimate_of(values);
+    CHECK(e.mean == doctest::Approx(3));
+    // s^2 = (4 + 1 + 0 + 9) / 3; t of 3 degrees, 0.975, is 3.18245.
+    REQUIRE(e.half_width);
+    CHECK(*e.half_width == doctest::Approx(3.18245 * std::sqrt(14.0 / 3 / 4)).epsilon(1e-4));
+    CHECK_FALSE(estimate_of(std::span(values).first(1)).half_width);
+}
+
+TEST_CASE("Student's t is that of the tables, and falls to the normal distribution's") {
+    CHECK(student_t(1) == doctest::Approx(12.7062).epsilon(1e-5));
+    CHECK(student_t(9) == doctest::Approx(2.26216).epsilon(1e-4));
+    CHECK(student_t(30) == doctest::Approx(2.04227).epsilon(1e-4));
+    CHECK(student_t(31) == doctest::Approx(2.03951).epsilon(1e-4));
+    CHECK(student_t(100) == doctest::Approx(1.98397).epsilon(1e-5));
+    CHECK(student_t(1u << 30) == doctest::Approx(1.959964).epsilon(1e-6));
+}
+
+TEST_CASE("at equal time every repetition is interpolated in logarithms") {
+    const TransportScene scene = small_transport_scene();
+    CHECK(equal_seconds(scene) == doctest::Approx(0.8));
+    CHECK(equal_samples(scene) == 8);
+    // c / n is straight there: 0.8 s are 8 / 3 samples of the second, whose errors are 0.5 and 1.5 over that.
+    const auto point = at_time(scene.rows[1], 0.8);
+    REQUIRE(point);
+    CHECK(point->rel_mse.mean == doctest::Approx(1 / (8.0 / 3)).epsilon(1e-5));
+    CHECK(point->flip.mean == doctest::Approx(0.5 / (8.0 / 3)).epsilon(1e-5));
+    CHECK(point->samples == doctest::Approx(8.0 / 3));
+    CHECK(*point->rel_mse.half_width == doctest::Approx(12.7062 * 0.5 / (8.0 / 3)).epsilon(1e-4));
+    CHECK_FALSE(at_time(scene.rows[1], 0.29)); // before its first sample
+    CHECK_FALSE(at_time(scene.rows[1], 2.5));
+    CHECK_FALSE(at_time(scene.rows[2], 0.8));
+    const auto first = at_time(scene.rows[0], 0.1);
+    REQUIRE(first);
+    CHECK(first->rel_mse.mean == doctest::Approx(2));
+}
+
+TEST_CASE("an error of 0 is interpolated as it is") {
+    TransportRow row = transport_row("raster", {{{1, 1, 0, 0.5}, {2, 2, 0, 0.5}}});
+    const auto point = at_time(row, 1.5);
+    REQUIRE(point);
+    CHECK(point->rel_mse.mean == 0);
+    CHECK(point->flip.mean == doctest::Approx(0.5));
+    CHECK_FALSE(efficiency(*point));
+}
+
+TEST_CASE("efficiency is one over error times time, and its ratio to path's stands in the tables") {
+    const TransportScene scene = small_transport_scene();
+    const auto path = at_samples(scene.rows[0], 8);
+    REQUIRE(path);
+    CHECK(*efficiency(*path) == doctest::Approx(1 / (0.25 * 0.8)));
+    CHECK_FALSE(at_samples(scene.rows[0], 3));
+    const TransportTable by_samples = equal_samples_table(scene);
+    REQUIRE(by_samples.size() == 3);
+    CHECK(by_samples[1][0] == "bidirectional"); // the least error first
+    CHECK(by_samples[1][5] == "0.667");         // half the error in thrice the time
+    CHECK(by_samples[2][5] == "1");
+    const TransportTable by_time = equal_time_table(scene);
+    REQUIRE(by_time.size() == 3);
+    CHECK(by_time[1][0] == "path");
+    CHECK(by_time[2][5] == "0.667");
+    CHECK(by_time[2][6] == "3.0"); // MiB
+}
+
+TEST_CASE("a repetition that an interrupt cut short counts where it has figures") {
+    TransportRow row = transport_row("path", {falling(1, 0.1), {falling(3, 0.1)[0]}});
+    const std::vector<TransportPoint> points = points_of(row);
+    REQUIRE(points.size() == 4);
+    CHECK(points[0].repetitions == 2);
+    CHECK(points[0].rel_mse.mean == doctest::Approx(2));
+    CHECK(points[1].repetitions == 1);
+    CHECK_FALSE(points[1].rel_mse.half_width);
+}
+
+TEST_CASE("seeds of repetitions differ, and the reference has none of them") {
+    for (const uint32_t seed : {0u, 5u, 0x7fffffffu}) {
+        TransportSettings settings;
+        settings.picture.path.seed = seed;
+        std::set<uint32_t> seeds;
+        for (uint32_t i = 0; i < kMostRepetitions; ++i) seeds.insert(repetition_seed(settings, i));
+        seeds.insert({reference_seed(settings, 0), reference_seed(settings, 1)});
+        CHECK(seeds.size() == kMostRepetitions + 2);
+    }
+}
+
+TEST_CASE("each preset is a scene of the program, and all light is what three integrators find in lamps") {
+    for (const TransportPreset& preset : transport_presets()) {
+        CAPTURE(preset.name);
+        CHECK(find_transport_preset(preset.name) == &preset);
+        CHECK(test::has("cornell-box caustic blind door many-lights", preset.scene));
+    }
+    CHECK(find_transport_preset("kitchen") == nullptr);
+    Scene lamps, glass;
+    for (const std::string& name : transport_integrators()) {
+        CAPTURE(name);
+        const bool finds_all = name == "path" || name == "hybrid" || name == "bidirectional";
+        CHECK((light_of(name, lamps) == "all") == finds_all);
+        CHECK_FALSE(light_of(name, lamps).empty());
+    }
+    glass.lights.emplace_back();
+    glass.materials.push_back({.kind = MaterialKind::Dielectric, .roughness = 0});
+    glass.instances.emplace_back();
+    glass.instances.back().material = 0;
+    CHECK(light_of("path", glass) == "all but LS+D of point lights");
+    CHECK(default_reference_integrator(glass) == "bidirectional");
+    CHECK(default_reference_integrator(lamps) == "path");
+}
+
+TEST_CASE("the report's texts have what was measured, and what was not with its reason") {
+    TransportReport report = {.device = "CPU", .width = 4, .height = 4, .max_depth = 8, .repetitions = 2};
+    report.scenes.push_back(small_transport_scene());
+    const std::string csv = csv_of(report), json = json_of(report), text = text_of(report), html = html_of(report);
+    CHECK(test::count(csv, "\n") == 1 + 2 * 8 + 1);
+    CHECK(test::has(csv, "\"lamps alone, and \"\"more\"\"\""));
+    CHECK(test::has(json, R"("equal_samples":8)"));
+    CHECK(test::has(json, R"("efficiency":5})")); // of path after 8 samples
+    CHECK(test::has(json, R"("refused":"lamps alone, and \"more\"","device_bytes":null)"));
+    CHECK(test::has(text, "cast: lamps alone"));
+    CHECK(test::has(text, "its own noise: relMSE 0.001"));
+    test::check_tags(html);
+    CHECK(test::count(html, "<svg") == 4);
+    CHECK(test::count(html, "<polygon") == 8); // bands of two curves in each
+    CHECK(test::count(html, ">reference's noise<") == 2);
+    CHECK(test::has(html, "a &lt;b&gt;"));
+    CHECK_FALSE(test::has(html, "a <b>"));
+}
