@@ -41,8 +41,13 @@ std::string light_of(const std::string& integrator, const Scene& scene) {
         return has_caustics_of_points(scene) ? "all but LS+DS+E of point lights" : kAllLight;
     case IntegratorKind::PhotonMap:
         return "all, blurred ever less";
+    case IntegratorKind::IrradianceCache:
+        return has_caustics_of_points(scene) ? "as path, interpolated between records"
+                                             : "all, interpolated between records";
+    case IntegratorKind::Radiosity:
+        return "L(D*)S*E, as one solution has it";
     case IntegratorKind::Light:
-        return "L(D|G|S)*(D|G)E: nothing in mirrors or clear glass";
+        return "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass";
     case IntegratorKind::Distributed:
         return "L(D|G|S)?(G|S)*E: one bounce off what is rough";
     case IntegratorKind::Whitted:
