@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <atomic>
 
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
@@ -82,22 +81,12 @@ TEST_CASE("a session goes to irradiance caching and back, ends early and goes on
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         settings.body = body;
         Session session(queue, prepared, test::camera_with_lens(), settings);
-        std::atomic<bool> is_abandoned = false;
-        session.abandon_when(&is_abandoned);
         for (const auto& [integrator, rays] :
              {std::pair(IntegratorKind::IrradianceCache, 48u), std::pair(IntegratorKind::Path, 48u),
               std::pair(IntegratorKind::IrradianceCache, 20u), std::pair(IntegratorKind::IrradianceCache, 100u)}) {
             settings.integrator = integrator;
             settings.irradiance_cache.hemisphere_rays = rays; // less memory, and more
-            session.set_settings(settings);
-            is_abandoned = true;
-            CHECK(session.render(settings.samples) == 0); // before its records are there
-            is_abandoned = false;
-            // Asked to end after its first sample, and gone on with: what Ctrl-C and a render anew do.
-            CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
-            CHECK(session.render(settings.samples - 1) == settings.samples - 1);
-            CHECK(test::render_hash(session.result()) ==
-                  test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings)));
+            test::check_goes_on(session, queue, scene, settings);
         }
     }
 }
@@ -114,12 +103,7 @@ TEST_CASE("memory of irradiance caching is said beforehand") {
             settings.samples = 1;
             settings.path.max_depth = 1; // room for records is taken, and none is made
             settings.batch = 1000;       // less than the rays of one record
-            Queue queue = test::queue_asked_for();
-            Session session(queue, prepared, test::camera_with_lens(), settings);
-            session.render(settings.samples);
-            const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
-            CHECK(queue.allocated_bytes() >= predicted);
-            CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
+            test::check_predicted_bytes(prepared, settings);
         }
     }
 }

@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <atomic>
 
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
@@ -82,22 +81,12 @@ TEST_CASE("a session goes to photon mapping and back, ends early and goes on, an
     settings.samples = 2;
     settings.pass_samples = 1;
     Session session(queue, prepared, test::camera_with_lens(), settings);
-    std::atomic<bool> is_abandoned = false;
-    session.abandon_when(&is_abandoned);
     for (const auto& [integrator, photons] :
          {std::pair(IntegratorKind::PhotonMap, 2000u), std::pair(IntegratorKind::Path, 2000u),
           std::pair(IntegratorKind::PhotonMap, 500u), std::pair(IntegratorKind::PhotonMap, 4000u)}) {
         settings.integrator = integrator;
         settings.photon_map.photons = photons; // less memory, and more
-        session.set_settings(settings);
-        is_abandoned = true;
-        CHECK(session.render(settings.samples) == 0);
-        is_abandoned = false;
-        // Asked to end after its first pass, and gone on with: what Ctrl-C and a render anew do.
-        CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
-        CHECK(session.render(settings.samples - 1) == settings.samples - 1);
-        CHECK(test::render_hash(session.result()) ==
-              test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings)));
+        test::check_goes_on(session, queue, scene, settings);
     }
 }
 
@@ -110,13 +99,7 @@ TEST_CASE("memory of photon mapping is said beforehand") {
             RenderSettings settings = photon_settings(PhotonGather::Final, 10);
             settings.body = body;
             settings.photon_map.search = search;
-            Queue queue = test::queue_asked_for();
-            Session session(queue, prepared, test::camera_with_lens(), settings);
-            session.render(settings.samples);
-            const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
-            const std::size_t sorting = queue.is_cuda() ? predicted / 10 : 0; // CUB says what it takes on the device
-            CHECK(queue.allocated_bytes() + sorting >= predicted);
-            CHECK(queue.allocated_bytes() <= predicted + 4096 + sorting); // the filter's table, the scene's view
+            test::check_predicted_bytes(prepared, settings, true);
         }
     }
 }

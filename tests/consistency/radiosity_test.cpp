@@ -105,11 +105,6 @@ TEST_CASE("memory of pictures of radiosity is said beforehand") {
     RenderSettings settings = shown(look_at_mixed_scene(2));
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         settings.body = body;
-        Queue queue = test::queue_asked_for();
-        Session session(queue, prepared, test::camera_with_lens(), settings);
-        session.render(settings.samples);
-        const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
-        CHECK(queue.allocated_bytes() >= predicted);
-        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
+        test::check_predicted_bytes(prepared, settings);
     }
 }

@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <atomic>
 
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
@@ -87,20 +86,10 @@ TEST_CASE("a picture of trees that is abandoned leaves no sample behind, and the
     Messages messages;
     const Scene scene = tree_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    const RenderSettings settings = tree_settings(IntegratorKind::Distributed);
+    RenderSettings settings = tree_settings(IntegratorKind::Distributed);
+    settings.pass_samples = 1;
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
-    std::atomic<bool> is_abandoned = true;
-    session.abandon_when(&is_abandoned);
-    CHECK(session.render(settings.samples) == 0);
-    is_abandoned = false;
-    // Asked to end after its first pass, and gone on with: what Ctrl-C and a render anew do.
-    RenderSettings passes = settings;
-    passes.pass_samples = 1;
-    session.set_settings(passes);
-    CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
-    CHECK(session.render(settings.samples - 1) == settings.samples - 1);
-    CHECK(test::render_hash(session.result()) ==
-          test::render_hash(test::render(queue, scene, test::mixed_scene_camera(), settings)));
+    test::check_goes_on(session, queue, scene, settings, test::mixed_scene_camera());
 }
 
 TEST_CASE("memory of trees is said beforehand") {
@@ -110,12 +99,7 @@ TEST_CASE("memory of trees is said beforehand") {
     for (const IntegratorKind integrator : kTrees) {
         RenderSettings settings = tree_settings(integrator);
         settings.body = PathBody::Wavefront;
-        Queue queue = test::queue_asked_for();
-        Session session(queue, prepared, test::mixed_scene_camera(), settings);
-        session.render(settings.samples);
-        const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
-        CHECK(queue.allocated_bytes() >= predicted);
-        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
+        test::check_predicted_bytes(prepared, settings);
     }
 }
 

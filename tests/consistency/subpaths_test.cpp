@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <atomic>
 
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
@@ -76,21 +75,11 @@ TEST_CASE("a session goes to walks from the lights and back, ends early and goes
     settings.samples = 2;
     settings.pass_samples = 1;
     Session session(queue, prepared, test::camera_with_lens(), settings);
-    std::atomic<bool> is_abandoned = false;
-    session.abandon_when(&is_abandoned);
     for (const IntegratorKind integrator :
          {IntegratorKind::Light, IntegratorKind::Bidirectional, IntegratorKind::Path, IntegratorKind::Bidirectional}) {
         settings.integrator = integrator;
         settings.path.max_depth = settings.path.max_depth == 6 ? 3 : 6; // less memory, and more
-        session.set_settings(settings);
-        is_abandoned = true;
-        CHECK(session.render(settings.samples) == 0);
-        is_abandoned = false;
-        // Asked to end after its first pass, and gone on with: what Ctrl-C and a render anew do.
-        CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
-        CHECK(session.render(settings.samples - 1) == settings.samples - 1);
-        CHECK(test::render_hash(session.result()) ==
-              test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings)));
+        test::check_goes_on(session, queue, scene, settings);
     }
 }
 
@@ -101,12 +90,7 @@ TEST_CASE("memory of walks is said beforehand, and is a GiB at most") {
     for (const IntegratorKind integrator : kWalks) {
         RenderSettings settings = walk_settings(integrator);
         settings.body = PathBody::Wavefront;
-        Queue queue = test::queue_asked_for();
-        Session session(queue, prepared, test::camera_with_lens(), settings);
-        session.render(settings.samples);
-        const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
-        CHECK(queue.allocated_bytes() >= predicted);
-        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
+        test::check_predicted_bytes(prepared, settings);
         for (const uint32_t depth : {0u, 8u, 255u}) {
             settings.path.max_depth = depth;
             CHECK(predicted_bytes(settings, uint64_t(1) << 26, 64, true, false) <= std::size_t(1) << 30);

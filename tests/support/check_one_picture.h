@@ -4,7 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
+
 #include "base/parallel_for.h"
+#include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -59,6 +62,33 @@ inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings setti
     settings.path.seed = 1;
     CHECK(checked_picture(queue, scene, settings).hash != reference.hash);
     return reference;
+}
+
+/// The settings given to a session: rendered in vain, ended after its first pass and gone on with (what Ctrl-C and a
+/// render anew do), it has the picture of a fresh one. Of passes of one sample, two samples or more.
+inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, const RenderSettings& settings,
+                          const Camera& camera = camera_with_lens()) {
+    std::atomic<bool> is_abandoned = true;
+    session.set_settings(settings);
+    session.abandon_when(&is_abandoned);
+    CHECK(session.render(settings.samples) == 0);
+    is_abandoned = false;
+    CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
+    CHECK(session.render(settings.samples - 1) == settings.samples - 1);
+    CHECK(render_hash(session.result()) == render_hash(render(queue, scene, camera, settings)));
+    session.abandon_when(nullptr);
+}
+
+/// A picture takes the memory that is said beforehand. `sorts`: on a GPU, for which CUB says what it takes on the
+/// device alone.
+inline void check_predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool sorts = false) {
+    Queue queue = queue_asked_for();
+    Session session(queue, prepared, camera_with_lens(), settings);
+    session.render(settings.samples);
+    const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
+    const std::size_t sorting = sorts && queue.is_cuda() ? predicted / 10 : 0;
+    CHECK(queue.allocated_bytes() + sorting >= predicted);
+    CHECK(queue.allocated_bytes() <= predicted + 4096 + sorting); // the filter's table, the scene's view
 }
 
 } // namespace pertev::test
