@@ -47,8 +47,9 @@ TEST_CASE("pictures by irradiance caching do not depend on threads, passes, bodi
 
 TEST_CASE("irradiance caching tells the same of the first surface as path tracing, and of light scattered once") {
     Queue queue = test::queue_asked_for();
-    const auto layers_of = [&](IntegratorKind integrator) {
+    const auto layers_of = [&](IntegratorKind integrator, bool shows_records = false) {
         RenderSettings settings = cache_settings();
+        settings.irradiance_cache.show_records = shows_records;
         settings.integrator = integrator;
         settings.samples = 2;
         RenderResult result = test::render(queue, scene_with_mirror(), test::camera_with_lens(), settings);
@@ -56,6 +57,7 @@ TEST_CASE("irradiance caching tells the same of the first surface as path tracin
         return test::render_hash(result);
     };
     CHECK(layers_of(IntegratorKind::IrradianceCache) == layers_of(IntegratorKind::Path));
+    CHECK(layers_of(IntegratorKind::IrradianceCache, true) == layers_of(IntegratorKind::Path));
     RenderSettings settings = cache_settings();
     for (const uint32_t depth : {0u, 1u}) { // nothing is in records
         settings.path.max_depth = depth;

@@ -7,6 +7,7 @@
 #include "integrators/irradiance_cache/cached_surface.h"
 #include "integrators/subpaths/walk_vertex.h"
 #include "render/film_view.h"
+#include "render/first_hit.h"
 
 namespace pertev {
 
@@ -106,6 +107,9 @@ struct DrawRecords {
             is_marked = is_marked || (own.scatterings == place.scatterings && dot(own.normal, place.normal) > 0);
         });
         if (!is_marked) return;
+        if (state.depth() == 0) {
+            add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, scene.picture);
+        }
         add_radiance(film, state.pixel, state.throughput * light);
         cache.aims[walk] = WalkAim::End;
     }

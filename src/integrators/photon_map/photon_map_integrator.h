@@ -59,7 +59,8 @@ public:
 
 private:
     const HostTrees* trees_of_loop() const; // null: all at once
-    bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
+    /// A session throws the film away on the CPU alone.
+    bool is_abandoned() const { return abandon_ != nullptr && *abandon_ && !queue_.is_cuda(); }
     void find_targets();
     PhotonJob make_job(uint32_t pass, const FilmView& film);
     void render_pass(uint32_t pass, const FilmView& film);
