@@ -9,7 +9,6 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "base/byte_units.h"
-#include "base/message_text.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -142,7 +141,8 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityS
     const uint64_t patches = predicted_patches(prepared, settings);
     const std::size_t bytes = predicted_bytes(patches, settings);
     reporter.say(fmt::format("radiosity: at most {} of {:.4g} m, {:.0f} MiB of this machine's memory",
-                             counted(patches, "patch's side"), patch_size_of(prepared, settings), mebibytes(bytes)));
+                             fmt::format("{} {}", patches, patches == 1 ? "patch" : "patches"),
+                             patch_size_of(prepared, settings), mebibytes(bytes)));
     reporter.event(fmt::format(R"({{"event":"radiosity","most_patches":{},"patch_size":{},"predicted_bytes":{}}})",
                                patches, patch_size_of(prepared, settings), bytes));
     SolvedRadiosity solved = solve_radiosity(prepared, settings, [&](const char* what, double share) {

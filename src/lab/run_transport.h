@@ -44,8 +44,8 @@ inline uint32_t reference_seed(const TransportSettings& settings, uint32_t half)
 /// The first repetition of an integrator goes on to 1, 2, 4, ... samples as long as the next fits into its share of the
 /// time (one sample is always rendered); the others have the same numbers. One that cannot render this scene is refused
 /// in its row. `scene` has been through validate(). Stops early, with `interrupted` set, when keep_going returns false;
-/// the repetition that was under way is kept where it is
-/// an integrator's first. Throws Error(BadInput) where the reference given has another
+/// the repetition that was under way is kept where it is an
+/// integrator's first. Throws Error(BadInput) where the reference given has another
 /// size or is not finite, or the reference's integrator cannot render the scene; what Session throws of the device.
 TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
                              const std::function<bool(const LabProgress&)>& keep_going);

@@ -53,6 +53,7 @@ public:
         const auto range = std::ranges::equal_range(corners_, cell, {}, &Corner::cell);
         return {range.begin(), range.end()};
     }
+    bool are_one_place(Vec3 a, Vec3 b) const { return cell_of(a) == cell_of(b); }
     bool is_same_surface(uint32_t a, uint32_t b) const {
         return dot(shapes_[a].normal, shapes_[b].normal) > kSameSurface;
     }
@@ -103,6 +104,8 @@ public:
 private:
     void anchor(uint32_t patch, Vec3 a, Vec3 b, Rgb at_a, Rgb at_b, int depth) {
         const Vec3 middle = 0.5f * (a + b);
+        if (table_.are_one_place(a, middle) || table_.are_one_place(b, middle))
+            return; // no finer corners are told apart
         const Rgb light = 0.5f * (at_a + at_b);
         bool any = false;
         for (const Corner& corner : table_.at(middle)) {

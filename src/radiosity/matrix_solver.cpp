@@ -47,14 +47,18 @@ std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSo
 
 } // namespace
 
+void check_matrix_size(std::size_t patches) {
+    if (patches <= kMostMatrixPatches) return;
+    throw Error(
+        ErrorCode::OverLimit,
+        fmt::format("--solver matrix: {} patches; at most {} (--solver gauss-seidel or southwell solves more, a "
+                    "larger --patch-size makes fewer)",
+                    patches, kMostMatrixPatches));
+}
+
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going) {
     const std::size_t n = system.patches.size();
-    if (n > kMostMatrixPatches) {
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("--solver matrix: {} patches; at most {} (--solver gauss-seidel or southwell solves "
-                                "more, a larger --patch-size makes fewer)",
-                                n, kMostMatrixPatches));
-    }
+    check_matrix_size(n);
     SolvedSystem solved;
     std::vector<double> radiosity[3];
     for (int k = 0; k < 3; ++k) {

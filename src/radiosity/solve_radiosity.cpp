@@ -192,6 +192,8 @@ SolvedPatches solve_rows(const SolvedScene& scene, float patch_size, const Radio
                          const SolveProgress& progress, SolveStats& stats) {
     SolvedPatches solved;
     solved.tree = make_patches(scene.view(), patch_size);
+    if (settings.solver == RadiositySolver::Matrix)
+        check_matrix_size(solved.tree.patches.size()); // before hours of rows
     const Stopwatch watch;
     const RadiositySystem system = make_system(scene, solved.tree, settings, progress);
     stats.factors = system.factor_count();
