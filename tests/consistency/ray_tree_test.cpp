@@ -4,8 +4,6 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
 #include "tests/support/options.h"
@@ -54,9 +52,7 @@ TEST_CASE("every integrator tells the same of the first surface") {
     const auto layers_of = [&](IntegratorKind integrator) {
         RenderSettings settings = tree_settings(integrator);
         settings.samples = 2;
-        RenderResult result = test::render(queue, tree_scene(), test::mixed_scene_camera(), settings);
-        std::ranges::fill(result.picture.pixels, 0.0f);
-        return test::render_hash(result);
+        return test::hash_of_layers(queue, tree_scene(), settings, test::mixed_scene_camera());
     };
     const Hash128 of_path = layers_of(IntegratorKind::Path);
     for (const IntegratorKind integrator : kTrees) CHECK(layers_of(integrator) == of_path);

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "base/parallel_for.h"
@@ -30,6 +31,14 @@ inline CheckedPicture checked_picture(Queue& queue, const Scene& scene, const Re
     const RenderResult result = render(queue, scene, camera_with_lens(), settings);
     CHECK(result.invalid_samples == 0);
     return {render_hash(result), result.rays};
+}
+
+/// Of all but the picture: what the layers tell of the first surface.
+inline Hash128 hash_of_layers(Queue& queue, const Scene& scene, const RenderSettings& settings,
+                              const Camera& camera = camera_with_lens()) {
+    RenderResult result = render(queue, scene, camera, settings);
+    std::ranges::fill(result.picture.pixels, 0.0f);
+    return render_hash(result);
 }
 
 inline void check_same(const CheckedPicture& a, const CheckedPicture& b) {
