@@ -22,21 +22,20 @@ struct TraceQuery {
     bool is_opaque() const { return scene == nullptr; }
 };
 
-/// Where a ray goes, as an instance meets it that has moved. Out of line, as what follows.
-HD_CALL inline Vec3 turned_back(const SceneView* scene, Vec3 direction, float time, uint32_t instance) {
-    return scene->motions.of_instance_at(instance, time).turn_back(direction);
+/// Of an instance at rest that may let something pass. Out of line: what it does with textures must not cost the walk
+/// registers.
+HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+                                   uint32_t instance, uint32_t primitive, float u, float v) {
+    if (hides_backs && hides_side(*scene, ray->direction, instance, primitive)) return true;
+    return scene->any_alpha != 0 && !AcceptHit{*scene, {}, {}, key}.passes_alpha(instance, primitive, u, v);
 }
 
-/// Of an instance that may let something pass. Out of line: what it does with textures must not cost the walk
-/// registers. `time`: null where nothing moves while the shutter is open.
-HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
-                                   const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
-    if (hides_backs && scene->instances[instance].hides_back != 0) {
-        Vec3 direction = ray->direction;
-        if (time != nullptr) direction = turned_back(scene, direction, *time, instance);
-        if (hides_side(*scene, direction, instance, primitive)) return true;
-    }
-    return scene->any_alpha != 0 && !AcceptHit{*scene, {}, {}, key}.passes_alpha(instance, primitive, u, v);
+/// The same of one that may have moved. `time`: null where nothing moves while the shutter is open.
+HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+                                         const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
+    const AcceptHit accept{*scene, {}, {}, key, time != nullptr ? *time : kAtRest};
+    if (hides_backs && AcceptCameraHit{accept, ray->direction}.meets_hidden_back(instance, primitive)) return true;
+    return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
 }
 
 /// Where a ray begins and where it goes, as an instance meets it that has moved. Out of line: no still instance pays
@@ -67,6 +66,9 @@ private:
     }
 };
 
+/// `kMayMove`: not where all triangles are baked, since those stand still. One more argument would cost every candidate
+/// of a surface with alpha.
+template <bool kMayMove>
 struct AcceptQueued {
     const TraceQuery& query;
     uint32_t i;
@@ -76,18 +78,25 @@ struct AcceptQueued {
         if (query.scene == nullptr) return true;
         // A word of 32 instances is in the cache where their views are not.
         if ((query.passing[instance / 32] >> instance % 32 & 1u) == 0) return true;
-        const int64_t place = query.rays.place(i);
-        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[place] : 0;
-        const float* const time = query.rays.times != nullptr ? query.rays.times + place : nullptr;
-        return !passes_surface(query.scene, query.rays.rays + place, key, query.hides_backs, time, instance, primitive,
-                               u, v);
+        const Ray* const ray = query.rays.rays + query.rays.place(i);
+        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[query.rays.place(i)] : 0;
+        if constexpr (kMayMove) {
+            return !passes_moved_surface(query.scene, ray, key, query.hides_backs, time(), instance, primitive, u, v);
+        } else {
+            return !passes_surface(query.scene, ray, key, query.hides_backs, instance, primitive, u, v);
+        }
     }
-    HD Ray move_back(uint32_t motion, const Ray& ray) const {
+    HD Ray move_back(uint32_t motion, const Ray& ray) const
+        requires kMayMove
+    {
         if (query.moving == nullptr) return ray;
-        const int64_t place = query.rays.place(i);
-        const float* const time = query.rays.times != nullptr ? query.rays.times + place : nullptr;
-        const MovedLine line = moved_back(query.moving, motion, time, query.rays.rays + place);
+        const MovedLine line = moved_back(query.moving, motion, time(), query.rays.rays + query.rays.place(i));
         return {line.origin, ray.t_min, line.direction, ray.t_max};
+    }
+
+private:
+    HD const float* time() const {
+        return query.rays.times != nullptr ? query.rays.times + query.rays.place(i) : nullptr;
     }
 };
 

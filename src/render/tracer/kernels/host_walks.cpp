@@ -19,7 +19,7 @@ template <WalkOptions kOptions, bool kAny>
 void trace_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
     using Walk = Wide8SimdWalk<kOptions>;
     using Scene = SceneTrees<typename Walk::Tree>;
-    const TraceQueue<Walk, kAny, AcceptQueued, Scene> stage = {std::get<Scene>(trees), batch.query, hits};
+    const TraceQueue<Walk, kAny, AcceptQueued<true>, Scene> stage = {std::get<Scene>(trees), batch.query, hits};
     parallel_for(batch.count.value(), kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
@@ -39,7 +39,7 @@ std::array<Hit, kPacketRays> trace_packet(const SceneBvhView& scene, const RayBa
     RayPacket rays{};
     for (uint64_t k = 0; k < count; ++k) rays[k] = batch.query.rays.load(static_cast<uint32_t>(first + k));
     const auto accepts = [&]<std::size_t... k>(std::index_sequence<k...>) {
-        return PacketAccepts<AcceptQueued>{AcceptQueued{batch.query, static_cast<uint32_t>(first + k)}...};
+        return PacketAccepts<AcceptQueued<true>>{AcceptQueued<true>{batch.query, static_cast<uint32_t>(first + k)}...};
     }(std::make_index_sequence<kPacketRays>());
     std::array<Hit, kPacketRays> found;
     if constexpr (kAny) {

@@ -5,7 +5,7 @@ namespace pertev {
 
 /// Rays of the camera go by it.
 template <>
-inline constexpr bool kFastAlone<OctantWalk<WalkOptions{}>> = true;
+inline constexpr bool kOfPictures<OctantWalk<WalkOptions{}>> = true;
 
 void add_octant_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<OctantWalk>(WalkKind::Octants, rows); }
 

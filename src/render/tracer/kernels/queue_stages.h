@@ -76,7 +76,7 @@ struct CountQueue {
 
     HD void operator()(uint32_t i) const {
         uint64_t nodes = 0, triangles = 0;
-        trace_queued<Walk, kAny, AcceptQueued>(scene, query, i, WalkCounter{&nodes, &triangles});
+        trace_queued<Walk, kAny, AcceptQueued<true>>(scene, query, i, WalkCounter{&nodes, &triangles});
         work[i] = {static_cast<uint32_t>(nodes), static_cast<uint32_t>(triangles)};
     }
 };

@@ -12,7 +12,12 @@
 namespace pertev {
 
 // A walk is compiled for a scene of one tree all of whose surfaces are opaque, which saves registers, and for all
-// scenes; those that are made to be fast for a scene of one tree with other surfaces too.
+// scenes; those that are made to be fast for a scene of one tree with other surfaces too; those of pictures also for
+// instances that stand still.
+
+/// Whether a picture's rays go this way where nothing else is asked for.
+template <class Walk>
+inline constexpr bool kOfPictures = false;
 
 /// A kernel's template arguments beside the walk.
 template <class SceneOf, class AcceptOf>
@@ -23,27 +28,34 @@ struct Compiled {
 template <class Walk>
 using OneOpaqueTree = Compiled<SingleTree<typename Walk::Tree>, AcceptOpaque>;
 template <class Walk>
-using OneTree = Compiled<SingleTree<typename Walk::Tree>, AcceptQueued>;
+using OneTree = Compiled<SingleTree<typename Walk::Tree>, AcceptQueued<false>>;
 template <class Walk>
-using AnyScene = Compiled<SceneTrees<typename Walk::Tree>, AcceptQueued>;
+using StillScene = Compiled<SceneTrees<typename Walk::Tree>, AcceptQueued<false>>;
+template <class Walk>
+using AnyScene = Compiled<SceneTrees<typename Walk::Tree>, AcceptQueued<true>>;
 
 /// Calls run(scene, compiled) with the kernel for this scene and these surfaces.
-template <class Walk, bool kFast, class Run>
-void with_kernel(const AnyTrees& trees, bool is_opaque, const Run& run) {
+template <class Walk, bool kFast, bool kStillToo, class Run>
+void with_kernel(const AnyTrees& trees, const TraceQuery& query, const Run& run) {
     const auto& scene = std::get<SceneTrees<typename Walk::Tree>>(trees);
-    if (scene.top_root == kNoLink && is_opaque) return run(SingleTree{scene.baked}, OneOpaqueTree<Walk>{});
+    if (scene.top_root == kNoLink && query.is_opaque()) return run(SingleTree{scene.baked}, OneOpaqueTree<Walk>{});
     if constexpr (kFast) {
         if (scene.top_root == kNoLink) return run(SingleTree{scene.baked}, OneTree<Walk>{});
+    }
+    if constexpr (kStillToo) {
+        if (query.moving == nullptr) return run(scene, StillScene<Walk>{});
     }
     run(scene, AnyScene<Walk>{});
 }
 
 template <class Walk, bool kAny, bool kFast>
 void trace_one_a_thread(Queue& queue, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
-    with_kernel<Walk, kFast>(trees, batch.query.is_opaque(), [&]<class Kernel>(const auto& scene, Kernel) {
-        using Stage = TraceQueue<Walk, kAny, typename Kernel::Accept, typename Kernel::Scene>;
-        launch(queue, "trace rays", batch.count, Stage{scene, batch.query, hits});
-    });
+    constexpr bool kStillToo = kOfPictures<Walk> && !kFast;
+    with_kernel<Walk, kFast || kOfPictures<Walk>, kStillToo>(
+        trees, batch.query, [&]<class Kernel>(const auto& scene, Kernel) {
+            using Stage = TraceQueue<Walk, kAny, typename Kernel::Accept, typename Kernel::Scene>;
+            launch(queue, "trace rays", batch.count, Stage{scene, batch.query, hits});
+        });
 }
 
 template <class Walk, bool kAny>
@@ -56,7 +68,7 @@ void count_work(Queue& queue, const AnyTrees& trees, const RayBatch& batch, RayW
 
 template <class Walk, bool kAny, bool kFast>
 void trace_persistent(Queue& queue, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
-    with_kernel<Walk, kFast>(trees, batch.query.is_opaque(), [&]<class Kernel>(const auto& scene, Kernel) {
+    with_kernel<Walk, kFast, false>(trees, batch.query, [&]<class Kernel>(const auto& scene, Kernel) {
         using Stage = TraceQueue<Walk, kAny, typename Kernel::Accept, typename Kernel::Scene>;
         launch_persistent(queue, "trace rays from a pool", batch.count, Stage{scene, batch.query, hits}, batch.pool);
     });
@@ -64,7 +76,7 @@ void trace_persistent(Queue& queue, const AnyTrees& trees, const RayBatch& batch
 
 template <class Walk, bool kAny>
 void trace_dynamic(Queue& queue, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
-    with_kernel<Walk, true>(trees, batch.query.is_opaque(), [&]<class Kernel>(const auto& scene, Kernel) {
+    with_kernel<Walk, true, kOfPictures<Walk>>(trees, batch.query, [&]<class Kernel>(const auto& scene, Kernel) {
         launch_dynamic_fetch<Walk, kAny>(queue, "trace rays, fetched", scene,
                                          QueueInOut<kAny, typename Kernel::Accept>{batch.query, hits}, batch.count,
                                          batch.pool);
@@ -119,17 +131,12 @@ KernelLimits limits(bool has_instances) {
 
 #endif
 
-/// Whether a walk is made to be fast where rays come one a thread, and so compiled for one tree of any surfaces.
-template <class Walk>
-inline constexpr bool kFastAlone = false;
-
 /// Closest or any hit of one set of switches: one ray a thread, and in CUDA from a pool too. `kFast`: by dynamic fetch
-/// as well, and compiled for one tree of any surfaces. `kLanes`: lanes are counted.
+/// as well, which pictures then go by. `kLanes`: lanes are counted.
 template <class Walk, bool kAny, bool kFast, bool kLanes>
 void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>& rows) {
-    constexpr bool kOneTreeToo = kFast || kFastAlone<Walk>;
     WalkKernel row = {kind, options, Distribution::OneAThread, kAny, true, kind != WalkKind::Packet};
-    row.trace = trace_one_a_thread<Walk, kAny, kOneTreeToo>;
+    row.trace = trace_one_a_thread<Walk, kAny, kFast>;
     row.count = count_work<Walk, kAny>;
 #if defined(__CUDACC__)
     if constexpr (kLanes) row.count_lanes = count_lanes<Walk, kAny, Distribution::OneAThread>;
