@@ -10,6 +10,7 @@ namespace pertev {
 
 struct Cast {
     static constexpr uint32_t kMostBranches = 0; // rays that a vertex sends on
+    static constexpr bool kHasShutter = true;
 
     /// A point, a spot or a direction each: hard shadows.
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }

@@ -16,6 +16,7 @@ namespace pertev {
 
 struct Distributed {
     static constexpr uint32_t kMostBranches = 3;
+    static constexpr bool kHasShutter = true;
     static constexpr LeastWeight kLeast = {0x1p-4f, WeakRays::ByChance};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 1; }

@@ -13,6 +13,7 @@ namespace pertev {
 
 struct Radiosity {
     static constexpr uint32_t kMostBranches = 2;
+    static constexpr bool kHasShutter = false;
     static constexpr LeastWeight kLeast = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 0; }

@@ -3,6 +3,7 @@
 // An integrator whose samples are trees of rays (tree_memory.h): the one file that orders the stages. What differs from
 // one to the other is `Algorithm`, a few lines (integrators/cast/cast.h is the shortest):
 //   kMostBranches   rays that a vertex sends on, at most
+//   kHasShutter     whether its rays have a time
 //   shadow_rays     that a vertex may ask for
 //   ask_for_light   writes one of them
 //   follow          puts what the vertex sends on on the stack, and adds ambient light
@@ -51,6 +52,7 @@ private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
     void render_all_at_once(uint32_t first, uint32_t count, const FilmView& film);
     void give_rounds(uint32_t trees, const FilmView& film);
+    void shade(const WorkCount& rays, const FilmView& film, uint32_t round, uint32_t first, bool is_last);
 
     Queue& queue_;
     RayTreeSettings settings_, picture_settings_; // asked for; with the picture's own ambient light

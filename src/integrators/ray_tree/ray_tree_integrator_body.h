@@ -77,7 +77,8 @@ private:
         const uint32_t shadows = Algorithm::shadow_rays(picture_.scene.lights);
         for (uint32_t first = 0; first == 0 || first < shadows; first += kShadowsAtOnce) {
             const bool is_last = first + kShadowsAtOnce >= shadows;
-            run(rays, ShadeTrees<Algorithm>{picture_, settings_, film_, trees_, round, first, is_last});
+            run(rays,
+                ShadeTrees<Algorithm, MotionKnown::Perhaps>{picture_, settings_, film_, trees_, round, first, is_last});
             find_occlusions_of(trees_.counts->shadows);
             run(rays, AddTreeLight{trees_, round});
             CountTrees{trees_.counts, false}(0);
@@ -219,6 +220,20 @@ void RayTreeIntegrator<Algorithm>::render_all_at_once(uint32_t first, uint32_t c
     rays_ = rays_ + RayCounts{all, counts.bounces, counts.all_shadows};
 }
 
+/// One launch of ShadeTrees.
+template <class Algorithm>
+void RayTreeIntegrator<Algorithm>::shade(const WorkCount& rays, const FilmView& film, uint32_t round, uint32_t first,
+                                         bool is_last) {
+    const auto shade_as = [&]<MotionKnown kMotion>() {
+        launch(queue_, "shade_trees", rays,
+               ShadeTrees<Algorithm, kMotion>{picture_, picture_settings_, film, trees_, round, first, is_last});
+    };
+    if constexpr (Algorithm::kHasShutter) {
+        if (picture_.camera.is_open) return shade_as.template operator()<MotionKnown::Perhaps>();
+    }
+    shade_as.template operator()<MotionKnown::None>();
+}
+
 /// The host gives rounds without waiting for one, and reads one round late how many rays there were.
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::give_rounds(uint32_t trees, const FilmView& film) {
@@ -229,8 +244,7 @@ void RayTreeIntegrator<Algorithm>::give_rounds(uint32_t trees, const FilmView& f
         tracer_->find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, trees_.query(), rays, trees_.hits());
         for (uint32_t first = 0; first == 0 || first < shadows; first += kShadowsAtOnce) {
             const bool is_last = first + kShadowsAtOnce >= shadows;
-            launch(queue_, "shade_trees", rays,
-                   ShadeTrees<Algorithm>{picture_, picture_settings_, film, trees_, round, first, is_last});
+            shade(rays, film, round, first, is_last);
             if (shadows > 0) {
                 const uint64_t asked = uint64_t(most) * std::min(shadows - first, kShadowsAtOnce);
                 tracer_->find_occlusions(trees_.shadow_query(), {static_cast<uint32_t>(asked), &trees_.counts->shadows},

@@ -45,8 +45,9 @@ struct BeginTrees {
 
 /// What the rays under way have met. The vertex's shadow rays from `first_shadow` on are queued, kShadowsAtOnce at
 /// most: the stage runs again until all have been. The first time emission is added, the last time (`is_last`) what the
-/// vertex sends on goes on the stack, over the ray that ended there.
-template <class Algorithm>
+/// vertex sends on goes on the stack, over the ray that ended there. `kMotion`: None where no shutter is open; code for
+/// both would keep surfaces in memory.
+template <class Algorithm, MotionKnown kMotion>
 struct ShadeTrees {
     PictureView picture;
     RayTreeSettings settings;
@@ -84,10 +85,12 @@ private:
     }
     HD void shade(uint32_t tree, TreeState& state, const PendingRay& ray, const Hit& hit) const {
         const SceneView& scene = picture.scene;
-        const float time = time_of(picture.camera, settings, state);
+        constexpr bool kMayMove = kMotion != MotionKnown::None;
+        const float time = kMayMove ? time_of(picture.camera, settings, state) : kAtRest;
+        const bool moves = is_moving<kMotion>(scene);
         const MovedHit moved(scene, hit, time);
-        Surface surface = make_surface(scene, hit, moved.back(ray.direction));
-        moved.move(surface);
+        Surface surface = make_surface(scene, hit, kMayMove ? moved.back(ray.direction) : ray.direction);
+        if (kMayMove) moved.move(surface);
         if (first_shadow == 0) {
             if (ray.depth == 0) {
                 add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture,
@@ -96,14 +99,15 @@ private:
             if (!is_black(surface.emission)) {
                 const uint32_t light =
                     ray.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
-                add_emission(state, ray, surface.emission,
-                             light != kNoLight
-                                 ? pdf_light_hit_at(scene, light, hit.instance, ray.origin, surface.position, time)
-                                 : 0.0f);
+                const float light_pdf =
+                    light == kNoLight ? 0.0f
+                    : moves           ? pdf_light_hit_at(scene, light, hit.instance, ray.origin, surface.position, time)
+                                      : pdf_light_hit(scene.lights, light, ray.origin, surface.position);
+                add_emission(state, ray, surface.emission, light_pdf);
             }
         }
         if (surface.is_unlit || ray.depth >= settings.max_depth) return;
-        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface, time, {hit.u, hit.v}};
+        const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface, time, moves, {hit.u, hit.v}};
         ask_for_lights(vertex);
         if (is_last) Algorithm::follow(vertex);
     }

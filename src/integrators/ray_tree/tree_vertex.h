@@ -50,6 +50,7 @@ struct TreeVertex {
     const PendingRay& ray; // that ends here
     const Surface& surface;
     float time; // of all rays of the tree
+    bool moves; // something does while the shutter is open
     Vec2 place; // on the triangle: weights of its second and third corner
 
     HD Vec3 wo() const { return -ray.direction; }
@@ -74,8 +75,11 @@ struct TreeVertex {
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
         LightSample sample;
         const SampleBits u = sample_bits(settings.sampler, key(), of, Pair::Last);
-        const LampsAt lamps = {picture.scene.motions, time};
-        if (!sample_light(picture.scene.lights, surface.position, u, sample, lamps)) return false;
+        const LightSetView& lights = picture.scene.lights;
+        const bool is_drawn =
+            moves ? sample_light(lights, surface.position, u, sample, LampsAt{picture.scene.motions, time})
+                  : sample_light(lights, surface.position, u, sample);
+        if (!is_drawn) return false;
         const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
         if (is_black(all.f) || is_hole(sample)) return false;
         Rgb f = all.f;
@@ -119,7 +123,7 @@ private:
     /// The ray to what was drawn of a light, `f_times_light` of which arrives if nothing is in between.
     HD bool ask_for(const LightSample& light, Rgb f_times_light, TreeShadowRay& shadow) const {
         if (is_black(f_times_light)) return false;
-        const float lamp_error = lamp_error_at(picture.scene, light, time);
+        const float lamp_error = moves ? lamp_error_at(picture.scene, light, time) : 0.0f;
         shadow.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
         shadow.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         shadow.contribution = ray.weight * f_times_light;

@@ -3,5 +3,6 @@
 #include "integrators/whitted/whitted.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Whitted>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Whitted, MotionKnown::None>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeTrees<Whitted, MotionKnown::Perhaps>&);
 } // namespace pertev

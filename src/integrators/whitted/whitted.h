@@ -12,6 +12,7 @@ namespace pertev {
 
 struct Whitted {
     static constexpr uint32_t kMostBranches = 2;
+    static constexpr bool kHasShutter = true;
     static constexpr LeastWeight kLeast = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
