@@ -273,7 +273,7 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
         } else {
             integrator_->render(first + done, pass, film.view());
         }
-        if (abandon_ != nullptr && *abandon_ && !queue_.is_cuda()) { // parts of a sample may be missing
+        if (abandon_ != nullptr && *abandon_) { // parts of a sample may be missing
             begin_film();
             return 0;
         }

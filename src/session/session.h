@@ -129,7 +129,7 @@ public:
     std::vector<RayWork> count_camera_work();
     /// From now on render() breaks off in the middle of a sample when `*flag` is true, on the CPU alone; the film then
     /// begins anew. Null: never. `flag` outlives the session.
-    void abandon_when(const std::atomic<bool>* flag) { abandon_ = flag; }
+    void abandon_when(const std::atomic<bool>* flag) { abandon_ = queue_.is_cuda() ? nullptr : flag; }
 
     const History& history() const { return history_; }
     const Camera& camera() const { return camera_; }

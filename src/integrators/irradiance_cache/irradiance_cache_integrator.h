@@ -61,7 +61,7 @@ public:
 private:
     const HostTrees* trees_of_loop() const; // null: all at once
     /// A session throws the film away on the CPU alone.
-    bool is_abandoned() const { return abandon_ != nullptr && *abandon_ && !queue_.is_cuda(); }
+    bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
     CacheJob make_job(uint32_t seed) const;
     bool make_records(uint64_t* invalid);
     void make_hemispheres(CacheJob job, uint32_t records, uint64_t* invalid);

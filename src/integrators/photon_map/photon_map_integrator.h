@@ -60,7 +60,7 @@ public:
 private:
     const HostTrees* trees_of_loop() const; // null: all at once
     /// A session throws the film away on the CPU alone.
-    bool is_abandoned() const { return abandon_ != nullptr && *abandon_ && !queue_.is_cuda(); }
+    bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
     void find_targets();
     PhotonJob make_job(uint32_t pass, const FilmView& film);
     void render_pass(uint32_t pass, const FilmView& film);

@@ -49,7 +49,7 @@ void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& fi
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
     for (uint32_t sample = first; sample < first + count; ++sample) {
-        if (abandon_ != nullptr && *abandon_ && !queue_.is_cuda()) return;
+        if (abandon_ != nullptr && *abandon_) return;
         const RasterPass pass = {camera_,      picture_,          picture_settings_, depths_.data(),
                                  rows_.data(), row_count_.data(), rows_.size(),      sample};
         depths_.fill(0xff); // kNoDepth

@@ -38,7 +38,7 @@ public:
 
 private:
     void upload_heights();
-    bool is_abandoned() const { return abandon_ != nullptr && *abandon_ && !queue_.is_cuda(); }
+    bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
     template <HidingPass kPass>
     bool hide(const ReyesPass& pass);
 
