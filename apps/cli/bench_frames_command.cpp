@@ -67,7 +67,6 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
     const bool reconstructs = makes_frames(session.settings().integrator);
     for (uint32_t frame = 0; frame < flags.frames; ++frame) {
         throw_if_interrupted();
-        Rgba8Image sample;
         timer.start();
         if (!flags.still) session.set_camera(camera_of(first, frame, scene_size));
         if (reconstructs) {
@@ -76,13 +75,13 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         } else {
             if (flags.still) session.cut();
             session.render(1);
-            sample = session.display(exposure, tone_map);
+            session.display(tone_map, exposure);
         }
         timer.stop();
         reporter.progress((frame + 1.0) / flags.frames, fmt::format("frame {} of {}", frame + 1, flags.frames));
         if (!flags.write.empty()) {
             write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", frame),
-                      reconstructs ? session.frame().displayed() : sample);
+                      reconstructs ? session.frame().displayed() : session.displayed());
         }
         if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
         whole.push_back(timer.seconds());

@@ -58,9 +58,11 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
 
-Rgba8Image shown_picture(Reconstruction& frame, ToneMap tone_map, float exposure_stops) {
-    frame.display(tone_map, exposure_stops);
-    return frame.displayed();
+/// `picture`: a Session's, or its Reconstruction.
+template <class Picture>
+Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stops) {
+    picture.display(tone_map, exposure_stops);
+    return picture.displayed();
 }
 
 } // namespace
@@ -137,7 +139,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     const uint32_t width = session_.settings().width, height = session_.settings().height;
     switch (request.view.layer) {
     case ShownLayer::Beauty:
-        return session_.display(frame.exposure_stops, request.view.display.tone_map);
+        return shown_picture(session_, request.view.display.tone_map, frame.exposure_stops);
     case ShownLayer::Albedo:
         return show_albedo(session_.layers().front().image);
     case ShownLayer::Normal:
@@ -162,7 +164,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     const std::vector<RayWork> work = session_.count_camera_work();
     if (work.empty()) {
         frame.caption = "this walk cannot count what one ray tests: its rays go together";
-        return session_.display(frame.exposure_stops, request.view.display.tone_map);
+        return shown_picture(session_, request.view.display.tone_map, frame.exposure_stops);
     }
     uint32_t most = 0;
     Rgba8Image image = show_work(work, width, height, nodes ? WorkKind::Nodes : WorkKind::Triangles, most);
@@ -288,7 +290,7 @@ bool SessionFrames::beats_reconstruction(const FrameRequest& request) {
     if (!std::has_single_bit(samples)) return false;
     ShownFrame frame; // shown as the reconstruction is
     expose(request, frame);
-    Rgba8Image whole = session_.display(frame.exposure_stops, request.view.display.tone_map);
+    Rgba8Image whole = shown_picture(session_, request.view.display.tone_map, frame.exposure_stops);
     const bool is_better =
         half_samples_ > 0 && 2 * half_samples_ == samples && reference_is_better(whole, half_, reconstruction_);
     half_ = std::move(whole);

@@ -93,15 +93,20 @@ Image Film::picture(uint64_t samples, bool transparent) const {
     return resolve(0, transparent ? 4 : 3, false, samples);
 }
 
-Rgba8Image Film::display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) const {
+void Film::display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) {
     static_assert(kFilmColorChannels * sizeof(float) >= 4);
+    if (display_ == nullptr) display_ = queue_->make_host_copy(std::size_t(pixel_count()) * 4);
     launch(*queue_, "display_film", pixel_count(),
            DisplayFilm{view(), samples, kind, exposure_scale(exposure_stops), transparent,
                        reinterpret_cast<uint8_t*>(resolved_.data())});
-    Rgba8Image image{width_, height_, {}};
-    image.pixels.resize(std::size_t(pixel_count()) * 4);
-    queue_->copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size());
-    return image;
+    display_->take(resolved_.data());
+    queue_->wait(*display_);
+}
+
+Rgba8Image Film::displayed() const {
+    PERTEV_CHECK(display_ != nullptr);
+    const auto* const bytes = static_cast<const uint8_t*>(queue_->wait(*display_));
+    return {width_, height_, {bytes, bytes + std::size_t(pixel_count()) * 4}};
 }
 
 std::vector<FilmLayer> Film::layers(uint64_t samples) const {

@@ -5,6 +5,7 @@
 // long render never fails for want of it.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,10 @@ public:
     /// The mean of `samples` samples a pixel: RGB, or RGBA (colour times coverage, coverage) with `transparent`.
     Image picture(uint64_t samples, bool transparent) const;
     /// The same, made to be shown: the bytes of tone_map_image(picture(samples, transparent), kind, exposure_stops).
-    Rgba8Image display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) const;
+    /// Brings it to the host.
+    void display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent);
+    /// What the last display() brought.
+    Rgba8Image displayed() const;
     /// The auxiliary layers asked for. Normals, depths and positions are means over the samples that hit something.
     std::vector<FilmLayer> layers(uint64_t samples) const;
     /// Light layer `layer`: RGB.
@@ -61,6 +65,7 @@ private:
     Buffer<PixelIds> ids_;
     Buffer<uint64_t> invalid_;
     Buffer<float> resolved_; // kFilmColorChannels a pixel: what a picture, a layer or a display takes at most
+    std::unique_ptr<HostCopy> display_; // none before it is asked for
 };
 
 } // namespace pertev

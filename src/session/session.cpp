@@ -341,9 +341,11 @@ std::optional<Image> Session::denoised() {
     return with_alpha;
 }
 
-Rgba8Image Session::display(float exposure_stops, ToneMap tone_map) {
-    return current_film().display(history_.samples, tone_map, exposure_stops, settings_.transparent);
+void Session::display(ToneMap tone_map, float exposure_stops) {
+    current_film().display(history_.samples, tone_map, exposure_stops, settings_.transparent);
 }
+
+Rgba8Image Session::displayed() { return current_film().displayed(); }
 
 RenderStats Session::stats() {
     if (!hidden_back_share_) {

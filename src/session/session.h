@@ -83,8 +83,10 @@ public:
     std::optional<Image> denoised();
     /// Auxiliary layers, then those of light paths.
     std::vector<FilmLayer> layers();
-    /// The picture as a display shows it, times 2^exposure_stops: tone_map_image of picture().
-    Rgba8Image display(float exposure_stops, ToneMap tone_map);
+    /// Brings the picture to the host as a display shows it, times 2^exposure_stops: tone_map_image of picture().
+    void display(ToneMap tone_map, float exposure_stops);
+    /// What the last display() brought.
+    Rgba8Image displayed();
     /// Reads two numbers back. The share of hidden backs is counted once for each scene, camera and size that is asked
     /// about.
     RenderStats stats();

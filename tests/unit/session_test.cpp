@@ -353,7 +353,8 @@ TEST_CASE("a display shows the picture's tones") {
         Session session(queue, mixed.prepared, camera_at(0), settings);
         session.render(2);
         for (const ToneMap tone_map : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {
-            const Rgba8Image shown = session.display(-0.7f, tone_map);
+            session.display(tone_map, -0.7f);
+            const Rgba8Image shown = session.displayed();
             CHECK(shown.width == 24);
             CHECK(shown.pixels == tone_map_image(session.picture(), tone_map, -0.7f).pixels);
         }

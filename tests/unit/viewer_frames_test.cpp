@@ -169,7 +169,8 @@ TEST_CASE("pictures of no sequence have the movement's depth, and at rest in rea
     const ShownFrame first = check_metered();
     CHECK(first.found_stops != 0);
     alone.render(1);
-    CHECK(first.image.pixels == alone.display(first.exposure_stops, request.view.display.tone_map).pixels);
+    alone.display(request.view.display.tone_map, first.exposure_stops);
+    CHECK(first.image.pixels == alone.displayed().pixels);
     request.camera.world_from_camera.translation = request.camera.world_from_camera.translation + Vec3{0, 0.5f, 0};
     alone.set_camera(request.camera);
     request.is_moving = true;
