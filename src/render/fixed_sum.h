@@ -10,6 +10,7 @@
 #include "base/host_device.h"
 #include "base/limits.h"
 #include "device/atomic_add.h"
+#include "math/bits.h"
 #include "math/scalar.h"
 
 namespace pertev {
@@ -60,34 +61,36 @@ HD inline void atomic_add(FixedSum* target, FixedSum value) {
     if (value.high != 0) atomic_add(&target->high, value.high);
 }
 
-/// sum / count, rounded once to the nearest float (ties to even). count > 0.
+/// sum / count, rounded once to the nearest float (ties to even). `count`: 1 to 2^37, far more than
+/// kMaxSamplesPerPixel.
 HD inline float mean_of(FixedSum sum, uint64_t count) {
-    __extension__ using Wide = unsigned __int128;
     const bool negative = (sum.high >> 63) != 0;
-    Wide magnitude = (Wide(sum.high) << 64) | sum.low;
-    if (negative) magnitude = -magnitude;
-    if (magnitude == 0) return 0;
+    const uint64_t low = negative ? 0 - sum.low : sum.low;
+    const uint64_t high = negative ? ~sum.high + (sum.low == 0 ? 1 : 0) : sum.high;
+    if ((low | high) == 0) return 0;
 
-    // Long division that keeps 26 or more significant bits of the quotient and whether anything is left: enough for one
-    // correct rounding. `exponent` counts the powers of two brought in from below the point.
-    Wide quotient = magnitude / count;
-    Wide rest = magnitude % count;
-    int exponent = -64;
-    while (quotient < (Wide(1) << 26)) {
-        rest <<= 1;
-        quotient = (quotient << 1) | (rest >= count ? 1 : 0);
-        if (rest >= count) rest -= count;
-        --exponent;
+    // The leading 64 bits in units of 2^exponent, and whether anything lies below them.
+    const uint32_t zeros = 63 - highest_bit(high != 0 ? high : low);
+    const uint64_t leading = high == 0 ? low << zeros : zeros == 0 ? high : high << zeros | low >> (64 - zeros);
+    bool sticky = high != 0 && low << zeros != 0;
+    int exponent = (high != 0 ? 0 : -64) - static_cast<int>(zeros);
+
+    // The quotient has 26 bits or more: enough for one correct rounding. What lies below the leading bits is less than
+    // one of them, so it can only be part of what is left.
+    uint64_t quotient = leading;
+    if ((count & (count - 1)) == 0) {
+        exponent -= static_cast<int>(highest_bit(count));
+    } else {
+        quotient = leading / count;
+        sticky = sticky || quotient * count != leading;
     }
-    bool sticky = rest != 0;
-    while (quotient >= (Wide(1) << 26)) { // down to 26 bits: 24 of the float, one to round by, one for the rest
-        sticky = sticky || (quotient & 1) != 0;
-        quotient >>= 1;
-        ++exponent;
-    }
+    const uint32_t cut = highest_bit(quotient) - 25; // down to 26: 24 of the float, one to round by, one for the rest
+    sticky = sticky || (quotient & ((uint64_t(1) << cut) - 1)) != 0;
+    quotient >>= cut;
+    exponent += static_cast<int>(cut);
     // An odd last bit below the rounding bit stands for everything cut. The double is exact and so is its product with
-    // a power of two (no double is subnormal here); its conversion rounds once, to a subnormal float where it must.
-    const double digits = static_cast<double>(static_cast<uint64_t>((quotient << 1) | (sticky ? 1 : 0)));
+    // a power of two; its conversion rounds once. Neither is subnormal: the least mean is 2^-101.
+    const double digits = static_cast<double>((quotient << 1) | (sticky ? 1 : 0));
     const uint64_t scale_bits = static_cast<uint64_t>(1023 + exponent - 1) << 52; // 2^(exponent - 1)
     double scale;
     memcpy(&scale, &scale_bits, sizeof scale);
