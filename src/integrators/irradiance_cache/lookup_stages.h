@@ -38,16 +38,17 @@ struct LookUpLight {
     }
 };
 
+inline constexpr uint32_t kNoSite = 0xffffffffu;
+
 /// A place that a record is wanted for.
 struct alignas(16) RecordSite {
-    Vec3 direction; // of the walk that met it, unit
-    float way;      // from the camera, metres
-    float u, v;     // on the triangle
-    uint32_t instance, primitive;
-    uint32_t scatterings; // between the camera and the place; kNoSite: no record is wanted
-    uint32_t unused[3];
+    Vec3 direction = {}; // of the walk that met it, unit
+    float way = 0;       // from the camera, metres
+    float u = 0, v = 0;  // on the triangle
+    uint32_t instance = 0, primitive = 0;
+    uint32_t scatterings = kNoSite; // between the camera and the place; kNoSite: no record is wanted
+    uint32_t unused[3] = {};
 };
-inline constexpr uint32_t kNoSite = 0xffffffffu;
 
 /// In the overture a record is wanted where those there are weigh less than this together: at the end of their reach
 /// other samples of the pixel would find none.

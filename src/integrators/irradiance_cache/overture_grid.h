@@ -56,7 +56,7 @@ struct BeginSeekers {
         cache.store_sight(i, {{1, 1, 1}, 0});
         cache.ways[i] = 0;
         cache.aims[i] = WalkAim::Seek;
-        sites[first + i].scatterings = kNoSite;
+        sites[first + i] = {}; // whole: the host reads all of it
     }
 };
 
