@@ -6,38 +6,34 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kBlock = 4;     // pixels of the frame, along each side, for one of the small pictures
-constexpr std::size_t kArrays = 5; // guide; light as it was and as it is, twice
-constexpr uint32_t kPasses = 2;    // of SpreadLight: its means reach over 12 pixels of the frame to each side
-
-uint32_t small_side(uint32_t side) { return (side + kBlock - 1) / kBlock; }
+constexpr uint32_t kPasses = 2; // of SpreadLight: its means reach over 12 pixels of the frame to each side
 
 } // namespace
 
-LightChange::LightChange(Queue& queue, uint32_t frame_width, uint32_t frame_height, bool splits_light)
+LightChange::LightChange(Queue& queue, uint32_t frame_width, uint32_t frame_height, bool splits_light,
+                         const LightChangeRoom& room)
     : queue_(&queue), frame_width_(frame_width), frame_height_(frame_height),
-      before_(queue, small_side(frame_width), small_side(frame_height), splits_light),
-      after_(queue, before_.width(), before_.height(), splits_light),
-      numbers_(queue, kArrays * before_.width() * before_.height(), "change of light") {}
+      before_(queue, room.side(frame_width), room.side(frame_height), splits_light, room.before),
+      after_(queue, before_.width(), before_.height(), splits_light, room.after), numbers_(room.numbers) {}
 
 LightChangeView LightChange::compare() {
-    const uint32_t pixels = width() * height();
-    Float4* const guide = numbers_.data();
+    const uint32_t width = before_.width(), height = before_.height(), pixels = width * height;
+    Float4* const guide = numbers_;
     Float4 *was = guide + pixels, *is = was + pixels, *free_was = is + pixels, *free_is = free_was + pixels;
     launch(*queue_, "compare_light", pixels, CompareLight{before_.view(), after_.view(), guide, was, is});
     for (uint32_t pass = 0; pass < kPasses; ++pass) {
         launch(*queue_, "spread_light", pixels,
-               SpreadLight{guide, was, is, free_was, free_is, width(), height(), 1 << pass});
+               SpreadLight{guide, was, is, free_was, free_is, width, height, 1 << pass});
         std::swap(was, free_was);
         std::swap(is, free_is);
     }
     return {guide,
             was,
             is,
-            width(),
-            height(),
-            static_cast<float>(width()) / static_cast<float>(frame_width_),
-            static_cast<float>(height()) / static_cast<float>(frame_height_)};
+            width,
+            height,
+            static_cast<float>(width) / static_cast<float>(frame_width_),
+            static_cast<float>(height) / static_cast<float>(frame_height_)};
 }
 
 } // namespace pertev

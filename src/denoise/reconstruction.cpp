@@ -1,5 +1,7 @@
 #include "denoise/reconstruction.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "denoise/accumulate_signals.h"
 #include "denoise/anti_alias.h"
@@ -15,8 +17,22 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kOfHistory = 5, kOfSignals = 2; // arrays of Float4
-constexpr std::size_t kNarrowArrays = 3;              // of Vec2: squares of both histories, places in the frame before
-constexpr std::size_t kWideArrays = 2 * kOfHistory + 2 * kOfSignals;
+
+/// Float4 of a reconstruction: both histories, then signals, twice. What finds a change of light lies there before the
+/// signals do, its numbers at the end, where the first ones leave room; only in tiny pictures does it take more.
+std::size_t wide_count(uint32_t width, uint32_t height) {
+    const std::size_t pixels = std::size_t(width) * height, small = LightChangeRoom::pixels(width, height);
+    return 2 * kOfHistory * pixels +
+           std::max({2 * kOfSignals * pixels, kOfSignals * pixels + LightChangeRoom::kNumbers * small,
+                     (LightChangeRoom::kPicture + LightChangeRoom::kNumbers) * small});
+}
+
+/// Vec2: squares of both histories, then places in the frame before, or between frames the small picture of the scene
+/// as it was.
+std::size_t narrow_count(uint32_t width, uint32_t height) {
+    const std::size_t pixels = std::size_t(width) * height;
+    return 2 * pixels + std::max(pixels, 2 * LightChangeRoom::kPicture * LightChangeRoom::pixels(width, height));
+}
 
 constexpr float kTolerance = 8; // WaveletPass's
 
@@ -24,11 +40,17 @@ constexpr float kTolerance = 8; // WaveletPass's
 
 Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
     : queue_(&queue), width_(width), height_(height), timer_(queue),
-      wide_(queue, kWideArrays * width * height, "reconstruction"),
-      narrow_(queue, kNarrowArrays * width * height, "reconstruction") {}
+      wide_(queue, wide_count(width, height), "reconstruction"),
+      narrow_(queue, narrow_count(width, height), "reconstruction") {}
 
 std::size_t Reconstruction::predicted_bytes(uint32_t width, uint32_t height) {
-    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + kNarrowArrays * sizeof(Vec2));
+    return wide_count(width, height) * sizeof(Float4) + narrow_count(width, height) * sizeof(Vec2);
+}
+
+LightChangeRoom Reconstruction::room_for_change() const {
+    Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_;
+    return {reinterpret_cast<Float4*>(places_before()), signals,
+            wide_.data() + wide_.size() - LightChangeRoom::kNumbers * LightChangeRoom::pixels(width_, height_)};
 }
 
 HistoryView Reconstruction::history(uint32_t frame) const {

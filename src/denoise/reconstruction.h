@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "denoise/enlarged_frame.h"
-#include "denoise/light_change_view.h"
+#include "denoise/light_change.h"
 #include "denoise/reconstruction_settings.h"
 #include "denoise/reconstruction_view.h"
 #include "device/device_timer.h"
@@ -48,6 +48,8 @@ public:
                       const CameraView& camera, const SceneView& scene, const PreviousScene& before,
                       const LightChangeView& change, const ReconstructionSettings& settings);
 
+    /// For `change` of the next add(): free from one add() to the next.
+    LightChangeRoom room_for_change() const;
     /// Frames since the last cut.
     uint32_t frames() const { return frames_; }
     /// Of the light; the picture's where it is not enlarged.

@@ -12,6 +12,9 @@ class NoisyFrame {
 public:
     /// `splits_light`: the scene has surfaces that scatter by other than diffuse lobes.
     NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light);
+    /// In memory of another's: arrays(splits_light) numbers a pixel from `numbers` on.
+    NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light, Float4* numbers);
+    static constexpr std::size_t arrays(bool splits_light) { return splits_light ? 7 : 6; }
     /// What its samples leave to another, whose arrays these are, from now on.
     void leave(const FirstBounceView& first_bounce) { view_.first_bounce = first_bounce; }
 
@@ -29,8 +32,10 @@ public:
     void begin() { invalid_.zero(); }
 
 private:
+    NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light, Buffer<Float4> own);
+
     uint32_t width_, height_;
-    Buffer<Float4> numbers_;
+    Buffer<Float4> numbers_; // empty where they lie in another's memory
     Buffer<uint64_t> invalid_;
     NoisyFrameView view_;
 };

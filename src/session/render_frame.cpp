@@ -59,11 +59,12 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     frame_sampler_ = of_light.path.sampler;
     const bool split_light = noisy_frame_ && noisy_frame_->splits_light();
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
-    if (frame.splits_light() != split_light) reconstruction_.reset(); // what it knows is of other signals
     if (!reconstruction_ || reconstruction_->width() != of_light.width ||
-        reconstruction_->height() != of_light.height) {
+        reconstruction_->height() != of_light.height || frame.splits_light() != split_light) { // of other signals
         reconstruction_.reset(); // before the new one, so that both need not fit
         reconstruction_.emplace(queue_, of_light.width, of_light.height);
+        light_change_.emplace(queue_, of_light.width, of_light.height, frame.splits_light(),
+                              reconstruction_->room_for_change());
     }
     if (camera_before_) { // of another sequence
         camera_before_.reset();
@@ -115,29 +116,17 @@ void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings 
 /// How light has changed since the frame before, where that has left a small picture of the scene as it was.
 LightChangeView Session::look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings) {
     const bool is_known = settings.follow_light && scene_has_changed_ && camera_of_light_ &&
-                          reconstruction_->frames() > 0 && light_change_ && light_change_->fits(*noisy_frame_) &&
-                          path_of_light_ == of_light.path;
+                          reconstruction_->frames() > 0 && path_of_light_ == of_light.path;
     if (!is_known) return {};
     take_sample(number_of_light_, *camera_of_light_, of_light, light_change_->after());
     return light_change_->compare();
 }
 
-/// For the next frame where `goes_on`, as what has moved once mostly does. Where there is no room, light is not
-/// followed.
+/// For the next frame where `goes_on`, as what has moved once mostly does.
 void Session::keep_light(uint32_t number, const RenderSettings& of_light, bool goes_on) {
     camera_of_light_.reset();
     if (!goes_on) return;
-    try {
-        if (!light_change_ || !light_change_->fits(*noisy_frame_)) {
-            light_change_.reset(); // before the new one, so that both need not fit
-            light_change_.emplace(queue_, noisy_frame_->width(), noisy_frame_->height(), noisy_frame_->splits_light());
-        }
-        take_sample(number, camera_, of_light, light_change_->before());
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::OutOfMemory) throw;
-        light_change_.reset();
-        return;
-    }
+    take_sample(number, camera_, of_light, light_change_->before());
     camera_of_light_ = camera_;
     path_of_light_ = of_light.path;
     number_of_light_ = number;

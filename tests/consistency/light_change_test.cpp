@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "denoise/light_change_view.h"
+#include "denoise/reconstruction.h"
 #include "image/picture_hash.h"
 #include "render/update_scene.h"
 #include "session/session.h"
@@ -137,6 +139,66 @@ TEST_CASE("of two lamps frames follow most of what the one that dims takes, and 
         CHECK(followed.right > (dims ? 0.85 * expected.right : late.right));
         CHECK(followed.right < 1.05 * expected.right);
     }
+}
+
+TEST_CASE("what finds a change of light lies where a reconstruction has room, and takes no memory") {
+    Queue queue = queue_asked_for();
+    for (const auto& [width, height] : {std::pair(1u, 1u), std::pair(1u, 9u), std::pair(5u, 3u), std::pair(64u, 48u)}) {
+        CAPTURE(width);
+        CAPTURE(height);
+        const std::size_t pixels = std::size_t(width) * height, small = LightChangeRoom::pixels(width, height);
+        const Reconstruction frames(queue, width, height);
+        const LightChangeRoom room = frames.room_for_change();
+        const auto apart = static_cast<std::size_t>(room.numbers - room.after);
+        CHECK(apart >= LightChangeRoom::kPicture * small);
+        CHECK(apart >= 2 * pixels); // the frame's own signals
+    }
+    CHECK(Reconstruction::predicted_bytes(1920, 1080) == std::size_t(248) * 1920 * 1080);
+
+    const auto held_by_frames = [&](bool follows) {
+        Messages messages;
+        Scene scene = lamp_scene();
+        PreparedScene prepared = prepare_scene(scene, {}, messages);
+        RenderSettings settings;
+        settings.width = 64, settings.height = 48;
+        Session session(queue, prepared, mixed_scene_camera(), settings);
+        SceneUpdate update;
+        update.lights_changed = true;
+        for (uint32_t k = 0; k < 4; ++k) {
+            scene.lights[0].intensity = kStep * scene.lights[0].intensity;
+            prepared = update_scene(prepared, scene, update, messages);
+            session.update_scene(prepared, parts_of(update));
+            session.render_frame(k, {.follow_light = follows});
+        }
+        return queue.allocated_bytes();
+    };
+    CHECK(held_by_frames(true) == held_by_frames(false));
+}
+
+TEST_CASE("a look at a frame in between leaves what follows as it is") {
+    Queue queue = queue_asked_for();
+    const auto frames = [&](bool looks) {
+        Messages messages;
+        Scene scene = lamp_scene();
+        PreparedScene prepared = prepare_scene(scene, {}, messages);
+        RenderSettings settings;
+        settings.width = 33, settings.height = 17;
+        Session session(queue, prepared, mixed_scene_camera(), settings);
+        SceneUpdate update;
+        update.lights_changed = true;
+        for (uint32_t k = 0; k < 6; ++k) {
+            scene.lights[0].intensity = kStep * scene.lights[0].intensity;
+            prepared = update_scene(prepared, scene, update, messages);
+            session.update_scene(prepared, parts_of(update));
+            session.render_frame(k, {.follow_light = true, .keep_layers = true});
+            if (!looks) continue;
+            session.frame_tones();
+            session.frame().display(ToneMap::Agx, 0);
+            session.frame().motion();
+        }
+        return picture_hash(session.frame().picture());
+    };
+    CHECK(frames(true) == frames(false));
 }
 
 TEST_CASE("where light does not change, looking for a change leaves the frame as it is") {
