@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <thread>
 #include <vector>
 
+#include "base/parallel_for.h"
 #include "integrators/irradiance_cache/do_in_parts.h"
 #include "integrators/irradiance_cache/hemisphere.h"
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
@@ -179,6 +181,28 @@ TEST_CASE("parts of work take about a tenth of a second, however long each piece
     CHECK(longest >= 16);  // a machine under load sleeps longer
     CHECK(longest <= 128); // 40 ms are short, so what is at least as long is not doubled
     CHECK(shortest > 1);
+}
+
+TEST_CASE("spacing eight times as many records takes about eight times as long, however far they reach") {
+    const auto seconds_for = [](uint32_t count) {
+        test::Random random(8);
+        std::vector<Sphere> records;
+        for (uint32_t i = 0; i < count; ++i) { // on a floor, reaching as far as it is to the nearest of two walls
+            const float x = 20 * random.unit(), z = 20 * random.unit();
+            records.push_back({{x, 0, z}, 0.05f + 1.5f * std::min(x, z) * (0.8f + 0.4f * random.unit())});
+        }
+        const std::clock_t began = std::clock();
+        const std::vector<float> clamped = clamp_by_neighbours(records);
+        const auto seconds = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+        CHECK(clamped.size() == count);
+        return seconds;
+    };
+    set_thread_count(1);
+    const double few = seconds_for(1 << 12), many = seconds_for(1 << 15);
+    set_thread_count(0);
+    CAPTURE(few);
+    CAPTURE(many);
+    CHECK(many < 24 * few); // 64 where each looks at all
 }
 
 TEST_CASE("light between records is their weighted mean, and none beyond their reach") {
