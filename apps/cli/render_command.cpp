@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "session/settings_text.h"
 
 namespace pertev {
 namespace {
@@ -29,9 +30,10 @@ double share_done(const RenderProgress& now, double time_limit_s) {
 /// Shows the progress; false when asked to end.
 bool report_progress(const RenderProgress& now, double time_limit_s, Reporter& reporter) {
     const double share = share_done(now, time_limit_s);
-    reporter.progress(share, fmt::format("{}/{} spp  {:.1f} Mrays/s  {:.0f} s left", now.samples_done, now.samples,
-                                         static_cast<double>(now.rays.total()) / now.seconds * 1e-6,
-                                         now.seconds * (1 - share) / std::max(share, 1e-9)));
+    std::string detail = fmt::format("{}/{} spp  {:.1f} Mrays/s", now.samples_done, now.samples,
+                                     static_cast<double>(now.rays.total()) / std::max(now.seconds, 1e-9) * 1e-6);
+    if (share > 0) detail += fmt::format("  {:.0f} s left", now.seconds * (1 - share) / share);
+    reporter.progress(share, detail);
     reporter.event(fmt::format(R"({{"event":"progress","samples":{},"of":{},"seconds":{:.3f},"rays":{}}})",
                                now.samples_done, now.samples, now.seconds, now.rays.total()));
     return !interrupted();
@@ -66,10 +68,24 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
                     settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
 }
 
+/// Of a picture that an integrator had not begun to sample.
+Error ended_before_samples(const RenderSettings& settings) {
+    if (interrupted()) return {ErrorCode::Interrupted, "interrupted before there was anything to keep"};
+    return {ErrorCode::Interrupted,
+            fmt::format("--time-limit {:g}: it was over before the first sample, and there is nothing to keep: "
+                        "--integrator {} makes more than samples beforehand",
+                        settings.time_limit_s, integrator_name(settings))};
+}
+
 int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
               std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
-    session->render(settings.samples,
-                    [&](const RenderProgress& now) { return report_progress(now, settings.time_limit_s, reporter); });
+    const uint32_t added = session->render(settings.samples, [&](const RenderProgress& now) {
+        return report_progress(now, settings.time_limit_s, reporter);
+    });
+    if (added == 0) {
+        reporter.end_progress();
+        throw ended_before_samples(settings);
+    }
     RenderResult result = session->result();
     session.reset(); // writing takes memory too
     reporter.end_progress();

@@ -316,7 +316,9 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->allow_extra_args(false)
         ->group("Picture");
     add_shutter_flag(verb, flags);
-    verb.add_option("--time-limit", flags.time_limit_s, "stop after this time, at a whole sample")
+    verb.add_option("--time-limit", flags.time_limit_s,
+                    "stop after this time, at a whole sample; with irradiance_cache, which\nmakes records first, "
+                    "perhaps before there is one")
         ->type_name("SECONDS")
         ->check(number_above_zero())
         ->group("Quality");

@@ -328,7 +328,8 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (before < wanted) {
         added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
-            return (is_small || !abandon_) && now.seconds < request.budget_s;
+            const bool has_begun = now.samples_done > before; // a picture has a sample, whatever that takes
+            return (is_small || !abandon_) && (!has_begun || now.seconds < request.budget_s);
         });
     }
     frame.render_s = render.seconds();

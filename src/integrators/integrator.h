@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "render/film_view.h"
 #include "render/picture_view.h"
@@ -30,6 +31,19 @@ public:
     /// begin(). Memory is taken for `samples` of each pixel, as far as they go into one piece of work; more may be
     /// asked for. What is held already is kept: another camera takes no memory. Throws Error(OutOfMemory).
     virtual void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) = 0;
+
+    /// Said before begin(): it will be given the picture of the begin() before it, unchanged, and so are the settings.
+    /// What was found out for that picture may be kept.
+    virtual void expect_same_picture() {}
+
+    /// Makes what all samples of the picture begun need, where that is not there; render() does so where this was not
+    /// called. Asks `goes_on` on the caller's thread, before it begins and every tenth of a second or so (on a GPU
+    /// between passes of kernels). Returns false, and there is nothing, once that is false. Throws Error(DeviceFault),
+    /// and what `goes_on` throws.
+    virtual bool make_ready(const std::function<bool()>& goes_on) {
+        static_cast<void>(goes_on); // there is nothing to make
+        return true;
+    }
 
     /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
     /// that is done. A film view of a noisy frame (render/noisy_frame.h) takes one sample alone. A sample is a function

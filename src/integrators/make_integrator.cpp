@@ -226,7 +226,8 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
                                                     settings.batch, in_loop, on_cuda);
     }
     if (settings.integrator == IntegratorKind::IrradianceCache) {
-        return IrradianceCacheIntegrator::predicted_bytes(settings.irradiance_cache, pixels, settings.batch, in_loop);
+        return IrradianceCacheIntegrator::predicted_bytes(settings.irradiance_cache, pixels, settings.batch, in_loop,
+                                                          on_cuda);
     }
     const uint64_t all = pixels * samples;
     if (settings.integrator == IntegratorKind::Radiosity) {

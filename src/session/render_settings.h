@@ -75,7 +75,7 @@ bool same_picture(const RenderSettings& a, const RenderSettings& b);
 
 struct RenderProgress {
     uint32_t samples_done = 0, samples = 0; // in the film now, and when the call is done
-    double seconds = 0;                     // since the call's first pass began
+    double seconds = 0;                     // since the call began to render
     RayCounts rays;                         // of the call
 };
 

@@ -62,6 +62,7 @@ void Session::set_scene(const PreparedScene& scene) {
 }
 
 void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
+    ++picture_number_;
     begin_film();
     scene_has_changed_ = true;
     keep_places();
@@ -113,6 +114,7 @@ void Session::set_camera(const Camera& camera) {
     if (history_.samples > 0) history_.previous_camera = camera_;
     camera_ = camera;
     hidden_back_share_.reset();
+    ++picture_number_;
     begin_film();
 }
 
@@ -131,6 +133,7 @@ void Session::set_settings(const RenderSettings& settings) {
 void Session::cut() {
     history_.previous_camera.reset();
     ++history_.cuts;
+    ++picture_number_;
     cut_frames();
     begin_film();
 }
@@ -231,8 +234,9 @@ MotionTrack Session::motion_of(const Camera& camera, Vec3 centre) {
             static_cast<uint32_t>(keys.size() - 1)};
 }
 
-/// Makes the integrator ready to add `samples` samples of the picture of `settings`, never to be abandoned.
-void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples) {
+/// Makes the integrator ready to add `samples` samples of the picture of `settings`, never to be abandoned. Pictures of
+/// one number, not 0, are the same.
+void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples, uint64_t picture_number) {
     const PictureView picture = view_of(camera, settings); // first: it checks that there is a scene
     check_camera(settings, camera);
     if (picture.camera.is_open) {
@@ -250,7 +254,10 @@ void Session::begin(const Camera& camera, const RenderSettings& settings, uint32
     integrator_settings_ = wanted;
     tracer_->time_kinds(settings.time_kinds);
     integrator_->abandon_when(nullptr);
+    if (stays && picture_number != 0 && picture_number == begun_number_) integrator_->expect_same_picture();
+    begun_number_ = 0; // where the next line throws
     integrator_->begin(picture, *tracer_, samples);
+    begun_number_ = picture_number;
     queue_.wait();
 }
 
@@ -261,11 +268,18 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     Film& film = current_film();
     const bool denoises = settings_.denoise != Denoise::None;
     if (denoises && first == 0) begin_signals();
-    begin(camera_, settings_, denoises ? 1 : count);
+    begin(camera_, settings_, denoises ? 1 : count, picture_number_);
     integrator_->abandon_when(abandon_);
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
+    const auto goes_on = [&] {
+        const double seconds = watch.seconds();
+        if (abandon_ != nullptr && *abandon_) return false;
+        if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) return false;
+        return !keep_going || keep_going({first, first + count, seconds, integrator_->rays()});
+    };
+    if (!integrator_->make_ready(goes_on)) return 0;
     for (uint32_t done = 0; done < count;) {
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
         if (denoises) {

@@ -70,9 +70,10 @@ public:
     /// Adds `samples` samples to each pixel, or fewer: it ends where the time of the settings is over, where
     /// `keep_going`, called after each pass, returns false, and at kMaxSamplesPerPixel in the film; always at a whole
     /// sample of all pixels. Returns how many were added: at least one where one was asked for and fits, but none where
-    /// it was abandoned. Throws
-    /// Error(OutOfMemory, DeviceFault), as all that take samples what check_camera does, and what `keep_going` throws;
-    /// the film then holds all passes done before.
+    /// it was abandoned. Where an integrator makes something before samples (Integrator::make_ready), `keep_going` is
+    /// called during that too, with the samples that the film has; where that, the time or the flag of abandon_when
+    /// ends it, nothing is added and the film stays as it is. Throws Error(OutOfMemory, DeviceFault), as all that take
+    /// samples what check_camera does, and what `keep_going` throws; the film then holds all passes done before.
     uint32_t render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going = {});
 
     /// Of the present picture; without samples, all zero.
@@ -156,7 +157,7 @@ private:
     void render_signals(uint32_t first, uint32_t count);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
     MotionTrack motion_of(const Camera& camera, Vec3 centre);
-    void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples);
+    void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples, uint64_t picture_number = 0);
 
     Queue& queue_;
     Camera camera_;
@@ -196,6 +197,8 @@ private:
     bool film_is_old_ = false;                           // holds samples of a picture that is no more asked for
     std::unique_ptr<Integrator> integrator_;
     IntegratorSettings integrator_settings_; // that it has
+    uint64_t picture_number_ = 1;            // another one for each picture that samples go to the film of
+    uint64_t begun_number_ = 0;              // of the picture that the integrator has begun; 0: of some other
     const std::atomic<bool>* abandon_ = nullptr;
 };
 

@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
+
+#include "integrators/irradiance_cache/record_store.h"
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
 #include "tests/support/flat_scenes.h"
@@ -89,6 +92,131 @@ TEST_CASE("a session goes to irradiance caching and back, ends early and goes on
     }
 }
 
+namespace {
+
+/// Rays that the session traces for one more sample.
+uint64_t rays_of_a_sample(Session& session) {
+    uint64_t rays = 0;
+    CHECK(session.render(1, [&](const RenderProgress& now) {
+        rays = now.rays.total();
+        return true;
+    }) == 1);
+    return rays;
+}
+
+} // namespace
+
+TEST_CASE("records are made once for a picture, and anew for another") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = cache_settings();
+    constexpr uint64_t kOfRecords = 100 * 48, kOfSample = 37 * 21 * 6; // at least; about
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        Session session(queue, prepared, test::camera_with_lens(), settings);
+        const auto check_made = [&](bool is_made) {
+            const uint64_t rays = rays_of_a_sample(session);
+            CHECK((rays > kOfRecords + kOfSample) == is_made);
+            CHECK(rays > kOfSample / 6);
+        };
+        const auto check_picture = [&](const RenderSettings& of_picture, const Camera& camera) {
+            RenderSettings fresh = of_picture;
+            fresh.samples = session.history().samples;
+            CHECK(test::render_hash(session.result()) == test::render_hash(test::render(queue, scene, camera, fresh)));
+        };
+        check_made(true);
+        check_made(false);
+        session.set_camera(test::camera_with_lens()); // as it is
+        session.set_settings(settings);
+        check_made(false);
+        check_picture(settings, test::camera_with_lens());
+        session.meter(ToneMap::Aces); // looks at another picture in between
+        check_made(true);
+        check_picture(settings, test::camera_with_lens());
+        session.cut();
+        check_made(true);
+        session.update_scene(prepared, kPartInstances);
+        check_made(true);
+        check_made(false);
+        Camera aside = test::camera_with_lens();
+        aside.world_from_camera.translation.x += 0.1f;
+        session.set_camera(aside);
+        check_made(true);
+        check_made(false);
+        check_picture(settings, aside);
+        RenderSettings other = settings;
+        other.irradiance_cache.accuracy = 0.5f;
+        session.set_settings(other);
+        check_made(true);
+        check_made(false);
+        check_picture(other, aside);
+    }
+}
+
+TEST_CASE("what is invalid of records is told with sample 0, whatever was rendered before") {
+    Queue queue = test::queue_asked_for();
+    Scene scene = test::make_mixed_scene();
+    test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),
+              {.name = "too bright", .emission = {1e18f, 0, 0}, .two_sided_emission = true}); // for the film
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = cache_settings();
+    Session at_once(queue, prepared, test::camera_with_lens(), settings);
+    Session in_parts(queue, prepared, test::camera_with_lens(), settings);
+    at_once.render(3);
+    in_parts.render(1);
+    in_parts.render(2);
+    CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);
+    in_parts.look_aside(test::camera_with_lens(), settings, 1); // makes records, too
+    in_parts.cut();
+    in_parts.render(3);
+    CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);
+    settings.path.max_depth = 1; // no records
+    in_parts.set_settings(settings);
+    in_parts.render(3);
+    CHECK(in_parts.stats().invalid_samples + 100 < at_once.stats().invalid_samples);
+}
+
+TEST_CASE("an overture is broken off by who watches, by the time and by abandoning, and leaves no trace") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = cache_settings();
+    settings.samples = 2;
+    const Hash128 wanted = test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings));
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        settings.batch = 500; // many parts
+        Session session(queue, prepared, test::camera_with_lens(), settings);
+        for (int most = 0; most < 12; ++most) { // before the first part, between rounds, among records
+            int asked = 0;
+            CHECK(session.render(2, [&](const RenderProgress& now) {
+                CHECK(now.samples_done == 0);
+                return asked++ < most;
+            }) == 0);
+            CHECK(asked == most + 1);
+            CHECK(session.history().samples == 0);
+            CHECK(session.stats().invalid_samples == 0);
+        }
+        std::atomic<bool> is_abandoned = true;
+        session.abandon_when(&is_abandoned);
+        CHECK(session.render(2) == 0);
+        int asked = 0;
+        CHECK(session.render(2, [&](const RenderProgress&) { return is_abandoned = ++asked > 5; }) == 0);
+        session.abandon_when(nullptr);
+        RenderSettings short_of_time = settings;
+        short_of_time.time_limit_s = 1e-9;
+        session.set_settings(short_of_time);
+        CHECK(session.render(2) == 0);
+        session.set_settings(settings);
+        CHECK(session.render(2) == 2);
+        CHECK(test::render_hash(session.result()) == wanted);
+    }
+}
+
 TEST_CASE("memory of irradiance caching is said beforehand") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -101,7 +229,8 @@ TEST_CASE("memory of irradiance caching is said beforehand") {
             settings.samples = 1;
             settings.path.max_depth = 1; // room for records is taken, and none is made
             settings.batch = 1000;       // less than the rays of one record
-            test::check_predicted_bytes(prepared, settings);
+            const uint64_t pixels = uint64_t(settings.width) * settings.height;
+            test::check_predicted_bytes(prepared, settings, false, RecordStore::predicted_host_bytes(pixels));
         }
     }
 }

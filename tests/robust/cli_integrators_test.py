@@ -6,6 +6,7 @@ import json
 import signal
 import struct
 import subprocess
+import time
 
 from cli_run import PATIENCE_S, PROGRAM, CliTest, main, write
 
@@ -53,6 +54,26 @@ class Integrators(CliTest):
             self.assertLess(0, done["samples"], integrator)
             again = self.render(*flags[:-1], "1", scene="lit.gltf", size="24x24", spp=done["samples"], output="again.exr")
             self.assertEqual(again["hash"], done["hash"], integrator)
+
+    def test_what_ends_irradiance_caching_among_its_records_leaves_nothing_and_says_so(self):
+        long = ["render", "cornell-box", "-o", "x.exr", "--size", "320x240", "--spp", "4", "--device", "cpu", "--integrator",
+                "irradiance_cache", "--accuracy", "0.02", "--hemisphere-rays", "4096"]  # hours of records
+        for flags in [[], ["--json"]]:
+            began = time.monotonic()
+            outcome = self.refuse(75, *long, "--time-limit", "0.5", *flags, says=["--time-limit 0.5", "first sample"])
+            self.assertLess(time.monotonic() - began, 30, outcome)
+            for kind in [signal.SIGINT, signal.SIGTERM]:
+                program = subprocess.Popen([PROGRAM, *long, "--json"], cwd=self.folder, env=self.environment,
+                                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                self.addCleanup(program.kill)
+                while json.loads(program.stdout.readline())["event"] != "progress":
+                    self.assertIsNone(program.poll())
+                program.send_signal(kind)
+                stdout, stderr = program.communicate(timeout=30)
+                last = json.loads(stdout.splitlines()[-1])
+                self.assertEqual((program.returncode, last["code"], last["interrupted"]), (75, "interrupted", True))
+                self.assertEqual((last["text"], stderr), ("interrupted before there was anything to keep", b""))
+                self.assertEqual(self.files(), [])
 
     def test_where_light_is_evaluated_changes_the_hash(self):
         write(self.path("lit.gltf"), lit_triangle())

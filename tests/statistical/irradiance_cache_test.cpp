@@ -1,8 +1,9 @@
 // Irradiance caching against path tracing: the error that records leave falls with the number of records and of their
-// rays, to a stated bound, and no light is missing or counted twice.
+// rays, at least as fast as the literature says, to a stated bound, and no light is missing or counted twice.
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -78,4 +79,100 @@ TEST_CASE("irradiance caching comes to path tracing's picture as records become 
         CHECK(fine < middle / 2);
         CHECK(fine < c.bound);
     }
+}
+
+namespace {
+
+/// The room with a point light, so that all but the light between surfaces is found without noise.
+Scene room_under_a_point() {
+    Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.6f), true);
+    scene.environment.reset();
+    test::add(scene, test::sheet({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), test::white(0.6f));
+    scene.lights.push_back(test::point_light({0.4f, 1.4f, 0.4f}, {2, 2, 2}));
+    return scene;
+}
+
+/// Of what is seen through the middle of each pixel.
+Image middles(Queue& queue, const PreparedScene& prepared, IntegratorKind integrator, const CacheBudget& budget,
+              uint32_t seed) {
+    RenderSettings settings;
+    settings.width = settings.height = 32;
+    settings.filter = PixelFilter::Box;
+    settings.filter_radius = 0x1p-20f;
+    settings.path.max_depth = 5;
+    settings.path.seed = seed;
+    settings.samples = budget.samples;
+    settings.integrator = integrator;
+    settings.irradiance_cache = {.accuracy = budget.accuracy, .hemisphere_rays = budget.rays};
+    return render_picture(queue, prepared, test::room_camera(), settings).picture;
+}
+
+/// Mean of (a - b) (c - d) over that of the light squared. Of pictures c = a and references b, d of noise of their own
+/// it is a's squared error, whatever the noise of the references.
+double relative_product(const Image& a, const Image& b, const Image& c, const Image& d) {
+    double sum = 0, light = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const auto of = [&](const Image& image) { return static_cast<double>(image.pixels[i]); };
+        sum += (of(a) - of(b)) * (of(c) - of(d));
+        light += of(b) * of(d);
+    }
+    return sum / light;
+}
+
+/// Of the line through (log x, log y) with the least squares.
+double slope(const std::vector<double>& x, const std::vector<double>& y) {
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double u = std::log(x[i]), v = std::log(y[i]);
+        sx += u, sy += v, sxx += u * u, sxy += u * v;
+    }
+    const auto n = static_cast<double>(x.size());
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+} // namespace
+
+TEST_CASE("the error of irradiance caching falls with the accuracy and the rays at the rates of the literature") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = room_under_a_point();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const Image one = middles(queue, prepared, IntegratorKind::Path, {.samples = 2048}, 101);
+    const Image other = middles(queue, prepared, IntegratorKind::Path, {.samples = 2048}, 102);
+    const auto cached = [&](float accuracy, uint32_t rays, uint32_t seed) {
+        return middles(queue, prepared, IntegratorKind::IrradianceCache, {accuracy, rays, 1}, seed);
+    };
+    // Ward et al. 1988: between records the error is at most proportional to the accuracy, so its square to that's.
+    const std::vector<double> accuracies = {1, 0.7, 0.5, 0.35, 0.25};
+    std::vector<double> errors;
+    for (const double accuracy : accuracies) {
+        double sum = 0;
+        for (uint32_t seed = 0; seed < 2; ++seed) {
+            const Image picture = cached(static_cast<float>(accuracy), 4096, seed);
+            sum += relative_product(picture, one, picture, other) / 2;
+        }
+        errors.push_back(sum);
+        MESSAGE("accuracy ", accuracy, ": squared error ", sum);
+    }
+    const double by_accuracy = slope(accuracies, errors);
+    CAPTURE(by_accuracy);
+    CHECK(by_accuracy > 1.8);
+    CHECK(errors.back() < 2e-4);
+    // A record's light is a mean over its rays: its variance is at most proportional to one over their number.
+    const std::vector<double> rays = {32, 128, 512, 2048};
+    std::vector<double> variances;
+    for (const double count : rays) {
+        double sum = 0;
+        for (uint32_t pair = 0; pair < 3; ++pair) {
+            const Image a = cached(0.35f, static_cast<uint32_t>(count), 2 * pair);
+            const Image b = cached(0.35f, static_cast<uint32_t>(count), 2 * pair + 1);
+            sum += relative_product(a, b, a, b) / 2 / 3;
+        }
+        variances.push_back(sum);
+        MESSAGE(count, " rays: variance ", sum);
+    }
+    const double by_rays = slope(rays, variances);
+    CAPTURE(by_rays);
+    CHECK(by_rays < -0.9);
+    CHECK(variances.back() < 1e-4);
 }

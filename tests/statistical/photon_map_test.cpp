@@ -79,3 +79,39 @@ TEST_CASE("photon mapping comes to path tracing's picture, at least as fast as K
         }
     }
 }
+
+TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, from millimetres on") {
+    Scene scene;
+    test::add(scene, test::sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), test::white(0.7f));
+    test::add(scene, test::sheet({0, 0.1f, 0}, {0.3f, 0, 0}, {0, 0.1f, 0}), // it shines to +z
+              {.name = "lamp", .base_color = grey(0), .emission = {20, 20, 20}});
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings;
+    settings.width = settings.height = 8;
+    settings.filter = PixelFilter::Box;
+    settings.samples = 16;
+    settings.path.max_depth = 1; // light of the lamp alone: no photons
+    settings.photon_map.gather = PhotonGather::Direct;
+    const Camera camera = test::camera_down({0, 0.05f, 0.006f}, 0.2f); // of the floor 1 to 11 mm before it
+    const auto look = [&](IntegratorKind integrator, VarianceOfPictures& variance) {
+        settings.integrator = integrator;
+        double mean = 0;
+        for (settings.path.seed = 0; settings.path.seed < 64; ++settings.path.seed) {
+            const Image picture = render_picture(queue, prepared, camera, settings).picture;
+            mean += test::mean_of(picture) / 64;
+            variance.add(picture);
+        }
+        return mean;
+    };
+    VarianceOfPictures of_path, of_photons;
+    const double by_path = look(IntegratorKind::Path, of_path),
+                 by_photons = look(IntegratorKind::PhotonMap, of_photons);
+    const double path = of_path.over(of_path.best_pixels(1)).rel_mse;
+    const double photons = of_photons.over(of_photons.best_pixels(1)).rel_mse;
+    CAPTURE(path);
+    CAPTURE(photons);
+    CHECK(photons < 1.5 * path);
+    CHECK(by_photons == doctest::Approx(by_path).epsilon(0.01));
+}

@@ -82,19 +82,22 @@ inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, co
     session.abandon_when(&is_abandoned);
     CHECK(session.render(settings.samples) == 0);
     is_abandoned = false;
-    CHECK(session.render(settings.samples, [](const RenderProgress&) { return false; }) == 1);
+    const auto until_first = [](const RenderProgress& now) { return now.samples_done == 0; };
+    CHECK(session.render(settings.samples, until_first) == 1);
     CHECK(session.render(settings.samples - 1) == settings.samples - 1);
     CHECK(render_hash(session.result()) == render_hash(render(queue, scene, camera, settings)));
     session.abandon_when(nullptr);
 }
 
 /// A picture takes the memory that is said beforehand. `sorts`: on a GPU, for which CUB says what it takes on the
-/// device alone.
-inline void check_predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool sorts = false) {
+/// device alone. `on_host`: bytes that are said on the CPU and that no queue gives.
+inline void check_predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool sorts = false,
+                                  std::size_t on_host = 0) {
     Queue queue = queue_asked_for();
     Session session(queue, prepared, camera_with_lens(), settings);
     session.render(settings.samples);
-    const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());
+    const std::size_t beside = queue.is_cuda() ? 0 : on_host;
+    const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda()) - beside;
     const std::size_t sorting = sorts && queue.is_cuda() ? predicted / 10 : 0;
     CHECK(queue.allocated_bytes() + sorting >= predicted);
     CHECK(queue.allocated_bytes() <= predicted + 4096 + sorting); // the filter's table, the scene's view

@@ -3,9 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <thread>
 #include <vector>
 
+#include "base/parallel_for.h"
+#include "integrators/irradiance_cache/do_in_parts.h"
 #include "integrators/irradiance_cache/hemisphere.h"
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
 #include "integrators/irradiance_cache/overture_grid.h"
@@ -138,6 +143,68 @@ TEST_CASE("radii are clamped by those of their neighbours, whatever the order") 
     CHECK(smaller > 100);
 }
 
+TEST_CASE("work in parts is done once, in order, and no further than it is let") {
+    for (const PartSizes sizes : {PartSizes{7, 1000}, PartSizes{100, 100}, PartSizes{5000, 5000}}) {
+        for (const int most_asked : {1, 2, 3, 1 << 20}) {
+            uint64_t done = 0, longest = 0;
+            int asked = 0, parts = 0;
+            const bool went_on = do_in_parts(
+                1003, sizes, [&] { return ++asked <= most_asked; },
+                [&](uint64_t begin, uint64_t end) {
+                    CHECK(begin == done);
+                    CHECK(end > begin);
+                    longest = std::max(longest, end - begin);
+                    done = end;
+                    ++parts;
+                });
+            CHECK(longest <= sizes.most);
+            CHECK(went_on == (done == 1003 && asked <= most_asked));
+            CHECK(asked == parts + 1); // before each, and after the last
+        }
+    }
+    CHECK_FALSE(do_in_parts(
+        0, {1, 1}, [] { return false; }, [](uint64_t, uint64_t) { CHECK(false); }));
+}
+
+TEST_CASE("parts of work take about a tenth of a second, however long each piece takes") {
+    uint64_t longest = 0, shortest = 1 << 20;
+    const auto take_a_millisecond = [](uint64_t pieces) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(pieces));
+    };
+    do_in_parts(
+        700, {1, 700}, [] { return true; },
+        [&](uint64_t begin, uint64_t end) {
+            take_a_millisecond(end - begin);
+            longest = std::max(longest, end - begin);
+            if (begin >= 127 && end < 700) shortest = std::min(shortest, end - begin);
+        });
+    CHECK(longest >= 16);  // a machine under load sleeps longer
+    CHECK(longest <= 128); // 40 ms are short, so what is at least as long is not doubled
+    CHECK(shortest > 1);
+}
+
+TEST_CASE("spacing eight times as many records takes about eight times as long, however far they reach") {
+    const auto seconds_for = [](uint32_t count) {
+        test::Random random(8);
+        std::vector<Sphere> records;
+        for (uint32_t i = 0; i < count; ++i) { // on a floor, reaching as far as it is to the nearest of two walls
+            const float x = 20 * random.unit(), z = 20 * random.unit();
+            records.push_back({{x, 0, z}, 0.05f + 1.5f * std::min(x, z) * (0.8f + 0.4f * random.unit())});
+        }
+        const std::clock_t began = std::clock();
+        const std::vector<float> clamped = clamp_by_neighbours(records);
+        const auto seconds = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+        CHECK(clamped.size() == count);
+        return seconds;
+    };
+    set_thread_count(1);
+    const double few = seconds_for(1 << 12), many = seconds_for(1 << 15);
+    set_thread_count(0);
+    CAPTURE(few);
+    CAPTURE(many);
+    CHECK(many < 24 * few); // 64 where each looks at all
+}
+
 TEST_CASE("light between records is their weighted mean, and none beyond their reach") {
     const auto record_at = [](Vec3 at, float light) {
         IrradianceRecord record = {};
@@ -218,6 +285,19 @@ struct CacheRun {
 };
 
 } // namespace
+
+TEST_CASE("records take the memory of the host that is said beforehand") {
+    const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);
+    constexpr uint32_t kSize = 64;
+    const CacheRun run(scene, test::room_camera(), kSize, {.accuracy = 0.01f, .hemisphere_rays = 16}, 1);
+    REQUIRE(run.integrator.record_count() == most_records(kSize * kSize)); // as many as there is room for
+    const auto predicted = [](bool on_cuda) {
+        return IrradianceCacheIntegrator::predicted_bytes({}, kSize * kSize, 1u << 20, true, on_cuda);
+    };
+    CHECK(run.integrator.bytes() == predicted(true));
+    CHECK(run.integrator.host_bytes() <= predicted(false) - predicted(true));
+    CHECK(run.integrator.host_bytes() > (predicted(false) - predicted(true)) / 2);
+}
 
 TEST_CASE("irradiance at records is that of brute force") {
     const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);

@@ -318,6 +318,61 @@ TEST_CASE("a glowing room shows each scattering once, by direct estimate and by 
     }
 }
 
+TEST_CASE("rays of photon mapping are those that a hand counts, the gathering's among them") {
+    const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
+    Scene room; // closed and white, with a light that every place sees: no walk ends before its last scattering
+    Mesh mesh;
+    mesh.positions = sphere.positions;
+    mesh.indices = sphere.indices;
+    test::add(room, mesh, test::white(1));
+    room.lights.push_back(test::point_light({0, 0, 0}, {1, 1, 1}));
+    constexpr uint64_t kPasses = 3, kPhotons = 1000, kSamples = kPasses * 8 * 8;
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        for (const PhotonGather gather : {PhotonGather::Direct, PhotonGather::Final}) {
+            for (const uint32_t depth : {0u, 1u, 2u, 3u}) {
+                RenderSettings settings;
+                settings.width = settings.height = 8;
+                settings.samples = kPasses;
+                settings.integrator = IntegratorKind::PhotonMap;
+                settings.body = body;
+                settings.path.max_depth = depth;
+                settings.path.roulette_depth = 100;
+                settings.photon_map = {.photons = kPhotons, .radius = 1e-4f, .gather = gather};
+                Queue queue = test::queue_asked_for();
+                const RayCounts rays = test::render(queue, room, test::camera_down({0, 0.1f, 0}, 0.2f), settings).rays;
+                CAPTURE(static_cast<int>(gather));
+                CAPTURE(depth);
+                // A photon's ray from the light and one from each surface but the last. Nothing mirrors: one map.
+                const uint64_t of_photons = depth < 2 ? 0 : kPasses * kPhotons * depth;
+                // Of a sample one ray on, and where that arrives one to the light.
+                const bool gathers = gather == PhotonGather::Final && depth > 0;
+                CHECK(rays.camera == kSamples);
+                CHECK(rays.bounce == of_photons + (gathers ? kSamples : 0));
+                CHECK(rays.shadow == (depth > 0 ? kSamples : 0) + (gathers && depth > 1 ? kSamples : 0));
+            }
+        }
+    }
+}
+
+TEST_CASE("where walks end a ray looks for lamps that are near, and none where there are points alone") {
+    for (const PhotonGather gather : {PhotonGather::Direct, PhotonGather::Final}) {
+        RenderSettings settings;
+        settings.width = settings.height = 16;
+        settings.samples = 8;
+        settings.integrator = IntegratorKind::PhotonMap;
+        settings.path.max_depth = 1; // no photons
+        settings.photon_map.gather = gather;
+        Queue queue = test::queue_asked_for();
+        const auto rays_of = [&](const Scene& scene) {
+            return test::render(queue, scene, test::camera_down({0, 0.1f, 0}, 0.2f), settings).rays;
+        };
+        const RayCounts near = rays_of(sphere_that_glows(0.5f)), points = rays_of(test::floor_under_spot());
+        CHECK(near.camera == 16 * 16 * 8);
+        CHECK(near.bounce == doctest::Approx(static_cast<double>(near.camera)).epsilon(0.02)); // one way or the other
+        CHECK(points.bounce == (gather == PhotonGather::Final ? points.camera : 0));
+    }
+}
+
 TEST_CASE("a sphere in a furnace shows its albedo") {
     RenderSettings settings;
     settings.samples = 64;

@@ -15,25 +15,17 @@ public:
     PointOctreeBuilder(std::span<const Sphere> spheres, uint32_t max_leaf, PointOctree& tree)
         : spheres_(spheres), max_leaf_(max_leaf), tree_(tree) {}
 
-    /// `ids` ascend and lie in the cube of `side` at `corner`.
-    void build(std::vector<uint32_t> ids, Vec3 corner, float side, int levels) {
-        std::vector<uint32_t> own;
-        std::array<std::vector<uint32_t>, 8> octants;
+    /// `ids` ascend and lie in the cube of `side` at `corner`. `spare` is room for as many.
+    void build(std::span<uint32_t> ids, std::span<uint32_t> spare, Vec3 corner, float side, int levels) {
         for (; ids.size() > max_leaf_ && levels > 0; --levels) {
             const float half = 0.5f * side;
             const Vec3 centre = corner + Vec3{half, half, half};
-            own.clear();
-            for (auto& octant : octants) octant.clear();
-            for (const uint32_t id : ids) {
-                const Sphere& s = spheres_[id];
-                const unsigned k = (s.centre.x >= centre.x ? 1u : 0u) | (s.centre.y >= centre.y ? 2u : 0u) |
-                                   (s.centre.z >= centre.z ? 4u : 0u);
-                (s.radius > half ? own : octants[k]).push_back(id);
-            }
-            unsigned only = 0;
-            while (only < 7 && octants[only].size() != ids.size()) ++only;
-            if (octants[only].size() != ids.size()) return add_inner(ids, own, octants, corner, half, levels - 1);
-            corner = corner_of(only, corner, half); // all in one octant: no node for this cell
+            std::array<std::size_t, 9> sizes = {}; // of the spheres that stay, and of the octants
+            for (const uint32_t id : ids) ++sizes[part_of(id, centre, half)];
+            unsigned only = 1;
+            while (only < 8 && sizes[only] != ids.size()) ++only;
+            if (sizes[only] != ids.size()) return add_inner(ids, spare, sizes, corner, half, levels - 1);
+            corner = corner_of(only - 1, corner, half); // all in one octant: no node for this cell
             side = half;
         }
         add_node(ids, ids);
@@ -45,20 +37,31 @@ private:
         return corner +
                half * Vec3{static_cast<float>(k & 1), static_cast<float>(k >> 1 & 1), static_cast<float>(k >> 2)};
     }
+    /// 0: too large for an octant; else one more than the octant.
+    unsigned part_of(uint32_t id, Vec3 centre, float half) const {
+        const Sphere& s = spheres_[id];
+        if (s.radius > half) return 0;
+        return 1 + ((s.centre.x >= centre.x ? 1u : 0u) | (s.centre.y >= centre.y ? 2u : 0u) |
+                    (s.centre.z >= centre.z ? 4u : 0u));
+    }
 
-    void add_inner(std::vector<uint32_t>& ids, const std::vector<uint32_t>& own,
-                   std::array<std::vector<uint32_t>, 8>& octants, Vec3 corner, float half, int levels) {
+    void add_inner(std::span<uint32_t> ids, std::span<uint32_t> spare, const std::array<std::size_t, 9>& sizes,
+                   Vec3 corner, float half, int levels) {
+        std::array<std::size_t, 9> ends = {};
+        for (std::size_t k = 1; k < 9; ++k) ends[k] = ends[k - 1] + sizes[k - 1];
+        for (const uint32_t id : ids) spare[ends[part_of(id, corner + Vec3{half, half, half}, half)]++] = id;
         const std::size_t at = tree_.nodes.size();
-        add_node(ids, own);
-        ids = {}; // its memory is needed below
+        add_node(ids, spare.first(sizes[0]));
         for (unsigned k = 0; k < 8; ++k) {
-            if (!octants[k].empty()) build(std::move(octants[k]), corner_of(k, corner, half), half, levels);
+            const std::size_t size = sizes[k + 1], first = ends[k + 1] - size;
+            if (size == 0) continue;
+            build(spare.subspan(first, size), ids.subspan(first, size), corner_of(k, corner, half), half, levels);
         }
         tree_.nodes[at].skip = static_cast<uint32_t>(tree_.nodes.size());
     }
 
     /// A node over `ids`, of which `own` stay at it.
-    void add_node(const std::vector<uint32_t>& ids, const std::vector<uint32_t>& own) {
+    void add_node(std::span<const uint32_t> ids, std::span<const uint32_t> own) {
         Bounds3 bounds;
         float max_radius = 0;
         for (const uint32_t id : ids) {
@@ -88,14 +91,16 @@ PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_lea
     PointOctree tree;
     if (spheres.empty()) return tree;
     Bounds3 bounds;
-    std::vector<uint32_t> ids(spheres.size());
+    tree.nodes.reserve(2 * spheres.size());
+    tree.spheres.reserve(spheres.size());
+    tree.indices.reserve(spheres.size());
+    std::vector<uint32_t> ids(spheres.size()), spare(spheres.size());
     for (uint32_t i = 0; i < ids.size(); ++i) {
         PERTEV_CHECK(is_finite(spheres[i].centre) && is_finite(spheres[i].radius) && spheres[i].radius >= 0);
         bounds.extend(spheres[i].centre);
         ids[i] = i;
     }
-    PointOctreeBuilder(spheres, max_leaf, tree)
-        .build(std::move(ids), bounds.lo, max_component(bounds.size()), kMaxLevels);
+    PointOctreeBuilder(spheres, max_leaf, tree).build(ids, spare, bounds.lo, max_component(bounds.size()), kMaxLevels);
     return tree;
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "integrators/irradiance_cache/do_in_parts.h"
 #include "integrators/irradiance_cache/run_irradiance_cache.h"
 
 namespace pertev {
@@ -14,7 +16,8 @@ constexpr std::size_t kMostBytes = std::size_t(1) << 30; // of a device
 constexpr uint32_t kLoopWalks = 256;                     // of a thread, at once
 constexpr uint64_t kLoopRange = 256;                     // walks at least, that a thread takes at once
 constexpr uint32_t kLeastWalks = 32;
-constexpr std::size_t kCounts = 2; // of counts_
+
+enum : std::size_t { kMissed, kInvalid, kCounts }; // of counts_
 
 WalkRoom room_of(uint32_t walks) { return {walks, 0, 1}; }
 std::size_t bytes_in_flight(uint32_t walks, uint32_t cells) {
@@ -46,7 +49,7 @@ struct ThreadMemory {
     }
 };
 
-/// Runs all walks [0, all) of the job, so many at once.
+/// Runs walks [begin, end) of the job, so many at once.
 template <class Way, class Run>
 void run_in_parts(Way& way, CacheJob& job, uint64_t begin, uint64_t end, uint32_t at_once, const Run& run) {
     for (job.walk.first = begin; job.walk.first < end; job.walk.first += at_once) {
@@ -67,8 +70,9 @@ IrradianceCacheIntegrator::IrradianceCacheIntegrator(Queue& queue, const Subpath
       seen_(queue) {}
 
 std::size_t IrradianceCacheIntegrator::predicted_bytes(const IrradianceCacheSettings& cache, uint64_t pixels,
-                                                       uint32_t batch, bool in_loop) {
-    const std::size_t bytes = RecordStore::predicted_bytes(pixels) + kCounts * sizeof(uint64_t);
+                                                       uint32_t batch, bool in_loop, bool on_cuda) {
+    std::size_t bytes = RecordStore::predicted_bytes(pixels) + kCounts * sizeof(uint64_t);
+    if (!on_cuda) bytes += RecordStore::predicted_host_bytes(pixels);
     if (in_loop) return bytes;
     const uint32_t walks = walks_at_once(cache, pixels, batch);
     return bytes + bytes_in_flight(walks, walks);
@@ -86,11 +90,11 @@ void IrradianceCacheIntegrator::begin(const PictureView& picture, SceneTracer& t
     rays_ = {};
     picture_settings_ = settings_;
     picture_cache_ = cache_settings_;
-    has_records_ = false;
     const uint64_t pixels = uint64_t(picture.camera.width) * picture.camera.height;
+    if (!std::exchange(is_same_picture_, false)) has_records_ = false;
     store_.make_room(pixels);
     if (counts_.size() == 0) counts_ = {queue_, kCounts, "counts of irradiance caching"};
-    counts_.zero();
+    queue_.zero(counts_.data() + kMissed, sizeof(uint64_t));
     if (trees_of_loop() != nullptr) return;
     walks_in_flight_ = walks_at_once(picture_cache_, pixels, batch_);
     const std::size_t bytes = bytes_in_flight(walks_in_flight_, walks_in_flight_);
@@ -109,7 +113,7 @@ std::vector<IrradianceRecord> IrradianceCacheIntegrator::records() const {
 
 uint64_t IrradianceCacheIntegrator::missed_lookups() const {
     uint64_t missed = 0;
-    queue_.copy_to_host(&missed, counts_.data(), sizeof missed);
+    queue_.copy_to_host(&missed, counts_.data() + kMissed, sizeof missed);
     return missed;
 }
 
@@ -118,15 +122,15 @@ CacheJob IrradianceCacheIntegrator::make_job(uint32_t seed) const {
     job.walk.scene = {picture_, picture_settings_, {}, false};
     job.walk.scene.settings.seed ^= seed;
     job.records = store_.view();
-    job.missed = counts_.data();
+    job.missed = counts_.data() + kMissed;
     return job;
 }
 
 void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
     PERTEV_CHECK(!film.frame.is_there());
     if (count == 0) return;
-    // What is invalid of the records is told with sample 0, once, however the work is split.
-    if (!has_records_ && !make_records(first == 0 ? film.invalid : counts_.data() + 1)) return;
+    if (!make_ready([this] { return !is_abandoned(); })) return;
+    if (first == 0) tell_invalid(film.invalid);
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
     CacheJob job = make_job(0);
     job.walk.film = film;
@@ -134,82 +138,110 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     const float bright = 4.0f * store_.mean_luminance();
     job.mark = {bright, 0.35f * bright, 0};
     job.walk.samples = {0, pixels, first};
-    run_walks(job, uint64_t(pixels) * count, [](auto& way, const CacheJob& part) { run_picture(way, part); });
+    run_walks(job, 0, uint64_t(pixels) * count, [this](auto& way, const CacheJob& part) {
+        if (!is_abandoned()) run_picture(way, part);
+    });
     rays_.camera += uint64_t(pixels) * count;
 }
 
-bool IrradianceCacheIntegrator::make_records(uint64_t* invalid) {
-    store_.clear();
-    // Light that is scattered once is found by shadow rays alone.
-    const uint32_t rounds = picture_settings_.max_depth < 2 ? 0 : kOvertureRounds;
-    const RayCounts before = rays_;
-    for (uint32_t round = 0; round < rounds && !is_abandoned(); ++round) {
-        CacheJob job = make_job(kOvertureSeed);
-        job.grid = make_overture_grid(round, picture_.camera.width, picture_.camera.height);
-        if (job.grid.count() == 0) continue; // a picture smaller than a step
-        job.round = round;
-        job.sites = store_.sites();
-        run_walks(job, job.grid.count(), [](auto& way, const CacheJob& part) { run_overture(way, part); });
-        rays_.camera += job.grid.count();
-        if (is_abandoned()) break;
-        const uint32_t wanted = store_.gather_sites(job.grid.count());
-        if (wanted == 0) continue;
-        make_hemispheres(make_job(kHemisphereSeed), wanted, invalid);
-        if (!is_abandoned()) store_.take(wanted, picture_cache_.accuracy);
-    }
-    has_records_ = !is_abandoned();
-    if (!has_records_) rays_ = before;
-    return has_records_;
+/// What is invalid of the records is told with sample 0, once, however the work is split.
+void IrradianceCacheIntegrator::tell_invalid(uint64_t* invalid) {
+    uint64_t of_records = 0, so_far = 0;
+    queue_.copy_to_host(&of_records, counts_.data() + kInvalid, sizeof of_records);
+    if (of_records == 0) return;
+    queue_.copy_to_host(&so_far, invalid, sizeof so_far);
+    so_far += of_records;
+    queue_.copy_to_device(invalid, &so_far, sizeof so_far);
 }
 
-void IrradianceCacheIntegrator::make_hemispheres(CacheJob job, uint32_t records, uint64_t* invalid) {
+bool IrradianceCacheIntegrator::make_ready(const std::function<bool()>& goes_on) {
+    if (has_records_) return true;
+    store_.clear();
+    queue_.zero(counts_.data() + kInvalid, sizeof(uint64_t));
+    // Light that is scattered once is found by shadow rays alone.
+    const uint32_t rounds = picture_settings_.max_depth < 2 ? 0 : kOvertureRounds;
+    for (uint32_t round = 0; round < rounds; ++round) {
+        if (!make_round(round, goes_on)) return false;
+    }
+    has_records_ = true;
+    return true;
+}
+
+bool IrradianceCacheIntegrator::make_round(uint32_t round, const std::function<bool()>& goes_on) {
+    CacheJob job = make_job(kOvertureSeed);
+    job.grid = make_overture_grid(round, picture_.camera.width, picture_.camera.height);
+    job.round = round;
+    job.sites = store_.sites();
+    const PartSizes parts = trees_of_loop() != nullptr
+                                ? PartSizes{kLoopRange * static_cast<uint64_t>(thread_count()), job.grid.count()}
+                                : PartSizes{walks_in_flight_, walks_in_flight_};
+    const bool went_on = do_in_parts(job.grid.count(), parts, goes_on, [&](uint64_t begin, uint64_t end) {
+        run_walks(job, begin, end, [](auto& way, const CacheJob& part) { run_overture(way, part); });
+        rays_.camera += end - begin;
+    });
+    if (!went_on) return false;
+    const uint32_t wanted = store_.gather_sites(job.grid.count());
+    if (wanted == 0) return true; // of a picture smaller than a step, too
+    if (!make_hemispheres(make_job(kHemisphereSeed), wanted, goes_on)) return false;
+    store_.take(wanted, picture_cache_.accuracy);
+    return true;
+}
+
+bool IrradianceCacheIntegrator::make_hemispheres(CacheJob job, uint32_t records, const std::function<bool()>& goes_on) {
     const HemisphereGrid grid = make_hemisphere_grid(picture_cache_.hemisphere_rays);
     const uint32_t cells = grid.cells();
     job.hemispheres = {store_.sites(), store_.count(), 0, grid};
     job.made = store_.records();
-    const auto run = [](auto& way, const CacheJob& part) { run_hemispheres(way, part); };
     if (const HostTrees* trees = trees_of_loop()) {
-        std::atomic<uint64_t> bounces{0}, connections{0};
-        parallel_for_ranges(records, 1, [&](uint64_t begin, uint64_t end) {
-            CacheJob part = job;
-            ThreadMemory thread(*trees, part, cells);
-            part.walk.film = film_of_cells(part.cache, invalid, cells);
-            for (uint64_t i = begin; i < end && !is_abandoned(); ++i) {
-                part.hemispheres.begin = static_cast<uint32_t>(i);
-                std::fill_n(part.cache.light, 3 * std::size_t(cells), FixedSum{});
-                run_in_parts(thread.way, part, 0, cells, kLoopWalks, run);
-                finish_records(thread.way, part, 1);
-            }
-            bounces += part.walk.walks.counts->bounces;
-            connections += part.walk.walks.counts->all_asked;
-        });
-        rays_ = rays_ + RayCounts{0, bounces, connections};
-        return;
+        const PartSizes parts = {static_cast<uint64_t>(thread_count()), records};
+        return do_in_parts(records, parts, goes_on,
+                           [&](uint64_t begin, uint64_t end) { make_hemispheres_in_loop(*trees, job, begin, end); });
     }
     const uint32_t at_once = walks_in_flight_ / cells;
-    for (uint32_t i = 0; i < records && !is_abandoned(); i += at_once) {
-        const uint32_t here = std::min(at_once, records - i);
+    return do_in_parts(records, {at_once, at_once}, goes_on, [&](uint64_t begin, uint64_t end) {
         CacheJob part = job;
-        part.hemispheres.begin = i;
-        part.walk.film = film_of_cells(cache_, invalid, here * cells);
+        part.hemispheres.begin = static_cast<uint32_t>(begin);
+        const auto here = static_cast<uint32_t>(end - begin);
+        part.walk.film = film_of_cells(cache_, counts_.data() + kInvalid, here * cells);
         queue_.zero(cache_.light, 3 * std::size_t(here) * cells * sizeof(FixedSum));
-        run_walks(part, uint64_t(here) * cells, run);
+        run_walks(part, 0, uint64_t(here) * cells,
+                  [](auto& way, const CacheJob& walks) { run_hemispheres(way, walks); });
         part.cache = cache_;
         WalksOnDevice way(queue_, *tracer_, seen_);
         finish_records(way, part, here);
-    }
+    });
+}
+
+void IrradianceCacheIntegrator::make_hemispheres_in_loop(const HostTrees& trees, const CacheJob& job, uint64_t begin,
+                                                         uint64_t end) {
+    const uint32_t cells = job.hemispheres.grid.cells();
+    std::atomic<uint64_t> bounces{0}, connections{0};
+    parallel_for_ranges(end - begin, 1, [&](uint64_t from, uint64_t to) {
+        CacheJob part = job;
+        ThreadMemory thread(trees, part, cells);
+        part.walk.film = film_of_cells(part.cache, counts_.data() + kInvalid, cells);
+        for (uint64_t i = begin + from; i < begin + to; ++i) {
+            part.hemispheres.begin = static_cast<uint32_t>(i);
+            std::fill_n(part.cache.light, 3 * std::size_t(cells), FixedSum{});
+            run_in_parts(thread.way, part, 0, cells, kLoopWalks,
+                         [](auto& way, const CacheJob& walks) { run_hemispheres(way, walks); });
+            finish_records(thread.way, part, 1);
+        }
+        bounces += part.walk.walks.counts->bounces;
+        connections += part.walk.walks.counts->all_asked;
+    });
+    rays_ = rays_ + RayCounts{0, bounces, connections};
 }
 
 template <class Run>
-void IrradianceCacheIntegrator::run_walks(const CacheJob& job, uint64_t walks, const Run& run) {
-    if (walks == 0) return;
+void IrradianceCacheIntegrator::run_walks(const CacheJob& job, uint64_t begin, uint64_t end, const Run& run) {
+    if (begin >= end) return;
     if (const HostTrees* trees = trees_of_loop()) {
         std::atomic<uint64_t> bounces{0}, connections{0};
-        parallel_for_ranges(walks, kLoopRange, [&](uint64_t begin, uint64_t end) {
-            if (is_abandoned()) return;
+        parallel_for_ranges(end - begin, kLoopRange, [&](uint64_t from, uint64_t to) {
             CacheJob part = job;
             ThreadMemory thread(*trees, part, 0);
-            run_in_parts(thread.way, part, begin, end, kLoopWalks, run);
+            run_in_parts(thread.way, part, begin + from, begin + to, kLoopWalks, run);
             bounces += part.walk.walks.counts->bounces;
             connections += part.walk.walks.counts->all_asked;
         });
@@ -221,7 +253,7 @@ void IrradianceCacheIntegrator::run_walks(const CacheJob& job, uint64_t walks, c
     part.cache = cache_;
     queue_.zero(walks_.counts, sizeof(WalkCounts));
     WalksOnDevice way(queue_, *tracer_, seen_);
-    run_in_parts(way, part, 0, walks, walks_in_flight_, run);
+    run_in_parts(way, part, begin, end, walks_in_flight_, run);
     way.begin_rounds(0);
     WalkCounts counts;
     queue_.copy_to_host(&counts, walks_.counts, sizeof counts);

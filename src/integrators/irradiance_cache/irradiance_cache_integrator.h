@@ -4,7 +4,7 @@
 // records, and put together from these everywhere else (irradiance_record.h). The records are made before the first
 // sample, in rounds (overture_grid.h, hemisphere_stages.h), and stay as they are, so each sample is a function of
 // picture, settings and number. Light of lamps and sky, straight or by mirrors, is found by each sample itself
-// (cache_stages.h).
+// (cache_stages.h). They are kept from one begin() to the next where the picture is the same.
 //
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988.
 //
@@ -35,16 +35,21 @@ public:
     IrradianceCacheIntegrator(Queue& queue, const SubpathSettings& settings, const IrradianceCacheSettings& cache,
                               bool in_loop, uint32_t batch);
 
-    /// Bytes that begin() takes for so many pixels. `in_loop`: threads take walks of their own.
+    /// Bytes that begin() takes for so many pixels, and on the CPU what the records take beside. `in_loop`: threads
+    /// take walks of their own.
     static std::size_t predicted_bytes(const IrradianceCacheSettings& cache, uint64_t pixels, uint32_t batch,
-                                       bool in_loop);
+                                       bool in_loop, bool on_cuda);
 
+    void expect_same_picture() override { is_same_picture_ = true; }
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
-    /// The first call makes the records.
+    /// Makes the records. On the CPU one record a thread is not broken off.
+    bool make_ready(const std::function<bool()>& goes_on) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
     void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
     RayCounts rays() const override { return rays_; }
     std::size_t bytes() const override;
+    /// The most that records have taken of the host's memory beside.
+    std::size_t host_bytes() const { return store_.host_bytes(); }
 
     /// Count from the next begin().
     void set_settings(const SubpathSettings& settings, const IrradianceCacheSettings& cache) {
@@ -63,10 +68,12 @@ private:
     /// A session throws the film away on the CPU alone.
     bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
     CacheJob make_job(uint32_t seed) const;
-    bool make_records(uint64_t* invalid);
-    void make_hemispheres(CacheJob job, uint32_t records, uint64_t* invalid);
+    bool make_round(uint32_t round, const std::function<bool()>& goes_on);
+    bool make_hemispheres(CacheJob job, uint32_t records, const std::function<bool()>& goes_on);
+    void make_hemispheres_in_loop(const HostTrees& trees, const CacheJob& job, uint64_t begin, uint64_t end);
     template <class Run>
-    void run_walks(const CacheJob& job, uint64_t walks, const Run& run);
+    void run_walks(const CacheJob& job, uint64_t begin, uint64_t end, const Run& run);
+    void tell_invalid(uint64_t* invalid);
 
     Queue& queue_;
     SubpathSettings settings_, picture_settings_; // asked for; of the picture begun
@@ -78,9 +85,10 @@ private:
     const std::atomic<bool>* abandon_ = nullptr;
     RayCounts rays_;
 
+    bool is_same_picture_ = false; // of the next begin()
     bool has_records_ = false;
     RecordStore store_;
-    Buffer<uint64_t> counts_; // lookups that found no record; invalid samples that are told otherwise
+    Buffer<uint64_t> counts_; // lookups that found no record; invalid samples of the records
     Buffer<std::byte> memory_;
     uint32_t walks_in_flight_ = 0;
     WalksView walks_{};      // of memory_

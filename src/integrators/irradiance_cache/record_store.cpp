@@ -1,17 +1,36 @@
 #include "integrators/irradiance_cache/record_store.h"
 
 #include <algorithm>
+#include <span>
 
+#include "accel/octree/octree_memory.h"
 #include "base/error.h"
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/irradiance_cache/space_records.h"
 
 namespace pertev {
+namespace {
+
+/// Elements [0, count) at `data`: where they lie, or in `copy` where the device has memory of its own.
+template <class T>
+std::span<T> on_host(Queue& queue, T* data, std::size_t count, std::vector<T>& copy) {
+    if (!queue.is_cuda()) return {data, count};
+    copy.resize(count);
+    queue.copy_to_host(copy.data(), data, count * sizeof(T));
+    return copy;
+}
+
+} // namespace
 
 std::size_t RecordStore::predicted_bytes(uint64_t pixels) {
     const std::size_t each =
         sizeof(IrradianceRecord) + sizeof(float) + 2 * sizeof(PointOctreeNode) + sizeof(Sphere) + sizeof(uint32_t);
     return pixels * sizeof(RecordSite) + most_records(pixels) * each;
+}
+
+std::size_t RecordStore::predicted_host_bytes(uint64_t pixels) {
+    const uint64_t most = most_records(pixels);
+    return most * (2 * sizeof(Sphere) + 2 * sizeof(float)) + most_octree_bytes(most);
 }
 
 void RecordStore::make_room(uint64_t pixels) {
@@ -27,6 +46,8 @@ void RecordStore::make_room(uint64_t pixels) {
     need(nodes_, 2 * most, "octree over irradiance records");
     need(tree_spheres_, most, "octree over irradiance records");
     need(tree_indices_, most, "octree over irradiance records");
+    spheres_.reserve(most);
+    luminances_.reserve(most);
     pixels_ = pixels;
 }
 
@@ -43,19 +64,18 @@ void RecordStore::clear() {
 }
 
 uint32_t RecordStore::gather_sites(uint32_t count) {
-    std::vector<RecordSite> wanted(count);
-    queue_.copy_to_host(wanted.data(), sites_.data(), wanted.size() * sizeof(RecordSite));
-    std::erase_if(wanted, [](const RecordSite& site) { return site.scatterings == kNoSite; });
-    wanted.resize(std::min<std::size_t>(wanted.size(), most_records(pixels_) - spheres_.size()));
-    sites_.upload(wanted);
-    return static_cast<uint32_t>(wanted.size());
+    std::vector<RecordSite> copy;
+    const std::span<RecordSite> sites = on_host(queue_, sites_.data(), count, copy);
+    const auto none = std::ranges::remove_if(sites, [](const RecordSite& s) { return s.scatterings == kNoSite; });
+    const std::size_t wanted = std::min(sites.size() - none.size(), most_records(pixels_) - spheres_.size());
+    if (queue_.is_cuda()) sites_.upload(sites.first(wanted));
+    return static_cast<uint32_t>(wanted);
 }
 
 void RecordStore::take(uint32_t made, float accuracy) {
     accuracy_ = accuracy;
-    std::vector<IrradianceRecord> records(made);
-    queue_.copy_to_host(records.data(), records_.data() + count(), records.size() * sizeof(IrradianceRecord));
-    for (const IrradianceRecord& record : records) {
+    std::vector<IrradianceRecord> copy;
+    for (const IrradianceRecord& record : on_host(queue_, records_.data() + count(), made, copy)) {
         spheres_.push_back({record.place.position, record.radius});
         luminances_.push_back(luminance(record.light));
     }
@@ -67,6 +87,9 @@ void RecordStore::take(uint32_t made, float accuracy) {
     }
     const PointOctree tree = build_point_octree(reached);
     PERTEV_CHECK(tree.nodes.size() <= nodes_.size());
+    const std::size_t of_each = (spheres_.capacity() + reached.capacity()) * sizeof(Sphere) +
+                                (luminances_.capacity() + reaches.capacity()) * sizeof(float);
+    host_bytes_ = std::max(host_bytes_, of_each + most_octree_bytes(reached.size()));
     reaches_.upload(reaches);
     nodes_.upload(tree.nodes);
     tree_spheres_.upload(tree.spheres);

@@ -19,9 +19,13 @@ public:
 
     /// Bytes that make_room() takes.
     static std::size_t predicted_bytes(uint64_t pixels);
+    /// Bytes that it takes beside of the host's memory, for the octree and the spacing of records, at most.
+    static std::size_t predicted_host_bytes(uint64_t pixels);
     /// For a picture of so many pixels. Throws Error(OutOfMemory).
     void make_room(uint64_t pixels);
     std::size_t bytes() const;
+    /// The most that it has taken of the host's memory.
+    std::size_t host_bytes() const { return host_bytes_; }
 
     /// A picture begins: no records.
     void clear();
@@ -47,6 +51,7 @@ private:
     float accuracy_ = 0;
     std::vector<Sphere> spheres_;   // of their own radii
     std::vector<float> luminances_; // of their light
+    std::size_t host_bytes_ = 0;
     uint32_t node_count_ = 0;
     Buffer<RecordSite> sites_;
     Buffer<IrradianceRecord> records_;

@@ -7,7 +7,9 @@
 //   all other      looked up in the global map too; or, with final gathering, found by going on once from there, to
 //                  where a surface is diffuse again and all of it is looked up. Where that is nearer than the radius,
 //                  the walk goes on once more: a map blurs what is nearer than that.
-// Each light path is found in one of these ways and in no other.
+// Each light path is found in one of these ways and in no other. Where a walk ends, a ray of its own looks for lamps,
+// so that a lamp close by, of which a shadow ray finds much light by little chance, is no bright spot (Veach 1997,
+// section 9.2); seldom where the lamp that the shadow ray is sent to is far.
 //
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 5.
 
@@ -16,6 +18,12 @@
 #include "shading/power_heuristic.h"
 
 namespace pertev {
+
+inline constexpr uint32_t kLooksForLamps = 2;       // GatherView::marks of a walk that does nothing else any more
+inline constexpr uint32_t kNumberOfLook = 2;        // of the choices of a vertex: whether a ray looks for lamps
+inline constexpr float kLeastChanceToLook = 0.125f; // of that
+inline constexpr float kLookWithin = 4.0f; // ... which is 1 where a lamp's area is more than 1/4 of the square of
+                                           // the way there
 
 /// Walks 0, 1, ... become the camera's of a pass.
 struct BeginSights {
@@ -47,7 +55,12 @@ struct ShadeSights {
         const Hit hit = walks.hits().load(i);
         WalkState state = walks.states[walk];
         const Sight sight = gather.sight_of(walk);
-        if (hit.instance == kNoHit) return add_background(state, sight, ray);
+        const bool looks_for_lamps = gather.marks[walk] == kLooksForLamps;
+        if (hit.instance == kNoHit) {
+            if (!looks_for_lamps) add_background(state, sight, ray);
+            return;
+        }
+        if (looks_for_lamps && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
         const Surface surface = make_surface<kKnown>(picture.scene, hit, ray.direction);
         if (state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
@@ -58,19 +71,25 @@ struct ShadeSights {
                       may_be_drawn ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position) : 0.0f);
         }
         const uint32_t depth = state.depth(), max_depth = scene.settings.max_depth;
-        if (surface.is_unlit || depth >= max_depth) return;
+        if (looks_for_lamps || surface.is_unlit || depth >= max_depth) return;
 
         const bool is_diffuse = surface.bsdf.has(LobeClass::Diffuse), is_glossy = surface.bsdf.has(LobeClass::Glossy);
         const bool is_near = sight.pdf > 0 && hit.t < near;
         const bool turns = is_diffuse && how == PhotonGather::Final && (gather.marks[walk] == 0 || is_near);
-        const Vertex vertex = {surface,   -ray.direction, is_diffuse,
-                               is_glossy, turns,          {state.pixel, state.sample, scene.settings.seed}};
-        if (is_diffuse || is_glossy) ask_for_light(vertex, state);
+        const bool may_look = is_diffuse && !is_glossy && !turns;
+        const Vertex vertex = {surface,
+                               -ray.direction,
+                               is_diffuse,
+                               is_glossy,
+                               turns,
+                               may_look,
+                               {state.pixel, state.sample, scene.settings.seed}};
+        const float nearness = is_diffuse || is_glossy ? ask_for_light(vertex, state) : 0.0f;
         if (is_diffuse && depth + 2 <= max_depth) {
             gather.store(atomic_add(&walks.counts->vertices, 1u),
                          {hit, ray.direction, state.throughput, state.pixel, depth, !turns});
         }
-        go_on(vertex, walk, state, sight);
+        go_on(vertex, walk, state, sight, nearness);
     }
 
 private:
@@ -78,7 +97,8 @@ private:
         const Surface& surface;
         Vec3 wo;
         bool is_diffuse, is_glossy;
-        bool turns; // the walk goes on by diffuse lobes too
+        bool turns;    // the walk goes on by diffuse lobes too
+        bool may_look; // for lamps alone, by diffuse lobes
         SampleKey key;
     };
 
@@ -95,19 +115,20 @@ private:
                   sight.pdf > 0 ? pdf_environment(lights, ray.direction) : 0.0f);
     }
 
-    /// One point of one light, as path tracing draws it.
-    HD_FUSED void ask_for_light(const Vertex& vertex, const WalkState& state) const {
+    /// One point of one light, as path tracing draws it. Returns how near that is: nearness_of, or 0.
+    HD_FUSED float ask_for_light(const Vertex& vertex, const WalkState& state) const {
         const SceneView& view = scene.picture.scene;
         const Surface& surface = vertex.surface;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return;
+        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return 0;
+        const float nearness = nearness_of(light);
         const BsdfValue all = surface.evaluate(vertex.wo, light.wi);
-        if (is_black(all.f)) return;
+        if (is_black(all.f)) return nearness;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
             !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-            return; // a hole in the light
+            return nearness; // a hole in the light
         }
         Connection connection;
         connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
@@ -116,20 +137,28 @@ private:
         connection.key = coin;
         connection.light = (1.0f / light.pdf) * (state.throughput * drawn_share(vertex, light, all) * light.radiance);
         walks.ask(atomic_add(&walks.counts->asked, 1u), connection, state.pixel);
+        return nearness;
+    }
+    /// Of a lamp its area, over the chance to draw it, beside the square of the way there; 0 of lights without place or
+    /// size.
+    HD static float nearness_of(const LightSample& light) {
+        if (light.is_delta || !(light.distance < kInfinity)) return 0;
+        return 1.0f / (light.pdf * abs(dot(light.light_normal, light.wi)));
     }
     /// Of what the surface sends on of a light that was drawn, what the walk's own ray does not find.
     HD Rgb drawn_share(const Vertex& vertex, const LightSample& light, const BsdfValue& all) const {
-        if (light.is_delta || !(vertex.turns || vertex.is_glossy)) return all.f;
+        const bool is_sky = !light.is_delta && light.instance == kNoLight;
+        if (light.is_delta || (vertex.may_look && is_sky)) return all.f;
         const float weight = power_heuristic(light.pdf, all.pdf);
-        if (vertex.turns || !vertex.is_diffuse) return weight * all.f;
+        if (vertex.turns || vertex.may_look || !vertex.is_diffuse) return weight * all.f;
         const Surface& surface = vertex.surface;
         return surface.evaluate(vertex.wo, light.wi, only(LobeClass::Diffuse)).f +
                weight * surface.evaluate(vertex.wo, light.wi, only(LobeClass::Glossy)).f;
     }
 
-    HD_FUSED void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, Sight sight) const {
+    /// `nearness`: of ask_for_light.
+    HD_FUSED void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, Sight sight, float nearness) const {
         const Surface& surface = vertex.surface;
-        if (!vertex.turns && !vertex.is_glossy && !surface.bsdf.has_delta()) return;
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = eye_group(state.depth(), kWalkChoices);
         const WalkDraw draw =
@@ -143,7 +172,12 @@ private:
                 const Rgb glossy = surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
                 past_mirrors = (1.0f / sample.pdf) * glossy;
             }
-            if (!vertex.turns) sample.weight = past_mirrors;
+            if (vertex.may_look) {
+                sample.weight = share_that_looks(vertex, nearness, choices) * sample.weight;
+                gather.marks[walk] = kLooksForLamps;
+            } else if (!vertex.turns) {
+                sample.weight = past_mirrors;
+            }
         }
         if (is_black(sample.weight)) return;
         const Rgb before = sample.weight;
@@ -162,6 +196,14 @@ private:
                          kInfinity};
         walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
                         coin_key(vertex.key, state.depth(), false), round + 1);
+    }
+
+    /// 0: no ray looks for lamps; else what makes up for those that do not.
+    HD float share_that_looks(const Vertex& vertex, float nearness, uint32_t choices) const {
+        if (scene.picture.scene.lights.triangle_count == 0) return 0;
+        const float chance = clamp(kLookWithin * nearness, kLeastChanceToLook, 1.0f);
+        const float u = sample_1d(scene.settings.sampler, vertex.key, choices, kNumberOfLook);
+        return u < chance ? 1.0f / chance : 0.0f;
     }
 };
 
