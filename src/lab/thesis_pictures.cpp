@@ -186,7 +186,7 @@ void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     RadiositySettings asked;
     asked.seed = job.settings.path.seed;
     asked.patch_size = kPanelPatch;
-    if (panel.is_flat) asked.subdivisions = 0;
+    asked.subdivisions = panel.is_flat ? 0 : 1;
     if (panel.is_early) {
         asked.solver = RadiositySolver::Southwell;
         asked.steps = kEarlySteps;

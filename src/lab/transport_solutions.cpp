@@ -16,6 +16,7 @@ constexpr std::size_t kMostSolutionBytes = std::size_t(4) << 30;
 RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t number, uint32_t seed) {
     RadiositySettings settings;
     settings.patch_size = patch_size_of(prepared, settings) * kFirstPatch / static_cast<float>(1u << number);
+    settings.subdivisions = 1; // more would make each cost what the next does
     settings.seed = seed;
     return settings;
 }

@@ -16,8 +16,8 @@ namespace pertev {
 /// Of each pixel, of a picture of a solution: for its edges, as the solution has no noise that samples would lessen.
 inline constexpr uint32_t kSolutionSamples = 16;
 
-/// Solution `number`: patches of a 4th, 8th, 16th, ... of the scene's longest side, which are divided where light
-/// changes as those of pertev render.
+/// Solution `number`: patches of a 4th, 8th, 16th, ... of the scene's longest side, which are divided once where light
+/// changes.
 RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t number, uint32_t seed);
 
 /// Whether there may be a solution of that number: it takes no more patches, and no more of this machine's memory, than

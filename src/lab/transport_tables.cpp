@@ -73,8 +73,9 @@ TransportTable equal_time_table(const TransportScene& scene) {
                                   : fmt::format("{:.4g}", line.point->samples)});
             add_cells(cells, efficiency_cells(line, of_path));
         } else {
-            const char* first =
-                line.row->is_solved ? "its first solution takes longer" : "its first sample takes longer";
+            const char* what = line.row->is_solved ? "solution" : "sample";
+            const std::string first =
+                fmt::format("its first {} takes {:.3g} s", what, points_of(*line.row).front().seconds.mean);
             add_cells(cells, {first, "", "", "", ""});
         }
         add_cells(cells, {fmt::format("{:.1f}", mebibytes(line.row->bytes + line.row->host_bytes)), line.row->light});

@@ -108,6 +108,9 @@ TEST_CASE("of solutions the last that is there by a time counts, whole, and none
     CHECK(by_time[1][3] == "16; 100 patches");
     CHECK(by_time[1][6] == "5.0"); // MiB, the host's 2 among them
     REQUIRE(by_samples.size() == 4);
+    TransportScene late = scene;
+    for (Repetition& repetition : late.rows.back().repetitions) repetition.erase(repetition.begin());
+    CHECK(equal_time_table(late)[3][1] == "its first solution takes 5.5 s");
     CHECK(by_samples[3] == std::vector<std::string>{"radiosity", "no samples: it is solved"});
     scene.rows.erase(scene.rows.begin(), scene.rows.end() - 1);
     CHECK(equal_seconds(scene) == doctest::Approx(5)); // there is nothing else
@@ -190,7 +193,7 @@ TEST_CASE("the report's texts have what was measured, and what was not with its 
     CHECK(test::has(csv, "\"lamps alone, and \"\"more\"\"\""));
     CHECK(test::has(json, R"("equal_samples":8)"));
     CHECK(test::has(json, R"("efficiency":5})")); // of path after 8 samples
-    CHECK(test::has(json, R"("refused":"lamps alone, and \"more\"","device_bytes":null)"));
+    CHECK(test::has(json, R"("refused":"lamps alone, and \"more\"","is_solved":false,"device_bytes":null)"));
     CHECK(test::has(text, "cast: lamps alone"));
     CHECK(test::has(text, "its own noise: relMSE 0.001"));
     test::check_tags(html);
