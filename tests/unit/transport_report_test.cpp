@@ -108,6 +108,11 @@ TEST_CASE("of solutions the last that is there by a time counts, whole, and none
     CHECK(by_time[1][3] == "16; 100 patches");
     CHECK(by_time[1][6] == "5.0"); // MiB, the host's 2 among them
     REQUIRE(by_samples.size() == 4);
+    TransportScene quick = scene; // which does not hold up the others
+    quick.rows.back().repetitions = {{{4, 0.1, 0.1, 0.05, 100}}, {{4, 0.1, 0.1, 0.05, 100}}};
+    CHECK(equal_seconds(quick) == doctest::Approx(0.8));
+    CHECK(equal_samples(quick) == 8);
+    CHECK(at_time(quick.rows.back(), 0.8));
     TransportScene late = scene;
     for (Repetition& repetition : late.rows.back().repetitions) repetition.erase(repetition.begin());
     CHECK(equal_time_table(late)[3][1] == "its first solution takes 5.5 s");
