@@ -122,16 +122,17 @@ TEST_CASE("no two pictures of the thesis are alike, none is black, and each says
     }
 }
 
-TEST_CASE("pictures of the thesis have the same bytes by all stages at once") {
-    Queue queue = test::queue_asked_for();
+TEST_CASE("pictures of the thesis have the same bytes by all stages at once, and on a GPU") {
+    Queue cpu = Queue::make_cpu(), queue = test::queue_asked_for();
     RenderSettings settings = small_picture(48, 36, 2);
-    const std::vector<ThesisPicture> in_loop = all_pictures(queue, settings);
+    const std::vector<ThesisPicture> in_loop = all_pictures(cpu, settings);
     settings.body = PathBody::Wavefront;
     settings.batch = 500;
     const std::vector<ThesisPicture> at_once = all_pictures(queue, settings);
     for (std::size_t i = 0; i < in_loop.size(); ++i) {
         CAPTURE(in_loop[i].name);
         CHECK(in_loop[i].image.pixels == at_once[i].image.pixels);
+        CHECK(in_loop[i].svg == at_once[i].svg);
     }
 }
 
