@@ -235,9 +235,9 @@ void add_lab_command(CLI::App& app, int& status) {
         ->check(whole_between(1, 10000))
         ->capture_default_str();
     verb.add_flag("--no-heat-maps", flags->no_heat_maps, "no pictures of the tests a pixel");
-    CLI::Option* thesis = verb.add_flag(
-        "--thesis", flags->thesis,
-        "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found under PERTEV_SCENES), depths 1-8");
+    CLI::Option* thesis = verb.add_flag("--thesis", flags->thesis,
+                                        "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found "
+                                        "under PERTEV_SCENES), depths 1-8; with -o pictures of\nchapters 2 to 4 too");
     CLI::Option* transport =
         verb.add_flag("--transport", flags->transport,
                       "integrators side by side in place of walks: error over time,\nagainst a reference");

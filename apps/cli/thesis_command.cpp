@@ -3,7 +3,9 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -11,11 +13,13 @@
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
 #include "base/error.h"
+#include "base/stopwatch.h"
 #include "image/auto_exposure.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
 #include "lab/thesis.h"
 #include "lab/write_tables.h"
+#include "lab/write_thesis_pictures.h"
 #include "session/session.h"
 #include "session/survey/default_light.h"
 
@@ -35,7 +39,7 @@ std::string sibenik() {
     return path.string();
 }
 
-struct ThesisScene {
+struct MeasuredScene {
     std::string name;
     Scene scene;
     bool default_light = false; // it brought none of its own
@@ -43,10 +47,10 @@ struct ThesisScene {
 };
 
 /// Light is for pictures alone.
-ThesisScene load(SceneOptions options, const std::string& scene, const LabSettings& settings, bool has_pictures,
-                 Messages& messages) {
+MeasuredScene load(SceneOptions options, const std::string& scene, const LabSettings& settings, bool has_pictures,
+                   Messages& messages) {
     options.scene = scene;
-    ThesisScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
+    MeasuredScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
     if (has_pictures) thesis.default_light = add_default_light(thesis.scene, messages) != DefaultLight::None;
     thesis.camera = choose_camera(options, thesis.scene, aspect_of(settings.width, settings.height), messages);
     return thesis;
@@ -61,7 +65,7 @@ RenderResult render(Session& session, PathLight light) {
 }
 
 /// Local and global illumination, at one exposure: they are compared.
-void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& settings, Messages& messages,
+void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& settings, Messages& messages,
                   ThesisReport& thesis) {
     const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
     RenderSettings picture;
@@ -80,20 +84,26 @@ void add_pictures(Queue& queue, const ThesisScene& scene, const LabSettings& set
     thesis.global.push_back({caption("global", global), tone_map_image(global.picture, ToneMap::Srgb, stops)});
 }
 
-/// Those of chapter 3, as far as nothing interrupts.
-void add_chapter_3(Queue& queue, const LabSettings& settings, Reporter& reporter, ThesisReport& thesis) {
+/// Those of chapters 2 to 4, as far as nothing interrupts.
+void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, Reporter& reporter, ThesisReport& thesis) {
     RenderSettings picture;
     picture.width = settings.width, picture.height = settings.height;
     picture.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
-    for (const char* number : kThesisPictures) {
-        if (interrupted()) return;
-        reporter.set_work(fmt::format("rendering figure {}", number));
-        thesis.pictures.push_back(render_thesis_picture(queue, number, picture, [&](const RenderProgress& now) {
-            reporter.progress(static_cast<double>(now.samples_done) / now.samples, fmt::format("figure {}", number));
-            return !interrupted();
-        }));
-        reporter.end_progress();
+    ThesisPictures pictures(queue, picture);
+    const std::vector<std::string> names = thesis_picture_names();
+    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter, {});
+    const Stopwatch watch;
+    try {
+        for (std::size_t i = 0; i < names.size() && !interrupted(); ++i) {
+            thesis.pictures.push_back(pictures.make(names[i], [&](const char* doing, double share) {
+                const double all = (static_cast<double>(i) + share) / static_cast<double>(names.size());
+                return show({all, fmt::format("{}: {}", names[i], doing), share, watch.seconds(), nullptr, nullptr});
+            }));
+        }
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Interrupted) throw;
     }
+    reporter.end_progress();
 }
 
 /// Files of an earlier run that this one does not have are removed.
@@ -117,14 +127,17 @@ void write_files(const std::filesystem::path& folder, const ThesisReport& thesis
     for (const ThesisFigure& figure : figures_of(thesis)) {
         text_file(fmt::format("figure-{}.svg", figure.number), figure.svg);
     }
-    for (std::size_t i = 0; i < std::size(kThesisPictures); ++i) {
-        const std::string name = fmt::format("figure-{}.png", kThesisPictures[i]);
-        if (i < thesis.pictures.size()) {
-            write_png(folder / name, thesis.pictures[i].image);
+    for (const std::string& file : thesis_picture_files()) stale.insert(file);
+    for (const ThesisPicture& picture : thesis.pictures) {
+        stale.erase(picture.file());
+        if (picture.svg.empty()) {
+            write_png(folder / picture.file(), picture.image);
         } else {
-            stale.insert(name);
+            write_text(folder / picture.file(), picture.svg);
         }
     }
+    text_file("thesis-pictures.csv", thesis.pictures.empty() ? "" : csv_of(std::span(thesis.pictures)));
+    text_file("thesis-pictures.json", thesis.pictures.empty() ? "" : json_of(std::span(thesis.pictures)) + '\n');
     for (std::size_t i = 0; i < kThesisScenes; ++i) {
         picture_file(fmt::format("figure-6.{}-local.png", 7 + i), thesis.local, i);
         picture_file(fmt::format("figure-6.{}-global.png", 7 + i), thesis.global, i);
@@ -144,7 +157,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     settings.primary = settings.diffuse = true;
     settings.shadow = settings.heat_maps = false;
     // Both are read before the first is measured. The camera's flags are the second's.
-    const std::array<ThesisScene, kThesisScenes> scenes = {
+    const std::array<MeasuredScene, kThesisScenes> scenes = {
         load({}, "cornell-box", settings, !output.empty(), reporter.messages()),
         load(options, options.scene.empty() ? sibenik() : options.scene, settings, !output.empty(),
              reporter.messages())};
@@ -152,7 +165,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     reporter.say_messages();
     ThesisReport thesis;
     listen_for_interrupt();
-    for (const ThesisScene& scene : scenes) {
+    for (const MeasuredScene& scene : scenes) {
         settings.scene = scene.name;
         reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                  settings.first_depth, settings.depth));
@@ -170,12 +183,12 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         if (interrupted()) break;
     }
     if (!interrupted() && !output.empty()) {
-        add_chapter_3(queue, settings, reporter, thesis);
+        add_pictures_by_chapter(queue, settings, reporter, thesis);
         write_files(output, thesis);
     }
     const bool cut_short = interrupted();
-    reporter.event(
-        fmt::format(R"({{"event":"thesis","scenes":{},"interrupted":{}}})", thesis.scenes.size(), cut_short));
+    reporter.event(fmt::format(R"({{"event":"thesis","scenes":{},"pictures":{},"interrupted":{}}})",
+                               thesis.scenes.size(), json_of(std::span(thesis.pictures)), cut_short));
     if (thesis.scenes.empty()) { // only an interrupt comes so early
         reporter.say("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);

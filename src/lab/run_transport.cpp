@@ -14,6 +14,7 @@
 #include "image/tone_map_image.h"
 #include "lab/describe_camera.h"
 #include "lab/transport_light.h"
+#include "lab/transport_solutions.h"
 #include "session/check_integrator.h"
 #include "session/session.h"
 #include "session/settings_text.h"
@@ -51,6 +52,7 @@ public:
             report_.rows.push_back({.name = name, .light = light_of(name, scene)});
             TransportRow& row = report_.rows.back();
             row.finds_all = row.light == kAllLight;
+            row.is_solved = settings_of(settings, name, 0).integrator == IntegratorKind::Radiosity;
             row.refused = why_not(name);
         }
         check_reference();
@@ -86,6 +88,7 @@ private:
             check_integrator(picture);
             check_camera(picture, camera_);
             check_light(picture, scene_, notes);
+            if (picture.integrator == IntegratorKind::Radiosity) return why_no_solution(scene_);
         } catch (const Error& error) {
             const std::string why = error.what(), flag = fmt::format("--integrator {}: ", integrator);
             return why.starts_with(flag) ? why.substr(flag.size()) : why;
@@ -199,22 +202,15 @@ private:
         const std::string doing = fmt::format("{}, {} of {}", row.name, number + 1, settings_.repetitions);
         turns_left_ -= 1;
         progress(doing, 0, left_of_turn_s(row, 0, 0));
-        const std::size_t before = queue_.allocated_bytes();
         Repetition figures;
         std::vector<Image> pictures;
         bool stopped = false;
         try {
-            Session session(queue_, prepared_, camera_,
-                            settings_of(settings_, row.name, repetition_seed(settings_, number)));
-            render(session, row, 1, doing, 0); // memory, caches and the driver's first launch are not timed
-            session.cut();
-            try {
-                add_figures(session, row, number, doing, figures, pictures);
-            } catch (const TransportStopped&) {
-                stopped = true;
+            if (row.is_solved) {
+                stopped = !add_solutions(row, number, doing, figures, pictures);
+            } else {
+                stopped = !add_samples(row, number, doing, figures, pictures);
             }
-            row.bytes = std::max(row.bytes, queue_.allocated_bytes() - before);
-            row.invalid_samples += session.stats().invalid_samples;
         } catch (const Error& error) {
             if (error.code() != ErrorCode::OutOfMemory && error.code() != ErrorCode::OverLimit &&
                 error.code() != ErrorCode::BadInput) {
@@ -228,6 +224,56 @@ private:
         if (number == 0 || !stopped) compare(row, number, std::move(figures), pictures);
         turns_ += 1, turns_s_ += watch.seconds();
         if (stopped) throw TransportStopped{};
+    }
+
+    /// False where it was stopped.
+    bool add_samples(TransportRow& row, uint32_t number, const std::string& doing, Repetition& figures,
+                     std::vector<Image>& pictures) {
+        bool stopped = false;
+        const std::size_t before = queue_.allocated_bytes();
+        Session session(queue_, prepared_, camera_,
+                        settings_of(settings_, row.name, repetition_seed(settings_, number)));
+        render(session, row, 1, doing, 0); // memory, caches and the driver's first launch are not timed
+        session.cut();
+        try {
+            add_figures(session, row, number, doing, figures, pictures);
+        } catch (const TransportStopped&) {
+            stopped = true;
+        }
+        row.bytes = std::max(row.bytes, queue_.allocated_bytes() - before);
+        row.invalid_samples += session.stats().invalid_samples;
+        return !stopped;
+    }
+
+    /// Solutions of growing detail, as long as the next would fit into a repetition's share of the time by itself: it
+    /// has about four times the patches. Another repetition has as many as the first. False where it was stopped.
+    bool add_solutions(TransportRow& row, uint32_t number, const std::string& doing, Repetition& figures,
+                       std::vector<Image>& pictures) {
+        const Stopwatch watch;
+        const RenderSettings picture = settings_of(settings_, row.name, repetition_seed(settings_, number));
+        const uint32_t samples = std::min(kSolutionSamples, settings_.max_samples);
+        const auto tell = [&](const char* what, double share) {
+            progress(fmt::format("{}, solution {}: {}", doing, figures.size() + 1, what), share,
+                     left_of_turn_s(row, watch.seconds(), 0));
+            return true;
+        };
+        try {
+            for (bool is_next = true; is_next;) {
+                const auto level = static_cast<uint32_t>(figures.size());
+                SolvedPicture solved = solve_picture(queue_, prepared_, camera_, picture, level, samples, tell);
+                row.bytes = std::max(row.bytes, solved.device_bytes);
+                row.host_bytes = std::max(row.host_bytes, solved.host_bytes);
+                row.invalid_samples += solved.invalid_samples;
+                figures.push_back(solved.figures);
+                pictures.push_back(std::move(solved.picture));
+                is_next = number > 0 ? figures.size() < row.repetitions.front().size()
+                                     : level + 1 < settings_.max_solutions && 4 * solved.figures.seconds <= share_s() &&
+                                           may_be_solved(prepared_, level + 1);
+            }
+        } catch (const TransportStopped&) {
+            return false;
+        }
+        return true;
     }
 
     void add_figures(Session& session, const TransportRow& row, uint32_t number, const std::string& doing,
@@ -259,8 +305,10 @@ private:
             figures[i].flip = flips[i].mean;
         }
         if (number == 0) {
-            add_picture(fmt::format("{}, {} samples, {:.3g} s, relMSE {:.3g}", row.name, figures.back().samples,
-                                    figures.back().seconds, figures.back().rel_mse),
+            const TransportFigures& last = figures.back();
+            add_picture(fmt::format("{}, {}{} samples, {:.3g} s, relMSE {:.3g}", row.name,
+                                    row.is_solved ? fmt::format("{} patches, ", last.patches) : "", last.samples,
+                                    last.seconds, last.rel_mse),
                         pictures.back());
         }
         row.repetitions.push_back(std::move(figures));
@@ -275,6 +323,11 @@ private:
                     fmt::format("{}: {} samples were not finite and count as black", row.name, row.invalid_samples));
             }
             const std::vector<TransportPoint> points = points_of(row);
+            if (row.is_solved && !points.empty()) {
+                report_.notes.push_back(
+                    fmt::format("{}: its light is scattered any number of times, that of the others at most {} times",
+                                row.name, settings_.picture.path.max_depth));
+            }
             if (points.empty() || !reference.rel_mse || !row.finds_all) continue;
             if (points.back().rel_mse.mean < 10 * *reference.rel_mse) {
                 report_.notes.push_back(fmt::format(

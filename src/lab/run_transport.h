@@ -25,6 +25,7 @@ struct TransportSettings {
     uint32_t repetitions = 4;             // [1, kMostRepetitions]
     double seconds = 10;                  // of rendering for each integrator, all repetitions together
     uint32_t max_samples = 1u << 16;      // of each pixel, of one repetition
+    uint32_t max_solutions = 16;          // of radiosity, of one repetition
     RenderSettings picture;               // size, depth, filter, and the first seed; the integrator is not looked at
     std::optional<Image> reference;       // given; none: it is made by
     std::string reference_file;           // name of the one given
@@ -42,11 +43,12 @@ inline uint32_t reference_seed(const TransportSettings& settings, uint32_t half)
 
 /// All integrators take their first turn, then all their second, and so on: so an interrupt leaves something of each.
 /// The first repetition of an integrator goes on to 1, 2, 4, ... samples as long as the next fits into its share of the
-/// time (one sample is always rendered); the others have the same numbers. One that cannot render this scene is refused
-/// in its row. `scene` has been through validate(). Stops early, with `interrupted` set, when keep_going returns false;
-/// the repetition that was under way is kept where it is an
-/// integrator's first. Throws Error(BadInput) where the reference given has another
-/// size or is not finite, or the reference's integrator cannot render the scene; what Session throws of the device.
+/// time (one sample is always rendered); the others have the same numbers. Radiosity has solutions of growing detail in
+/// their place (lab/transport_solutions.h), as long as the next would fit into the share by itself. One that cannot
+/// render this scene is refused in its row. `scene` has been through validate(). Stops early, with `interrupted` set,
+/// when keep_going returns false; the repetition that was under way is kept where it is an integrator's first. Throws
+/// Error(BadInput) where the reference given has another size or is not finite, or the reference's integrator cannot
+/// render the scene; what Session throws of the device.
 TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
                              const std::function<bool(const LabProgress&)>& keep_going);
 

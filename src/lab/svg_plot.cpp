@@ -14,7 +14,7 @@ constexpr const char* kColors[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "
                                    "#17becf", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22"};
 static_assert(std::size(kColors) == kBarColors);
 
-/// Room for the longest of the labels, in the font of svg().
+/// Room for the longest of the labels, in the font of svg_drawing().
 template <class Labelled>
 double label_width(const std::vector<Labelled>& all, double least) {
     std::size_t longest = 0;
@@ -100,14 +100,6 @@ std::string draw_curve(const Curve& curve, const char* color, bool is_dashed, co
     return curve.is_level ? drawn : drawn + marks;
 }
 
-std::string svg(double width, double height, const std::string& title, const std::string& content) {
-    return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"11\" role=\"img\">\n"
-        "<title>{2}</title><text x=\"8\" y=\"16\" font-size=\"13\" font-weight=\"bold\">{2}</text>\n{3}</svg>\n",
-        width, height, html_text(title), content);
-}
-
 } // namespace
 
 std::string html_text(std::string_view text) {
@@ -180,7 +172,7 @@ std::string svg_bars(const std::string& title, const std::string& unit, const st
         content += rect(x, y + 8, 12, 10, entry.style, entry.label) + text_at(x + 16, y + 17, "start", entry.label);
         x += entry_width;
     }
-    return svg(width, y + (legend.empty() ? 10 : 26), title, content + '\n');
+    return svg_drawing(width, y + (legend.empty() ? 10 : 26), title, content + '\n');
 }
 
 std::string svg_curves(const std::string& title, const std::string& x_label, const std::string& y_label,
@@ -225,7 +217,15 @@ std::string svg_curves(const std::string& title, const std::string& x_label, con
                                y, color);
         content += text_at(width - right + 36, y + 9, "start", curves[i].label) + '\n';
     }
-    return svg(width, std::max(height, top + 14 * static_cast<double>(curves.size()) + 10), title, content);
+    return svg_drawing(width, std::max(height, top + 14 * static_cast<double>(curves.size()) + 10), title, content);
+}
+
+std::string svg_drawing(double width, double height, const std::string& title, const std::string& content) {
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"11\" role=\"img\">\n"
+        "<title>{2}</title><text x=\"8\" y=\"16\" font-size=\"13\" font-weight=\"bold\">{2}</text>\n{3}</svg>\n",
+        width, height, html_text(title), content);
 }
 
 } // namespace pertev

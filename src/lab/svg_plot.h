@@ -1,6 +1,7 @@
 #pragma once
 
-// Bars and curves as SVG elements that stand in an HTML page by themselves: no script, no font, no style from outside.
+// Bars, curves and drawings as SVG elements that stand in an HTML page by themselves: no script, no font, no style from
+// outside.
 
 #include <cstdint>
 #include <string>
@@ -12,6 +13,9 @@ namespace pertev {
 
 /// With & < > " written so that HTML and SVG show them.
 std::string html_text(std::string_view text);
+
+/// `content` under a title: an element that is a file too.
+std::string svg_drawing(double width, double height, const std::string& title, const std::string& content);
 
 /// How a bar looks. There are kBarColors colours; more repeat them.
 struct BarStyle {

@@ -14,4 +14,8 @@ std::string align_columns(const std::vector<std::vector<std::string>>& rows);
 /// With so many decimals; in two digits where these would show fewer: 0.00003 is "3e-05" and not "0.000".
 std::string fixed_text(double value, int decimals);
 
+/// "0.0370 ± 0.0012": the uncertainty in two digits, and the value to the same place. Both are finite, the uncertainty
+/// at least 0; of none, and of one that is 0, the value has three digits.
+std::string uncertain_text(double value, double uncertainty);
+
 } // namespace pertev

@@ -1,6 +1,7 @@
 #include "lab/thesis.h"
 
 #include <algorithm>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include "lab/svg_plot.h"
 #include "lab/text_table.h"
 #include "lab/write_html.h"
+#include "lab/write_thesis_pictures.h"
 
 namespace pertev {
 namespace {
@@ -103,20 +105,8 @@ Table peer_table(const ThesisReport& thesis) {
     return table;
 }
 
-/// How the pictures of chapter 3 were made, and in which time.
-Table picture_table(const ThesisReport& thesis) {
-    const Rgba8Image& first = thesis.pictures.front().image;
-    Table table = {fmt::format("Figures 3.3 to 3.8: pictures of the Cornell box at {}x{}", first.width, first.height),
-                   {{"figure", "shows", "integrator", "samples", "seconds", "frames/s of one sample", "Mrays/s"}}};
-    for (const ThesisPicture& picture : thesis.pictures) {
-        const double seconds = std::max(picture.stats.render_seconds, 1e-9);
-        table.rows.push_back({picture.number, picture.title, picture.integrator,
-                              fmt::format("{}{}", picture.stats.samples, picture.interrupted ? " (interrupted)" : ""),
-                              fixed_text(seconds, 3), fixed_text(picture.stats.samples / seconds, 2),
-                              fixed_text(static_cast<double>(picture.stats.rays.total()) / seconds * 1e-6, 2)});
-    }
-    return table;
-}
+/// How the pictures of chapters 2 to 4 were made, and in which time.
+Table picture_table(const ThesisReport& thesis) { return {"Pictures of chapters 2 to 4", table_of(thesis.pictures)}; }
 
 /// As the thesis's captions number them, and then what its figures draw and no table has.
 std::vector<Table> tables_of(const ThesisReport& thesis) {
@@ -145,7 +135,6 @@ std::vector<Table> tables_of(const ThesisReport& thesis) {
     }
     if (!thesis.scenes.empty()) tables.push_back(peer_table(thesis));
     tables.insert(tables.end(), beside.begin(), beside.end());
-    if (!thesis.pictures.empty()) tables.push_back(picture_table(thesis));
     return tables;
 }
 
@@ -214,20 +203,13 @@ ThesisFigure figure_of(const ThesisReport& thesis, const char* number, const std
 }
 
 std::string html_of(const Table& table) {
-    return fmt::format("<h2>{}</h2>\n{}", html_text(table.title), html_table(table.rows));
+    return fmt::format("<h3>{}</h3>\n{}", html_text(table.title), html_table(table.rows));
 }
 
 std::string pictures_of(const ThesisReport& thesis) {
     std::string html;
-    for (const ThesisPicture& picture : thesis.pictures) {
-        html += fmt::format("<h2>Figure {}: {}</h2>\n", picture.number, html_text(picture.title));
-        html += html_image(picture.image,
-                           fmt::format("--integrator {}, {} samples a pixel in {} s", picture.integrator,
-                                       picture.stats.samples, fixed_text(picture.stats.render_seconds, 3)),
-                           512);
-    }
     for (std::size_t i = 0; i < std::max(thesis.local.size(), thesis.global.size()); ++i) {
-        html += fmt::format("<h2>Figure 6.{}: local and global illumination</h2>\n", 7 + i);
+        html += fmt::format("<h3>Figure 6.{}: local and global illumination</h3>\n", 7 + i);
         for (const auto* pictures : {&thesis.local, &thesis.global}) {
             if (i < pictures->size()) html += html_image((*pictures)[i].image, (*pictures)[i].caption, 512);
         }
@@ -284,20 +266,16 @@ std::string text_of(const ThesisReport& thesis) {
     }
     text += fmt::format("{}\n", kTree);
     for (const Table& table : tables_of(thesis)) text += '\n' + table.title + '\n' + align_columns(table.rows);
+    if (const Table pictures = picture_table(thesis); pictures.rows.size() > 1) {
+        text += '\n' + pictures.title + '\n' + align_columns(pictures.rows);
+    }
     text += '\n';
     for (const std::string& note : notes_of(thesis)) text += note + '\n';
     return text;
 }
 
 std::string html_of(const ThesisReport& thesis) {
-    std::string body =
-        "<p>Chapter 6 of Bellek 2014, measured anew. A frame of depth d is one camera ray a pixel and its "
-        "d - 1 diffuse bounces; traversal alone. RTA: redundant traversal avoidance.</p>\n<ul>\n";
-    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
-        body += fmt::format("<li>{}: {}</li>\n", html_text(v.name), html_text(v.meaning));
-    }
-    body += fmt::format("</ul>\n<p>{}</p>\n", kTree);
-    for (const Table& table : tables_of(thesis)) body += html_of(table);
+    std::string body;
     const std::vector<std::string> notes = notes_of(thesis);
     if (!notes.empty()) {
         body += "<h2>Notes</h2>\n<ul>\n";
@@ -308,13 +286,25 @@ std::string html_of(const ThesisReport& thesis) {
         }
         body += "</ul>\n";
     }
+    body += html_of(std::span(thesis.pictures));
+    if (const Table pictures = picture_table(thesis); pictures.rows.size() > 1) body += html_of(pictures);
+    body += "<h2>Chapter 6</h2>\n<p>Measured anew. A frame of depth d is one camera ray a pixel and its d - 1 diffuse "
+            "bounces; traversal alone. RTA: redundant traversal avoidance.</p>\n<ul>\n";
+    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
+        body += fmt::format("<li>{}: {}</li>\n", html_text(v.name), html_text(v.meaning));
+    }
+    body += fmt::format("</ul>\n<p>{}</p>\n", kTree);
+    for (const Table& table : tables_of(thesis)) body += html_of(table);
     body += pictures_of(thesis);
     for (const ThesisFigure& figure : figures_of(thesis)) {
         body +=
             figure.svg.empty() ? fmt::format("<p>{}: {}.</p>\n", html_text(figure.title), figure.missing) : figure.svg;
     }
     for (const LabReport& report : thesis.scenes) body += "<p>" + html_text(about(report)) + "</p>\n";
-    return html_page("Realtime photo-realistic rendering using modern GPU systems, chapters 3 and 6, made anew", body);
+    const char* chapters = thesis.pictures.empty() ? "chapter 6" : "chapters 2 to 4 and 6";
+    return html_page(
+        fmt::format("Bellek 2014, Realtime photo-realistic rendering using modern GPU systems: {} made anew", chapters),
+        body);
 }
 
 } // namespace pertev

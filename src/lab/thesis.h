@@ -5,7 +5,8 @@
 // box with and without persistent threads; 6.4: Sibenik cathedral likewise; 6.5: Sibenik with persistent threads and
 // without redundant traversal avoidance; 6.6: both against Aila and Laine's kernel. And figures 6.7 to 6.11.
 // P = persistent threads, R = without redundant traversal avoidance, A = Aila and Laine's kernel: dynamic fetch, Woop's
-// unit-triangle test, boxes that are not grown. Figures 3.3, 3.4, 3.6 and 3.8 stand beside these (thesis_pictures.h).
+// unit-triangle test, boxes that are not grown. Pictures of chapters 2 to 4 stand beside these
+// (thesis_pictures.h).
 
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ std::vector<ThesisVariant> thesis_variants(bool is_cuda);
 struct ThesisReport {
     std::vector<LabReport> scenes;
     std::vector<Picture> local, global;
-    std::vector<ThesisPicture> pictures; // of chapter 3, with their times
+    std::vector<ThesisPicture> pictures; // of chapters 2 to 4, in their order
 };
 
 struct ThesisFigure {

@@ -1,136 +1,207 @@
 #include "lab/thesis_pictures.h"
 
 #include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
-#include "formats/read_scene.h"
 #include "image/tone_map_image.h"
-#include "math/portable_math.h"
-#include "session/choose_camera.h"
+#include "lab/found_points.h"
+#include "lab/heat_map.h"
+#include "lab/thesis_recipes.h"
+#include "radiosity/solve_radiosity.h"
 #include "session/settings_text.h"
 
 namespace pertev {
 namespace {
 
-struct Figure {
-    const char* number;
-    const char* title;
-    const char* integrator;
-    float stops; // of exposure
-};
-constexpr Figure kFigures[] = {
-    {"3.3", "hard shadows: a point light in the lamp's place", "cast", 2},
-    {"3.4", "soft shadows: the lamp itself", "distributed", 2},
-    {"3.6", "indirect light alone", "indirect", 2},
-    {"3.8", "the Cornell box with a mirror sphere", "path", 2},
-};
+constexpr float kDotRadius = 1.2f; // times the scene's longest side over the picture's height: about so many pixels
 
-const Figure& figure_of(std::string_view number) {
-    const auto figure = std::ranges::find(kFigures, number, &Figure::number);
-    PERTEV_CHECK(figure != std::end(kFigures));
-    return *figure;
+const ThesisRecipe& recipe_named(std::string_view name) {
+    const auto recipes = thesis_recipes();
+    const auto found = std::ranges::find(recipes, name, &ThesisRecipe::name);
+    PERTEV_CHECK(found != recipes.end());
+    return *found;
 }
 
-uint32_t instance_named(const Scene& scene, std::string_view name) {
-    const auto found = std::ranges::find(scene.instances, name, &Instance::name);
-    PERTEV_CHECK(found != scene.instances.end());
-    return static_cast<uint32_t>(found - scene.instances.begin());
+/// Of the sums of both, `b` taken away from `a`.
+Image difference(const Image& a, const Image& b) {
+    Image left = a;
+    for (std::size_t i = 0; i < left.pixels.size(); ++i) left.pixels[i] = std::max(0.0f, a.pixels[i] - b.pixels[i]);
+    return left;
 }
 
-Bounds3 bounds_of(const Scene& scene, const Instance& instance) {
-    Bounds3 bounds;
-    for (const Vec3 p : scene.meshes[instance.mesh].positions) {
-        bounds.extend(transform_point(instance.world_from_local, p));
+/// So that what is not black has a mean that shows well.
+void normalise(Image& picture) {
+    constexpr double mean = 0.4;
+    double sum = 0, lit = 0;
+    for (const float value : picture.pixels) {
+        if (value > 0) sum += static_cast<double>(value), ++lit;
     }
-    return bounds;
+    if (!(sum > 0)) return;
+    const auto scale = static_cast<float>(mean * lit / sum);
+    for (float& value : picture.pixels) value *= scale;
 }
 
-/// A light without size in the middle of the lamp, a centimetre below it, of the intensity that the lamp has straight
-/// down: its radiance times its area.
-void replace_lamp(Scene& scene) {
-    const uint32_t lamp = instance_named(scene, "light");
-    const Bounds3 bounds = bounds_of(scene, scene.instances[lamp]);
-    const Vec3 size = bounds.size();
-    Light light;
-    light.name = "point";
-    light.position = bounds.centre() - Vec3{0, 0.01f, 0};
-    light.intensity = (size.x * size.z) * scene.materials[scene.instances[lamp].material].emission;
-    scene.lights.push_back(light);
-    scene.instances[lamp].is_hidden = true;
-}
-
-/// Longitude by latitude, with smooth normals.
-Mesh make_ball(Vec3 centre, float radius) {
-    constexpr uint32_t kAround = 96, kDown = 48;
-    Mesh ball;
-    ball.name = "mirror sphere";
-    for (uint32_t j = 0; j <= kDown; ++j) {
-        for (uint32_t i = 0; i < kAround; ++i) {
-            const float down = kPi * static_cast<float>(j) / kDown, around = 2 * kPi * static_cast<float>(i) / kAround;
-            const Vec3 normal = {sin(down) * cos(around), cos(down), sin(down) * sin(around)};
-            ball.normals.push_back(normalize(normal));
-            ball.positions.push_back(centre + radius * normal);
-        }
-    }
-    for (uint32_t j = 0; j < kDown; ++j) {
-        for (uint32_t i = 0; i < kAround; ++i) {
-            const uint32_t a = j * kAround + i, b = j * kAround + (i + 1) % kAround, c = a + kAround, d = b + kAround;
-            if (j > 0) ball.indices.insert(ball.indices.end(), {a, b, c});
-            if (j + 1 < kDown) ball.indices.insert(ball.indices.end(), {b, d, c});
-        }
-    }
-    return ball;
-}
-
-/// A ball that stands where the short block stood.
-void replace_block(Scene& scene) {
-    Instance& block = scene.instances[instance_named(scene, "short block")];
-    const Bounds3 bounds = bounds_of(scene, block);
-    const float radius = 0.1f; // metres
-    const Vec3 middle = bounds.centre();
-    block.mesh = static_cast<uint32_t>(scene.meshes.size());
-    block.material = static_cast<uint32_t>(scene.materials.size());
-    block.name = "mirror sphere";
-    block.world_from_local = block.node_from_local = {};
-    block.node = kNoNode;
-    scene.meshes.push_back(make_ball({middle.x, bounds.lo.y + radius, middle.z}, radius));
-    Material mirror;
-    mirror.name = "mirror";
-    mirror.kind = MaterialKind::MetallicRoughness;
-    mirror.base_color = {0.95f, 0.95f, 0.95f};
-    mirror.metallic = 1;
-    mirror.roughness = 0;
-    scene.materials.push_back(mirror);
+std::string command_text(const ThesisRecipe& recipe, const RenderSettings& settings) {
+    const std::string scene = command_of(recipe.scene);
+    const bool is_whole =
+        recipe.way == ThesisWay::Render || (recipe.way == ThesisWay::Radiosity && recipe.panel.has_ambient);
+    if (scene.empty() || !is_whole) return {};
+    return fmt::format(
+        "pertev render {} --integrator {}{}{} --size {}x{} --spp {} --max-depth {} --exposure {:g} -o {}.png", scene,
+        recipe.integrator, *recipe.flags != 0 ? " " : "", recipe.flags, settings.width, settings.height,
+        settings.samples, settings.path.max_depth, recipe.stops, recipe.name);
 }
 
 } // namespace
 
-Scene thesis_scene(std::string_view number) {
-    Messages messages;
-    Scene scene = read_scene("cornell-box", {}, messages);
-    if (number == "3.3") replace_lamp(scene);
-    if (number == "3.8") replace_block(scene);
-    return scene;
+std::vector<std::string> thesis_picture_names() {
+    std::vector<std::string> names;
+    for (const ThesisRecipe& recipe : thesis_recipes()) names.emplace_back(recipe.name);
+    return names;
 }
 
-ThesisPicture render_thesis_picture(Queue& queue, const char* number, const RenderSettings& settings,
-                                    const std::function<bool(const RenderProgress&)>& keep_going) {
-    const Figure& figure = figure_of(number);
-    const Scene scene = thesis_scene(number);
+std::vector<std::string> thesis_picture_files() {
+    std::vector<std::string> files;
+    for (const ThesisRecipe& recipe : thesis_recipes()) {
+        const bool is_drawn = recipe.way == ThesisWay::KdTree || recipe.way == ThesisWay::Octree;
+        files.push_back(fmt::format("{}.{}", recipe.name, is_drawn ? "svg" : "png"));
+    }
+    return files;
+}
+
+/// What a picture is made of.
+struct ThesisPictures::Job {
+    const ThesisRecipe& recipe;
+    RenderSettings settings;
+    const Progress& progress;
+    Scene scene;
+    Camera camera;
+    PreparedScene prepared;
+
+    bool tell(const char* doing, double share) const { return !progress || progress(doing, share); }
+};
+
+ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progress) {
+    const ThesisRecipe& recipe = recipe_named(name);
+    ThesisPicture picture = {.name = recipe.name,
+                             .place = recipe.place,
+                             .title = recipe.title,
+                             .shows = recipe.shows,
+                             .integrator = recipe.integrator};
+    if (recipe.way == ThesisWay::KdTree || recipe.way == ThesisWay::Octree) {
+        const FoundPoints found = recipe.way == ThesisWay::KdTree ? found_in_kd_tree() : found_in_octree();
+        picture.svg = svg_of(found);
+        picture.shows += ' ' + describe(found);
+        return picture;
+    }
+    Job job = {recipe, settings_, progress, make_thesis_scene(recipe.scene), {}, {}};
+    RenderSettings& settings = job.settings;
+    if (recipe.is_panel) {
+        settings.width = std::max(1u, settings.width / 2), settings.height = std::max(1u, settings.height / 2);
+    }
+    if (*recipe.integrator != 0) PERTEV_CHECK(set_integrator(settings, recipe.integrator));
+    settings.path.max_depth = std::min(settings.path.max_depth, most_depth(settings.integrator));
+    if (recipe.set != nullptr) recipe.set(settings);
+    if (recipe.way == ThesisWay::Work) {
+        settings.tracers = same_for_all({.structure = recipe.structure, .walk = recipe.walk});
+    }
     Messages messages;
-    const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const Camera camera = choose_camera({}, scene, aspect, messages);
-    RenderSettings of_figure = settings;
-    set_integrator(of_figure, figure.integrator);
-    of_figure.path.max_depth = std::min(of_figure.path.max_depth, most_depth(of_figure.integrator));
-    const RenderResult result = render_picture(queue, prepared, camera, of_figure, keep_going);
-    return {.number = figure.number,
-            .title = figure.title,
-            .integrator = figure.integrator,
-            .image = tone_map_image(result.picture, ToneMap::Agx, figure.stops),
-            .stats = result,
-            .interrupted = result.samples < settings.samples};
+    job.prepared = prepare_scene(job.scene, prepare_options(settings, queue_.is_cuda()), messages);
+    job.camera = camera_of(recipe.scene, job.scene, aspect_of(settings.width, settings.height));
+    picture.command = command_text(recipe, settings);
+    switch (recipe.way) {
+    case ThesisWay::Radiosity:
+        show_radiosity(job, picture);
+        break;
+    case ThesisWay::Photons:
+        show_photons(job, picture);
+        break;
+    case ThesisWay::Work:
+        count_work(job, picture);
+        break;
+    case ThesisWay::Render:
+    case ThesisWay::KdTree:
+    case ThesisWay::Octree:
+        render(job, settings, picture);
+        break;
+    }
+    return picture;
+}
+
+/// Tells its progress as the share [from, to] of the picture's.
+RenderResult ThesisPictures::render_once(const Job& job, const RenderSettings& settings, double from, double to) {
+    return render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
+        return job.tell("rendering", from + (to - from) * now.samples_done / now.samples);
+    });
+}
+
+void ThesisPictures::render(const Job& job, const RenderSettings& settings, ThesisPicture& picture) {
+    const RenderResult result = render_once(job, settings, picture.solve_seconds > 0 ? 0.5 : 0, 1);
+    picture.stats = result;
+    picture.interrupted = result.samples < settings.samples;
+    picture.image = tone_map_image(result.picture, ToneMap::Agx, job.recipe.stops);
+}
+
+/// The light that one pass finds in maps, with a radius so small that photons do not overlap: what it finds without
+/// any is taken away.
+void ThesisPictures::show_photons(const Job& job, ThesisPicture& picture) {
+    RenderSettings settings = job.settings;
+    const Vec3 size = job.prepared.structures->bounds().size();
+    const float radius = kDotRadius * max_component(size) / static_cast<float>(settings.height);
+    settings.samples = 1;
+    settings.photon_map.radius = settings.photon_map.caustic_radius = radius;
+    settings.photon_map.gather = PhotonGather::Direct;
+    const RenderResult all = render_once(job, settings, 0, 0.5);
+    settings.path.max_depth = 1;
+    const RenderResult direct = render_once(job, settings, 0.5, 1);
+    picture.stats = all;
+    Image dots = difference(all.picture, direct.picture);
+    normalise(dots);
+    picture.image = tone_map_image(dots, ToneMap::Srgb);
+    picture.shows += fmt::format(" {} photons have left the lights for each map.", settings.photon_map.photons);
+}
+
+void ThesisPictures::count_work(const Job& job, ThesisPicture& picture) {
+    Session session(queue_, job.prepared, job.camera, job.settings);
+    const std::vector<RayWork> work = session.count_camera_work();
+    std::vector<uint32_t> tests;
+    double nodes = 0, triangles = 0;
+    for (const RayWork& ray : work) {
+        tests.push_back(ray.nodes + ray.triangles);
+        nodes += ray.nodes, triangles += ray.triangles;
+    }
+    const double rays = std::max(1.0, static_cast<double>(work.size()));
+    picture.image = draw_heat_map(tests, job.settings.width, job.settings.height, scale_end(tests));
+    picture.shows +=
+        fmt::format(" Dark is few tests of nodes and triangles together, pale is many; the scale is beneath. A "
+                    "ray tests {:.1f} nodes and {:.1f} triangles in the mean, of {}.",
+                    nodes / rays, triangles / rays, job.prepared.triangles);
+}
+
+void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
+    const RadiosityPanel& panel = job.recipe.panel;
+    RadiositySettings asked;
+    asked.seed = job.settings.path.seed;
+    asked.patch_size = kPanelPatch;
+    asked.subdivisions = panel.is_flat ? 0 : 1;
+    if (panel.is_early) {
+        asked.solver = RadiositySolver::Southwell;
+        asked.steps = kEarlySteps;
+    }
+    const SolvedRadiosity solved = solve_radiosity(
+        job.prepared, asked, [&](const char* what, double share) { return job.tell(what, 0.5 * share); });
+    if (solved.stats.was_interrupted) throw Error(ErrorCode::Interrupted, "interrupted");
+    const SolveStats& stats = solved.stats;
+    picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;
+    picture.shows += fmt::format(" {} patches send, {} are shown.", stats.patches, stats.shown);
+    RenderSettings settings = job.settings;
+    auto solution = std::make_shared<RadiositySolution>(solved.solution);
+    if (!panel.has_ambient) solution->ambient = {};
+    settings.radiosity = {std::move(solution), panel.is_flat};
+    render(job, settings, picture);
 }
 
 } // namespace pertev

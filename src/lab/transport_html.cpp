@@ -22,6 +22,7 @@ std::string plot(const TransportScene& scene, Metric metric, Over over) {
     std::vector<Curve> curves;
     double least = 1e300, most = 0;
     for (const TransportRow& row : scene.rows) {
+        if (row.is_solved && over == Over::Samples) continue;
         Curve curve = {row.name + (row.finds_all ? "" : " *"), {}};
         for (const TransportPoint& p : points_of(row)) {
             const double x = over == Over::Seconds ? p.seconds.mean : p.samples;
@@ -88,13 +89,17 @@ std::string html_of(const TransportReport& report) {
             list_item("Time", fmt::format("{:g} s of rendering for each integrator, in {} repetitions of other seeds",
                                           report.seconds, report.repetitions)) +
             "</ul>\n";
-    body += "<p>relMSE is the mean of (x - r)<sup>2</sup> / (r<sup>2</sup> + 0.01) over pixels and channels, r the "
-            "reference; HDR-FLIP is how visible the difference is, from 0 to 1: both as <em>pertev compare</em> has "
-            "them. Points are means over repetitions; bands are 95 % confidence intervals of these means by Student's "
-            "t, point by point (the points of one curve share samples). Time is that of rendering alone. An "
-            "integrator with a star does not find all light, or blurs it: its curve ends in a floor, its bias. One "
-            "over relMSE times seconds is the efficiency: of noise alone it does not depend on the time. The dashed "
-            "line is what the reference's own noise adds to each relMSE.</p>\n";
+    body +=
+        "<p>relMSE is the mean of (x - r)<sup>2</sup> / (r<sup>2</sup> + 0.01) over pixels and channels, r the "
+        "reference; HDR-FLIP is how visible the difference is, from 0 to 1: both as <em>pertev compare</em> has "
+        "them. Points are means over repetitions; bands are 95 % confidence intervals of these means by Student's "
+        "t, point by point (the points of one curve share samples). Time is that of rendering alone. An "
+        "integrator with a star does not find all light, or blurs it: its curve ends in a floor, its bias. One "
+        "over relMSE times seconds is the efficiency: of noise alone it does not depend on the time. The dashed "
+        "line is what the reference's own noise adds to each relMSE. Radiosity is solved, and each of its points is "
+        "a solution of its own, with patches half as large as the one before: its time is that of solving and of "
+        "rendering, its memory the host's too. At equal time stands the last solution that was there by then; "
+        "samples make none of them better.</p>\n";
     for (const TransportScene& scene : report.scenes) body += html_of(scene);
     return html_page("Pertev laboratory of light transport", body);
 }

@@ -13,6 +13,19 @@ bool is_smooth(const Material& material) {
     return has_mirror && material.roughness == 0;
 }
 
+bool has_diffuse_lobe(const Material& material) {
+    const bool may_have = material.kind == MaterialKind::Diffuse ||
+                          (material.kind == MaterialKind::MetallicRoughness && material.metallic < 1);
+    return may_have && max_component(material.base_color) > 0;
+}
+/// Lamps, whose surfaces are diffuse and black, among them.
+bool is_all_diffuse(const Scene& scene) {
+    return std::ranges::all_of(scene.instances, [&](const Instance& i) {
+        const MaterialKind kind = scene.materials[i.material].kind;
+        return i.is_hidden || kind == MaterialKind::Diffuse || kind == MaterialKind::Unlit;
+    });
+}
+
 /// Point, spot or directional lights, and mirrors or clear glass that send their light on.
 bool has_caustics_of_points(const Scene& scene) {
     return std::ranges::any_of(scene.lights, [](const Light& l) { return max_component(l.intensity) > 0; }) &&
@@ -45,7 +58,7 @@ std::string light_of(const std::string& integrator, const Scene& scene) {
         return has_caustics_of_points(scene) ? "as path, interpolated between records"
                                              : "all, interpolated between records";
     case IntegratorKind::Radiosity:
-        return "L(D*)S*E, as one solution has it";
+        return is_all_diffuse(scene) ? "all, by patches ever smaller" : "L(D*)S*E, by patches ever smaller";
     case IntegratorKind::Light:
         return "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass";
     case IntegratorKind::Distributed:
@@ -59,6 +72,13 @@ std::string light_of(const std::string& integrator, const Scene& scene) {
         return "L(D|G)E of point lights, no shadows; lamps seen";
     }
     return {};
+}
+
+std::string why_no_solution(const Scene& scene) {
+    const bool has_diffuse = std::ranges::any_of(scene.instances, [&](const Instance& i) {
+        return !i.is_hidden && has_diffuse_lobe(scene.materials[i.material]);
+    });
+    return has_diffuse ? "" : "patches are of diffuse surfaces, and this scene has none";
 }
 
 std::string default_reference_integrator(const Scene& scene) {

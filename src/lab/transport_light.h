@@ -17,6 +17,9 @@ std::vector<std::string> transport_integrators();
 /// such integrator.
 std::string light_of(const std::string& integrator, const Scene& scene);
 
+/// Why no solution of that scene's diffuse light can be had; empty: it may be.
+std::string why_no_solution(const Scene& scene);
+
 /// The integrator that the reference of a scene is made by where nobody says which: path, or bidirectional where point,
 /// spot or directional lights shine through glass or on mirrors, which path cannot see the light of.
 std::string default_reference_integrator(const Scene& scene);

@@ -20,6 +20,15 @@ double between(double a, double b, double share) {
     return a * static_cast<double>(exp(static_cast<float>(share) * log(static_cast<float>(b / a))));
 }
 
+/// The last that is there by then.
+std::optional<TransportFigures> solved_by(const Repetition& repetition, double seconds) {
+    std::optional<TransportFigures> last;
+    for (const TransportFigures& one : repetition) {
+        if (one.seconds <= seconds) last = one;
+    }
+    return last;
+}
+
 std::optional<TransportFigures> at_time(const Repetition& repetition, double seconds) {
     for (std::size_t i = 0; i < repetition.size(); ++i) {
         const TransportFigures& b = repetition[i];
@@ -38,12 +47,17 @@ TransportPoint mean_of(const std::vector<TransportFigures>& all) {
     for (const TransportFigures& one : all) {
         seconds.push_back(one.seconds), rel_mse.push_back(one.rel_mse), flip.push_back(one.flip);
     }
-    return {0, estimate_of(seconds), estimate_of(rel_mse), estimate_of(flip), static_cast<uint32_t>(all.size())};
+    double patches = 0;
+    for (const TransportFigures& one : all)
+        patches += static_cast<double>(one.patches) / static_cast<double>(all.size());
+    return {0,      estimate_of(seconds), estimate_of(rel_mse), estimate_of(flip), static_cast<uint32_t>(all.size()),
+            patches};
 }
 
 template <class Least>
-void for_each_end(const TransportScene& scene, const Least& least) {
+void for_each_end(const TransportScene& scene, bool are_solved, const Least& least) {
     for (const TransportRow& row : scene.rows) {
+        if (row.is_solved != are_solved) continue;
         for (const Repetition& repetition : row.repetitions) least(repetition.back());
     }
 }
@@ -88,9 +102,14 @@ std::optional<TransportPoint> at_time(const TransportRow& row, double seconds) {
     std::vector<TransportFigures> all;
     std::vector<double> samples;
     for (const Repetition& repetition : row.repetitions) {
-        const std::optional<TransportFigures> one = at_time(repetition, seconds);
+        const std::optional<TransportFigures> one =
+            row.is_solved ? solved_by(repetition, seconds) : at_time(repetition, seconds);
         if (!one) return std::nullopt;
         all.push_back(*one);
+        if (row.is_solved) {
+            samples.push_back(one->samples);
+            continue;
+        }
         // Time goes with samples but for what begins a picture, which the last step has least of.
         const TransportFigures& last = repetition.back();
         samples.push_back(last.seconds > 0 ? last.samples * seconds / last.seconds : last.samples);
@@ -102,6 +121,7 @@ std::optional<TransportPoint> at_time(const TransportRow& row, double seconds) {
 }
 
 std::optional<TransportPoint> at_samples(const TransportRow& row, uint32_t samples) {
+    if (row.is_solved) return std::nullopt;
     std::vector<TransportFigures> all;
     for (const Repetition& repetition : row.repetitions) {
         const auto at = std::ranges::find(repetition, samples, &TransportFigures::samples);
@@ -116,14 +136,18 @@ std::optional<TransportPoint> at_samples(const TransportRow& row, uint32_t sampl
 
 double equal_seconds(const TransportScene& scene) {
     double least = 0;
-    for_each_end(scene,
-                 [&](const TransportFigures& end) { least = least > 0 ? std::min(least, end.seconds) : end.seconds; });
+    for (const bool are_solved : {false, true}) {
+        if (least > 0) break;
+        for_each_end(scene, are_solved, [&](const TransportFigures& end) {
+            least = least > 0 ? std::min(least, end.seconds) : end.seconds;
+        });
+    }
     return least;
 }
 
 uint32_t equal_samples(const TransportScene& scene) {
     uint32_t least = 0;
-    for_each_end(scene,
+    for_each_end(scene, false,
                  [&](const TransportFigures& end) { least = least > 0 ? std::min(least, end.samples) : end.samples; });
     return least;
 }

@@ -21,11 +21,12 @@ namespace pertev {
 /// One picture of a repetition, with all samples that came before in it.
 struct TransportFigures {
     uint32_t samples = 0; // of each pixel
-    double seconds = 0;   // of rendering alone, of all these samples
+    double seconds = 0;   // of rendering alone, of all these samples; of a solution, that of solving too
     double rel_mse = 0, flip = 0;
+    uint64_t patches = 0; // of the solution that is shown; 0: nothing was solved
 };
 
-/// Samples rise. Cut short by an interrupt, it ends early.
+/// Samples rise; of solutions patches do. Cut short by an interrupt, it ends early.
 using Repetition = std::vector<TransportFigures>;
 
 /// One integrator.
@@ -34,7 +35,11 @@ struct TransportRow {
     std::string light;      // which light it finds, in Heckbert's letters where it is not all
     bool finds_all = false; // without bias: its error is noise alone
     std::string refused;    // why it has no figures; empty: it has, or was not reached
-    std::size_t bytes = 0;  // the most of the device's memory that it was seen to hold, the scene's included
+    /// Its light is solved and not sampled: each picture is of a solution of its own, and comes to nothing more in
+    /// time.
+    bool is_solved = false;
+    std::size_t bytes = 0;      // the most of the device's memory that it was seen to hold, the scene's included
+    std::size_t host_bytes = 0; // the most of the host's memory that solving took
     uint64_t invalid_samples = 0;
     std::vector<Repetition> repetitions; // none is empty
 };
@@ -88,6 +93,7 @@ struct TransportPoint {
     double samples = 0;
     Estimate seconds, rel_mse, flip;
     uint32_t repetitions = 0; // that have it
+    double patches = 0;       // mean of those shown
 };
 
 /// After each number of samples that all its repetitions have begun with. Empty where there are no figures.
@@ -95,13 +101,13 @@ std::vector<TransportPoint> points_of(const TransportRow& row);
 
 /// Each repetition's curve is interpolated, straight in the logarithms of time and value (a value of 0 is interpolated
 /// as it is), and the mean is over these. None where `seconds` lies before a repetition's first figures or behind its
-/// last, or there are none.
+/// last, or there are none. Of solutions it is the last that is there by then.
 std::optional<TransportPoint> at_time(const TransportRow& row, double seconds);
-/// None where there is no such number in all repetitions.
+/// None where there is no such number in all repetitions, and of solutions, which samples make no better.
 std::optional<TransportPoint> at_samples(const TransportRow& row, uint32_t samples);
 
 /// The longest time, and the largest number of samples, that all repetitions of all integrators with figures have come
-/// to; 0: there are none.
+/// to; 0: there are none. Solutions do not count, but for the time where there is nothing else.
 double equal_seconds(const TransportScene& scene);
 uint32_t equal_samples(const TransportScene& scene);
 

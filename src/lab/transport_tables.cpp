@@ -14,8 +14,9 @@ namespace pertev {
 namespace {
 
 std::string with_band(const Estimate& estimate) {
-    return estimate.half_width ? fmt::format("{:.3g} ± {:.1g}", estimate.mean, *estimate.half_width)
-                               : fmt::format("{:.3g}", estimate.mean);
+    const bool is_finite = std::isfinite(estimate.mean) && std::isfinite(estimate.half_width.value_or(0));
+    return estimate.half_width && is_finite ? uncertain_text(estimate.mean, *estimate.half_width)
+                                            : fmt::format("{:.3g}", estimate.mean);
 }
 
 struct TableLine {
@@ -67,12 +68,17 @@ TransportTable equal_time_table(const TransportScene& scene) {
         std::vector<std::string> cells = {line.row->name};
         if (line.point) {
             add_cells(cells, {with_band(line.point->rel_mse), with_band(line.point->flip),
-                              fmt::format("{:.4g}", line.point->samples)});
+                              line.row->is_solved
+                                  ? fmt::format("{:.4g}; {:.0f} patches", line.point->samples, line.point->patches)
+                                  : fmt::format("{:.4g}", line.point->samples)});
             add_cells(cells, efficiency_cells(line, of_path));
         } else {
-            add_cells(cells, {"its first sample takes longer", "", "", "", ""});
+            const char* what = line.row->is_solved ? "solution" : "sample";
+            const std::string first =
+                fmt::format("its first {} takes {:.3g} s", what, points_of(*line.row).front().seconds.mean);
+            add_cells(cells, {first, "", "", "", ""});
         }
-        add_cells(cells, {fmt::format("{:.1f}", mebibytes(line.row->bytes)), line.row->light});
+        add_cells(cells, {fmt::format("{:.1f}", mebibytes(line.row->bytes + line.row->host_bytes)), line.row->light});
         table.push_back(cells);
     }
     return table;
@@ -85,6 +91,7 @@ TransportTable equal_samples_table(const TransportScene& scene) {
     const std::optional<double> of_path = efficiency_of_path(lines);
     TransportTable table = {{"integrator", "relMSE", "HDR-FLIP", "seconds", "1/(relMSE s)", "of path's"}};
     for (const TableLine& line : lines) {
+        if (line.row->is_solved) table.push_back({line.row->name, "no samples: it is solved"});
         if (!line.point) continue;
         std::vector<std::string> cells = {line.row->name, with_band(line.point->rel_mse), with_band(line.point->flip),
                                           with_band(line.point->seconds)};

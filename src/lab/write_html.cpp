@@ -17,7 +17,8 @@ constexpr const char* kStyle =
     "table{border-collapse:collapse;font-size:12px;margin:1em 0;display:block;overflow-x:auto}"
     "th,td{border:1px solid #ccc;padding:2px 6px;text-align:right;white-space:nowrap}"
     ".wrong{color:#b00}th:first-child,td:first-child{text-align:left}th{background:#f3f3f3}"
-    "figure{display:inline-block;margin:.5em}figcaption{font-size:12px}svg{max-width:100%;height:auto}";
+    "figure{display:inline-block;width:min-content;vertical-align:top;margin:.5em}figcaption{font-size:12px}"
+    "svg{max-width:100%;height:auto}figure svg{max-width:none}";
 
 /// RFC 4648, section 4.
 std::string base64(const std::vector<std::byte>& bytes) {

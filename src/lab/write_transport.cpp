@@ -41,7 +41,9 @@ CsvCells scene_cells(const TransportScene& s) {
             r.rel_mse ? fmt::format("{:.9g}", *r.rel_mse) : ""};
 }
 
-CsvCells row_head() { return {"integrator", "light", "finds_all", "refused", "device_bytes", "invalid_samples"}; }
+CsvCells row_head() {
+    return {"integrator", "light", "finds_all", "refused", "device_bytes", "host_bytes", "invalid_samples"};
+}
 CsvCells row_cells(const TransportRow& r) {
     const bool has_figures = !r.repetitions.empty();
     return {r.name,
@@ -49,13 +51,18 @@ CsvCells row_cells(const TransportRow& r) {
             r.finds_all ? "1" : "0",
             r.refused,
             has_figures ? fmt::format("{}", r.bytes) : "",
+            has_figures ? fmt::format("{}", r.host_bytes) : "",
             has_figures ? fmt::format("{}", r.invalid_samples) : ""};
 }
 
-CsvCells figures_head() { return {"repetition", "samples", "seconds", "rel_mse", "hdr_flip"}; }
+std::string patches_of(const TransportFigures& f, const char* none) {
+    return f.patches > 0 ? fmt::format("{}", f.patches) : none;
+}
+
+CsvCells figures_head() { return {"repetition", "samples", "seconds", "rel_mse", "hdr_flip", "patches"}; }
 CsvCells figures_cells(std::size_t repetition, const TransportFigures& f) {
-    return {fmt::format("{}", repetition), fmt::format("{}", f.samples), fmt::format("{:.9f}", f.seconds),
-            fmt::format("{:.9g}", f.rel_mse), fmt::format("{:.9g}", f.flip)};
+    return {fmt::format("{}", repetition),    fmt::format("{}", f.samples),  fmt::format("{:.9f}", f.seconds),
+            fmt::format("{:.9g}", f.rel_mse), fmt::format("{:.9g}", f.flip), patches_of(f, "")};
 }
 
 CsvCells joined(std::initializer_list<CsvCells> parts) {
@@ -87,15 +94,15 @@ std::string json_of(const std::optional<TransportPoint>& p) { return p ? json_of
 
 std::string json_of(const TransportScene& scene, const TransportRow& row) {
     const auto figures = [](const TransportFigures& f) {
-        return fmt::format(R"({{"samples":{},"seconds":{},"rel_mse":{},"hdr_flip":{}}})", f.samples,
-                           json_number(f.seconds), json_number(f.rel_mse), json_number(f.flip));
+        return fmt::format(R"({{"samples":{},"seconds":{},"rel_mse":{},"hdr_flip":{},"patches":{}}})", f.samples,
+                           json_number(f.seconds), json_number(f.rel_mse), json_number(f.flip), patches_of(f, "null"));
     };
     const auto repetition = [&](const Repetition& r) { return json_list(r, figures); };
     const bool has_figures = !row.repetitions.empty();
     return fmt::format(
-        R"({{"name":{},"light":{},"finds_all":{},"refused":{},"device_bytes":{},"invalid_samples":{},"at_equal_seconds":{},"at_equal_samples":{},"points":{},"repetitions":{}}})",
-        json_string(row.name), json_string(row.light), row.finds_all, json_text_or_null(row.refused),
-        has_figures ? fmt::format("{}", row.bytes) : "null",
+        R"({{"name":{},"light":{},"finds_all":{},"refused":{},"is_solved":{},"device_bytes":{},"host_bytes":{},"invalid_samples":{},"at_equal_seconds":{},"at_equal_samples":{},"points":{},"repetitions":{}}})",
+        json_string(row.name), json_string(row.light), row.finds_all, json_text_or_null(row.refused), row.is_solved,
+        has_figures ? fmt::format("{}", row.bytes) : "null", has_figures ? fmt::format("{}", row.host_bytes) : "null",
         has_figures ? fmt::format("{}", row.invalid_samples) : "null", json_of(at_time(row, equal_seconds(scene))),
         json_of(at_samples(row, equal_samples(scene))),
         json_list(points_of(row), [](const TransportPoint& p) { return json_of(p); }),

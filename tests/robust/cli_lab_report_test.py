@@ -11,6 +11,7 @@ import struct
 import subprocess
 import time
 import xml.etree.ElementTree as ElementTree
+import zlib
 
 from cli_lab_run import BOX, INSIDE, SMALL, LabTest
 from cli_run import PATIENCE_S, PROGRAM, SANITIZED, main, write
@@ -162,20 +163,73 @@ class WhatIsWritten(LabTest):
                         self.assertIsNone(of["refused"])
                         self.assertEqual(len(of["frame_seconds"]), 2)
                 html = self.check_html(self.path("out/thesis.html"))
-                self.assertEqual(html.count("<img"), 8)
-                self.assertIn("Figures 3.3 to 3.8", html)
-                self.assertEqual(sorted(os.path.basename(name) for name in glob.glob(self.path("out/figure-3.*"))),
-                                 [f"figure-3.{number}.png" for number in (3, 4, 6, 8)])
+                pictures = self.check_thesis_pictures(outcome, html)
+                self.assertEqual(html.count("<img"), 4 + sum(name.endswith(".png") for name in pictures))
                 figures = glob.glob(self.path("out/figure-6.*.svg"))
                 self.assertEqual(len(figures), 2)
                 for figure in figures:
                     ElementTree.parse(figure)
                 self.assertEqual(len(glob.glob(self.path("out/figure-6.[78]-*al.png"))), 4)
-                tables = glob.glob(self.path("out/*.csv"))
+                tables = glob.glob(self.path("out/thesis-[12].csv"))
                 counts = [{row["scene_triangles"] for row in self.read_csv(table)} for table in tables]
                 self.assertCountEqual(counts, [{"38"}, {"12"}])
                 for file in glob.glob(self.path("out/*")):
                     os.remove(file)
+
+    def check_thesis_pictures(self, outcome, html):
+        """That page, files, CSV, JSON and the last event have the same pictures of chapters 2 to 4; their files."""
+        pictures = outcome.events("thesis")[-1]["pictures"]
+        self.assertEqual(json.loads(read_text(self.path("out/thesis-pictures.json"))), pictures)
+        rows = self.read_csv(self.path("out/thesis-pictures.csv"))
+        self.assertEqual([row["file"] for row in rows], [picture["file"] for picture in pictures])
+        files = [picture["file"] for picture in pictures]
+        for name in ["3.3", "3.4", "3.6", "3.7a", "3.7b", "3.7c", "3.7d", "3.8", "3.9a", "3.9b", "3.9c", "3.10a", "3.10b"]:
+            self.assertIn(f"figure-{name}.png", files)
+        written = glob.glob(self.path("out/*-[234]*.png")) + glob.glob(self.path("out/*-[234]*.svg"))
+        self.assertCountEqual([os.path.basename(name) for name in written], files)
+        text = re.sub(r"&(lt|gt|amp|quot);", lambda found: {"lt": "<", "gt": ">", "amp": "&", "quot": '"'}[found[1]], html)
+        for row, picture in zip(rows, pictures):
+            self.assertIn(picture["shows"], text)
+            self.assertIn(f"{picture['place']}: {picture['title']}", text)
+            self.assertIn(picture["command"] or "pertev lab --thesis", text)
+            self.assertEqual((row["shows"], row["command"]), (picture["shows"], picture["command"] or ""))
+            if picture["file"].endswith(".svg"):
+                ElementTree.parse(self.path("out/" + picture["file"]))
+                self.assertIsNone(picture["samples"])
+                continue
+            self.assertFalse(picture["interrupted"])
+            if picture["integrator"]:
+                self.assertGreater(picture["rays"], -1)
+                self.assertGreater(picture["render_seconds"], 0)
+            if picture["file"].startswith("figure-3.7"):
+                self.assertGreater(picture["solve_seconds"], 0)
+        return files
+
+    def test_the_command_beneath_a_picture_of_the_thesis_makes_its_very_bytes(self):
+        outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "--size", "48x36", "-o", "out",
+                                         "--json"))
+        commands = {picture["file"]: picture["command"] for picture in outcome.events("thesis")[-1]["pictures"]
+                    if picture["command"]}
+        self.assertGreater(len(commands), 8)
+        for file, command in commands.items():
+            with self.subTest(command=command):
+                program, *arguments = command.split()
+                self.assertEqual(program, "pertev")
+                self.succeed(*arguments, "--device", "cpu")
+                self.assertEqual(self.pixels(file), self.pixels("out/" + file))
+
+    def pixels(self, name):
+        """What the compressed rows of a PNG file hold."""
+        with open(self.path(name), "rb") as file:
+            data = file.read()
+        rows, at = b"", 8
+        while at < len(data):
+            (size,) = struct.unpack(">I", data[at:at + 4])
+            if data[at + 4:at + 8] == b"IDAT":
+                rows += data[at + 8:at + 8 + size]
+            at += 12 + size
+        self.assertGreater(len(rows), 0)
+        return data[16:29], zlib.decompress(rows)
 
     def interrupt(self, line, when, after_s=0.2):
         """Sends SIGINT so long after the first progress whose text has `when`; gives the report, the last line."""
@@ -221,6 +275,24 @@ class WhatIsWritten(LabTest):
         self.interrupt(self.lab("--thesis", "box.obj", *INSIDE, "--size", "64x48", "--threads", "1", "-o", "out",
                                 "--json", runs=1000), "^binned .*: diffuse1")
         self.check_html(self.path("out/thesis.html"))
+
+    def test_an_interrupt_while_pictures_of_the_thesis_are_made_keeps_those_that_are_done(self):
+        line = self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "--size", "64x48", "-o", "out", "--json")
+        with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
+            for text in program.stdout:
+                if json.loads(text).get("doing", "").startswith("figure-3.7a: form factors"):
+                    break
+            program.send_signal(signal.SIGINT)
+            stdout, stderr = program.communicate(timeout=PATIENCE_S)
+        self.assertEqual(program.returncode, 75, stderr)
+        report = json.loads(stdout.splitlines()[-1])
+        self.assertEqual((report["event"], report["interrupted"]), ("thesis", True))
+        files = [picture["file"] for picture in report["pictures"]]
+        self.assertEqual(files[-1], "figure-3.6.png")  # nothing to show of a solution that has just begun
+        for file in files:
+            self.assertTrue(os.path.exists(self.path("out/" + file)))
+        self.assertEqual(self.check_html(self.path("out/thesis.html")).count("<img"), 4 + len(files))
 
     def test_an_interrupt_before_anything_is_measured_leaves_an_earlier_report_as_it_is(self):
         self.succeed(*self.lab("cornell-box", *SMALL, "-o", "out"))

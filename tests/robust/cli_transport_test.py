@@ -60,6 +60,27 @@ class Transport(CliTest):
         for text in ["bidirectional", "lamps alone", "Student"]:
             self.assertIn(text, html)
 
+    def test_radiosity_takes_part_by_solutions(self):
+        outcome = self.succeed(*self.transport("--integrators", "path,radiosity", "--seconds", "3", "-o", "out", "--json"))
+        (scene,) = outcome.events("transport")[-1]["scenes"]
+        path, solved = scene["integrators"]
+        self.assertIsNone(solved["refused"])
+        self.assertEqual((path["is_solved"], solved["is_solved"]), (False, True))
+        self.assertGreater(solved["host_bytes"], 0)
+        self.assertEqual(path["host_bytes"], 0)
+        self.assertIsNone(solved["at_equal_samples"])
+        self.assertEqual(scene["equal_samples"], 4)
+        for ran in solved["repetitions"]:
+            patches = [one["patches"] for one in ran]
+            self.assertEqual(patches, sorted(patches))
+            self.assertGreater(patches[0], 0)
+        self.assertIsNone(path["repetitions"][0][0]["patches"])
+        html = self.read("out/transport.html")
+        self.assertIn("no samples: it is solved", html)
+        rows = [row for row in csv.DictReader(self.read("out/transport.csv").splitlines())
+                if row["integrator"] == "radiosity"]
+        self.assertEqual(len(rows), sum(len(ran) for ran in solved["repetitions"]))
+
     def test_errors_are_a_function_of_the_seeds_and_those_of_compare(self):
         first, again, other = (
             self.succeed(*self.transport("--integrators", "path", "--json", *seed)).events("transport")[-1]["scenes"][0]

@@ -141,6 +141,15 @@ TEST_CASE("short times and slow frames keep two digits") {
     CHECK(fixed_text(0.034, 2) == "0.034");
     CHECK(fixed_text(0.000039, 3) == "3.9e-05");
     CHECK(fixed_text(0, 5) == "0.00000");
+    CHECK(uncertain_text(0.0036712, 0.000214) == "0.00367 ± 0.00021");
+    CHECK(uncertain_text(0.5412, 0.4961) == "0.54 ± 0.50");
+    CHECK(uncertain_text(0.5412, 0.0996) == "0.54 ± 0.10"); // which 0.0996 is in two digits
+    CHECK(uncertain_text(12.345, 3.21) == "12.3 ± 3.2");
+    CHECK(uncertain_text(1234.4, 32.1) == "1234 ± 32");
+    CHECK(uncertain_text(12344, 321) == "12340 ± 320");
+    CHECK(uncertain_text(0.00001234, 0.00000056) == "1.234e-05 ± 5.6e-07");
+    CHECK(uncertain_text(0.0000001, 0.00000056) == "1.0e-07 ± 5.6e-07");
+    CHECK(uncertain_text(0.25, 0) == "0.25 ± 0");
     LabReport report = small_report();
     report.structures[0].build_s = 3.9e-5;
     report.combinations[0].structure = 0;

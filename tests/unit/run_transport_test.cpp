@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include <doctest/doctest.h>
 
+#include "base/stopwatch.h"
 #include "lab/run_transport.h"
+#include "lab/transport_solutions.h"
+#include "radiosity/radiosity_view.h"
 #include "session/choose_camera.h"
 #include "session/open_scene.h"
 #include "tests/support/thrown_error.h"
@@ -81,6 +85,89 @@ TEST_CASE("path's error falls as one over its samples, and the reference's noise
     CHECK(row_named(scene, "cast").repetitions.empty());
     CHECK(row_named(scene, "cast").refused.find("lamps alone") != std::string::npos);
     CHECK(scene.pictures.size() == 3);
+}
+
+TEST_CASE("radiosity takes part with solutions of growing detail, whose time is that of solving too") {
+    SmallRun small;
+    small.settings.integrators = {"path", "radiosity"};
+    small.settings.repetitions = 2;
+    small.settings.max_solutions = 2;
+    small.settings.max_samples = 16;
+    const TransportScene scene = small.run();
+    const TransportRow& row = row_named(scene, "radiosity");
+    CHECK(row.refused == "");
+    CHECK(row.is_solved);
+    CHECK(row.light == "all, by patches ever smaller");
+    CHECK_FALSE(row.finds_all);
+    REQUIRE(row.repetitions.size() == 2);
+    REQUIRE(row.repetitions[0].size() == 2);
+    CHECK(row.repetitions[1].size() == 2);
+    CHECK(row.host_bytes > row.repetitions[0].back().patches * sizeof(PatchLight));
+    for (const Repetition& repetition : row.repetitions) {
+        for (std::size_t i = 0; i < repetition.size(); ++i) {
+            CHECK(repetition[i].samples == 16);
+            CHECK(repetition[i].rel_mse > 0);
+            if (i == 0) continue;
+            CHECK(repetition[i].patches > 2 * repetition[i - 1].patches);
+        }
+        // Detail pays, down to the edges of pixels.
+        CHECK(repetition.back().rel_mse < repetition.front().rel_mse);
+    }
+    // Other seeds, other form factors.
+    CHECK(row.repetitions[0][0].rel_mse != row.repetitions[1][0].rel_mse);
+    CHECK(std::ranges::any_of(scene.notes, [](const std::string& note) { return note.starts_with("radiosity: "); }));
+    CHECK(scene.pictures.size() == 3);
+}
+
+TEST_CASE("the time of a solution's picture is that of solving and rendering, and its patches halve") {
+    SmallRun small;
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(small.scene, {}, messages);
+    RenderSettings picture = small.settings.picture;
+    picture.integrator = IntegratorKind::Radiosity;
+    const Stopwatch watch;
+    double solving_s = 0;
+    const SolvedPicture solved =
+        solve_picture(small.queue, prepared, small.camera, picture, 0, 2, [&](const char* what, double) {
+            if (what != std::string_view("rendering")) solving_s = watch.seconds();
+            return true;
+        });
+    CHECK(solving_s > 0);
+    CHECK(solved.figures.seconds > solving_s);
+    CHECK(solved.figures.seconds < watch.seconds());
+    CHECK(solved.figures.samples == 2);
+    CHECK(solved.picture.width == 16);
+    CHECK(solved.device_bytes > solved.figures.patches * sizeof(PatchLight)); // the solution is on the device
+    const RadiositySettings coarse = solution_settings(prepared, 0, 3), fine = solution_settings(prepared, 2, 3);
+    CHECK(coarse.patch_size == 4 * fine.patch_size);
+    CHECK(fine.patch_size == doctest::Approx(patch_size_of(prepared, {}))); // what pertev render takes
+    CHECK(fine.seed == 3);
+}
+
+TEST_CASE("a scene without diffuse surfaces is refused to radiosity in its row") {
+    SmallRun small;
+    small.settings.integrators = {"path", "radiosity"};
+    small.settings.reference_samples = 2;
+    small.settings.max_samples = 1;
+    for (Material& material : small.scene.materials) {
+        material.base_color = {};
+        if (!material.is_emissive()) material.kind = MaterialKind::Conductor;
+    }
+    const TransportScene lamps = small.run(); // the lamp's own surface is diffuse, and black
+    CHECK(row_named(lamps, "radiosity").refused == "patches are of diffuse surfaces, and this scene has none");
+    CHECK_FALSE(row_named(lamps, "path").repetitions.empty());
+}
+
+TEST_CASE("an interrupt in the middle of a solution keeps those before it") {
+    SmallRun small;
+    small.settings.integrators = {"radiosity"};
+    small.settings.reference_samples = 2;
+    small.settings.seconds = 1e6;
+    const TransportScene scene =
+        small.run([](const LabProgress& now) { return now.doing.find("solution 3") == std::string::npos; });
+    CHECK(scene.interrupted);
+    REQUIRE(scene.rows[0].repetitions.size() == 1);
+    CHECK(scene.rows[0].repetitions[0].size() == 2);
 }
 
 TEST_CASE("an interrupt keeps the turns before it, and of the first what it has") {

@@ -1,18 +1,26 @@
-// Pictures of the thesis's chapter 3: the scenes are what their figures say, and each picture shows something.
+// Pictures of the thesis's chapters 2 to 4: the scenes are what their figures say, and each picture shows what its
+// caption says.
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <set>
 #include <utility>
 
+#include "accel/nearest_points.h"
+#include "image/tone_map.h"
+#include "lab/found_points.h"
 #include "lab/thesis_pictures.h"
+#include "lab/thesis_scenes.h"
+#include "lab/write_thesis_pictures.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;
 
 TEST_CASE("the point light of figure 3.3 has the intensity that the lamp of figure 3.4 has straight down") {
-    const Scene hard = thesis_scene("3.3"), soft = thesis_scene("3.4");
+    const Scene hard = make_thesis_scene(ThesisScene::PointLight), soft = make_thesis_scene(ThesisScene::Box);
     const auto lamp = std::ranges::find(soft.instances, "light", &Instance::name);
     REQUIRE(lamp != soft.instances.end());
     CHECK(hard.instances[static_cast<std::size_t>(lamp - soft.instances.begin())].is_hidden);
@@ -32,7 +40,7 @@ TEST_CASE("the point light of figure 3.3 has the intensity that the lamp of figu
 }
 
 TEST_CASE("the ball of figure 3.8 is a mirror that stands on the floor") {
-    const Scene scene = thesis_scene("3.8");
+    const Scene scene = make_thesis_scene(ThesisScene::MirrorBall);
     const auto ball = std::ranges::find(scene.instances, "mirror sphere", &Instance::name);
     REQUIRE(ball != scene.instances.end());
     CHECK(std::ranges::find(scene.instances, "short block", &Instance::name) == scene.instances.end());
@@ -49,36 +57,196 @@ TEST_CASE("the ball of figure 3.8 is a mirror that stands on the floor") {
     CHECK(dot(cross(b - a, c - a), mesh.normals[mesh.indices[3]]) > 0);
 }
 
-TEST_CASE("the four figures differ, and none is black") {
-    Queue queue = test::queue_asked_for();
+namespace {
+
+/// Every picture there is, small.
+std::vector<ThesisPicture> all_pictures(Queue& queue, const RenderSettings& settings) {
+    ThesisPictures pictures(queue, settings);
+    std::vector<ThesisPicture> made;
+    for (const std::string& name : thesis_picture_names()) made.push_back(pictures.make(name, {}));
+    return made;
+}
+
+/// Of the green of the pixels in [x0, x1) x [y0, y1), shares of the picture's width and height.
+double mean_green(const Rgba8Image& image, double x0 = 0, double y0 = 0, double x1 = 1, double y1 = 1) {
+    const auto at = [](double share, uint32_t size) { return static_cast<uint32_t>(share * size); };
+    double sum = 0, count = 0;
+    for (uint32_t y = at(y0, image.height); y < at(y1, image.height); ++y) {
+        for (uint32_t x = at(x0, image.width); x < at(x1, image.width); ++x) {
+            sum += image.pixels[4 * (std::size_t(y) * image.width + x) + 1];
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+/// Mean of the difference of the channels, in steps of 255.
+double distance_of(const Rgba8Image& a, const Rgba8Image& b) {
+    REQUIRE(a.pixels.size() == b.pixels.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += std::abs(int(a.pixels[i]) - int(b.pixels[i]));
+    return sum / static_cast<double>(a.pixels.size());
+}
+
+RenderSettings small_picture(uint32_t width, uint32_t height, uint32_t samples) {
     RenderSettings settings;
-    settings.width = 32;
-    settings.height = 24;
-    settings.samples = 2;
-    std::vector<std::vector<uint8_t>> seen;
-    for (const char* number : kThesisPictures) {
-        CAPTURE(number);
-        const ThesisPicture picture =
-            render_thesis_picture(queue, number, settings, [](const RenderProgress&) { return true; });
-        CHECK(picture.stats.samples == 2);
-        CHECK(picture.stats.rays.total() > 0);
+    settings.width = width, settings.height = height, settings.samples = samples;
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("no two pictures of the thesis are alike, none is black, and each says what it shows") {
+    Queue queue = test::queue_asked_for();
+    const std::vector<ThesisPicture> pictures = all_pictures(queue, small_picture(64, 48, 2));
+    const std::vector<std::string> files = thesis_picture_files();
+    REQUIRE(pictures.size() == files.size());
+    std::set<std::vector<uint8_t>> seen;
+    std::set<std::string> places;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const ThesisPicture& picture = pictures[i];
+        CAPTURE(picture.name);
+        CHECK(picture.file() == files[i]);
+        CHECK(picture.shows.ends_with('.'));
         CHECK_FALSE(picture.interrupted);
-        CHECK(std::ranges::count_if(picture.image.pixels, [](uint8_t c) { return c > 60 && c < 255; }) > 200);
-        CHECK(std::ranges::find(seen, picture.image.pixels) == seen.end());
-        seen.push_back(picture.image.pixels);
+        places.insert(picture.place);
+        if (!picture.svg.empty()) continue;
+        CHECK((picture.image.width == 64 || picture.image.width == 32)); // panels have half of it
+        const auto lit = std::ranges::count_if(picture.image.pixels, [](uint8_t c) { return c > 60 && c < 255; });
+        CHECK(lit > picture.image.width * picture.image.height / 8);
+        CHECK(seen.insert(picture.image.pixels).second);
+    }
+    for (const char* place : {"Figure 3.3", "Figure 3.4", "Figure 3.6", "Figure 3.7", "Figure 3.8", "Figure 3.9",
+                              "Figure 3.10", "Figure 4.1"}) {
+        CHECK(places.contains(place));
+    }
+}
+
+TEST_CASE("pictures of the thesis have the same bytes by all stages at once, and on a GPU") {
+    Queue cpu = Queue::make_cpu(), queue = test::queue_asked_for();
+    RenderSettings settings = small_picture(48, 36, 2);
+    const std::vector<ThesisPicture> in_loop = all_pictures(cpu, settings);
+    settings.body = PathBody::Wavefront;
+    settings.batch = 500;
+    const std::vector<ThesisPicture> at_once = all_pictures(queue, settings);
+    for (std::size_t i = 0; i < in_loop.size(); ++i) {
+        CAPTURE(in_loop[i].name);
+        CHECK(in_loop[i].image.pixels == at_once[i].image.pixels);
+        CHECK(in_loop[i].svg == at_once[i].svg);
+    }
+}
+
+TEST_CASE("figure 3.7's panels come ever nearer to the solution that is smooth") {
+    Queue queue = test::queue_asked_for();
+    ThesisPictures pictures(queue, small_picture(192, 144, 8));
+    const auto panel = [&](const char* name) { return pictures.make(name, {}).image; };
+    const Rgba8Image dark = panel("figure-3.7a"), ambient = panel("figure-3.7b"), flat = panel("figure-3.7c"),
+                     smooth = panel("figure-3.7d");
+    // Light is added, everywhere but where lamps and the background are seen.
+    std::size_t brighter = 0, darker = 0;
+    for (std::size_t i = 0; i < dark.pixels.size(); ++i) {
+        brighter += ambient.pixels[i] > dark.pixels[i] ? 1 : 0;
+        darker += ambient.pixels[i] < dark.pixels[i] ? 1 : 0;
+    }
+    CHECK(brighter > dark.pixels.size() / 4);
+    CHECK(darker == 0);
+    CHECK(distance_of(dark, smooth) > 1.5 * distance_of(ambient, smooth));
+    CHECK(distance_of(ambient, smooth) > 1.5 * distance_of(flat, smooth));
+    CHECK(distance_of(flat, smooth) > 0.2);
+}
+
+TEST_CASE("figure 3.9's photons lie on surfaces, and the map blurs what final gathering shows") {
+    Queue queue = test::queue_asked_for();
+    ThesisPictures pictures(queue, small_picture(256, 192, 8));
+    const ThesisPicture dots = pictures.make("figure-3.9a", {}), map = pictures.make("figure-3.9b", {}),
+                        gathered = pictures.make("figure-3.9c", {});
+    // Beside the box nothing stands: it is square.
+    CHECK(mean_green(dots.image, 0, 0, 0.1, 1) == 0);
+    std::size_t lit = 0;
+    for (std::size_t i = 1; i < dots.image.pixels.size(); i += 4) lit += dots.image.pixels[i] > 20 ? 1 : 0;
+    CHECK(lit > dots.image.pixels.size() / 4 / 20);
+    CHECK(lit < dots.image.pixels.size() / 4 / 2); // dots, and not a picture: the box is three quarters
+    // The same light on the whole.
+    CHECK(mean_green(map.image) == doctest::Approx(mean_green(gathered.image)).epsilon(0.05));
+    CHECK(map.image.pixels != gathered.image.pixels);
+}
+
+TEST_CASE("figure 3.10's caustic is brighter than thrice its surroundings") {
+    Queue queue = test::queue_asked_for();
+    ThesisPictures pictures(queue, small_picture(256, 192, 16));
+    const ThesisPicture dots = pictures.make("figure-3.10a", {}), shown = pictures.make("figure-3.10b", {});
+    CHECK(shown.stats.samples == 16);
+    CHECK(dots.stats.samples == 1);
+    // Brightness of light that is shown so, by the curve that shows it.
+    const auto light_of_byte = [](double byte) {
+        float light = 1e-4f;
+        while (light < 100 && 255 * tone_map(grey(light), ToneMap::Agx).g < static_cast<float>(byte)) light *= 1.01f;
+        return static_cast<double>(light);
+    };
+    const auto light_in = [&](double x0, double y0, double x1, double y1) {
+        return light_of_byte(mean_green(shown.image, x0, y0, x1, y1));
+    };
+    const double spot = light_in(0.43, 0.65, 0.48, 0.69);
+    for (const double shade : {light_in(0.33, 0.68, 0.37, 0.72), light_in(0.40, 0.72, 0.46, 0.75)}) {
+        CHECK(spot > 3 * shade);
+    }
+    // And photons lie close together there.
+    CHECK(mean_green(dots.image, 0.42, 0.64, 0.49, 0.70) > 2 * mean_green(dots.image, 0.05, 0.75, 0.35, 0.95));
+}
+
+TEST_CASE("points found in a tree are those that are nearest, and few nodes are visited") {
+    const FoundPoints kd = found_in_kd_tree(), octree = found_in_octree();
+    CHECK(kd.points == octree.points);
+    std::vector<std::pair<float, uint32_t>> by_distance;
+    for (uint32_t i = 0; i < kd.points.size(); ++i) {
+        by_distance.emplace_back(squared_distance(kd.points[i], kd.at), i);
+    }
+    std::ranges::sort(by_distance);
+    std::vector<uint32_t> nearest;
+    for (uint32_t i = 0; i < kPointsAsked; ++i) nearest.push_back(by_distance[i].second);
+    std::ranges::sort(nearest);
+    CHECK(kd.found == nearest);
+    CHECK(octree.found == nearest);
+    CHECK(kd.radius_squared == by_distance[kPointsAsked - 1].first);
+    for (const FoundPoints* found : {&kd, &octree}) {
+        CAPTURE(found->tree);
+        CHECK(std::ranges::includes(found->looked_at, found->found));
+        CHECK(found->looked_at.size() < found->points.size() / 3);
+        CHECK(found->visited < found->nodes / 2);
+        const std::string svg = svg_of(*found);
+        // A circle a point, and the one about them.
+        std::size_t circles = 0;
+        for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++circles;
+        CHECK(circles == found->points.size() + 1);
+    }
+    CHECK(kd.nodes == kd.points.size());
+    CHECK(kd.visited == kd.looked_at.size());
+    // Each plane of a kd-tree lies within the square and has its node's point on it.
+    CHECK(kd.lines.size() == kd.points.size() / 2);
+    for (const FoundPoints::Line& line : kd.lines) {
+        const bool is_upright = line.from.x == line.to.x;
+        CHECK((is_upright || line.from.y == line.to.y));
+        CHECK(std::ranges::any_of(kd.points, [&](const Vec3& p) {
+            return is_upright ? p.x == line.from.x && p.y >= line.from.y && p.y <= line.to.y
+                              : p.y == line.from.y && p.x >= line.from.x && p.x <= line.to.x;
+        }));
+    }
+    // Each point lies in one box of an octree.
+    for (const Vec3& p : octree.points) {
+        CHECK(std::ranges::count_if(octree.boxes, [&](const FoundPoints::Box& box) {
+                  return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y;
+              }) == 1);
     }
 }
 
 TEST_CASE(
     "shadows are hard under a point light and soft under a lamp, and indirect light has neither lamp nor shadow") {
     Queue queue = test::queue_asked_for();
-    RenderSettings settings;
-    settings.width = 96;
-    settings.height = 72;
-    settings.samples = 64;
+    const RenderSettings settings = small_picture(96, 72, 64);
+    ThesisPictures pictures(queue, settings);
     // Shares of neighbours in a row of which one is at least 1.5 times as bright as the other, and of white.
     const auto look_at_picture = [&](const char* number) {
-        const auto picture = render_thesis_picture(queue, number, settings, [](const RenderProgress&) { return true; });
+        const ThesisPicture picture = pictures.make(number, {});
         const auto& pixels = picture.image.pixels;
         int steps = 0, white = 0;
         for (uint32_t y = 0; y < settings.height; ++y) {
@@ -91,9 +259,9 @@ TEST_CASE(
         }
         return std::pair(steps, white);
     };
-    const auto [hard_steps, hard_white] = look_at_picture("3.3");
-    const auto [soft_steps, soft_white] = look_at_picture("3.4");
-    const auto [indirect_steps, indirect_white] = look_at_picture("3.6");
+    const auto [hard_steps, hard_white] = look_at_picture("figure-3.3");
+    const auto [soft_steps, soft_white] = look_at_picture("figure-3.4");
+    const auto [indirect_steps, indirect_white] = look_at_picture("figure-3.6");
     CHECK(hard_steps > 1.3 * soft_steps);
     CHECK(soft_steps > 1.3 * indirect_steps);
     CHECK(soft_white > indirect_white);

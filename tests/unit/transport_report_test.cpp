@@ -86,6 +86,48 @@ TEST_CASE("an error of 0 is interpolated as it is") {
     CHECK_FALSE(efficiency(*point));
 }
 
+TEST_CASE("of solutions the last that is there by a time counts, whole, and none by samples") {
+    TransportScene scene = small_transport_scene();
+    TransportRow solved = transport_row("radiosity", {{{16, 0.2, 0.1, 0.05, 100}, {16, 5, 0.01, 0.02, 400}},
+                                                      {{16, 0.4, 0.3, 0.05, 100}, {16, 6, 0.03, 0.02, 400}}});
+    solved.is_solved = true, solved.host_bytes = 2 << 20;
+    scene.rows.push_back(solved);
+    CHECK(equal_seconds(scene) == doctest::Approx(0.8)); // path's, as without it
+    CHECK(equal_samples(scene) == 8);
+    const auto point = at_time(scene.rows.back(), 0.8);
+    REQUIRE(point);
+    CHECK(point->rel_mse.mean == doctest::Approx(0.2));
+    CHECK(point->seconds.mean == doctest::Approx(0.3));
+    CHECK(point->samples == 16);
+    CHECK(point->patches == doctest::Approx(100));
+    CHECK(at_time(scene.rows.back(), 100)->rel_mse.mean == doctest::Approx(0.02));
+    CHECK_FALSE(at_time(scene.rows.back(), 0.3)); // the second's first takes longer
+    CHECK_FALSE(at_samples(scene.rows.back(), 16));
+    const TransportTable by_time = equal_time_table(scene), by_samples = equal_samples_table(scene);
+    CHECK(by_time[1][0] == "radiosity");
+    CHECK(by_time[1][3] == "16; 100 patches");
+    CHECK(by_time[1][6] == "5.0"); // MiB, the host's 2 among them
+    REQUIRE(by_samples.size() == 4);
+    TransportScene quick = scene; // which does not hold up the others
+    quick.rows.back().repetitions = {{{4, 0.1, 0.1, 0.05, 100}}, {{4, 0.1, 0.1, 0.05, 100}}};
+    CHECK(equal_seconds(quick) == doctest::Approx(0.8));
+    CHECK(equal_samples(quick) == 8);
+    CHECK(at_time(quick.rows.back(), 0.8));
+    TransportScene late = scene;
+    for (Repetition& repetition : late.rows.back().repetitions) repetition.erase(repetition.begin());
+    CHECK(equal_time_table(late)[3][1] == "its first solution takes 5.5 s");
+    CHECK(by_samples[3] == std::vector<std::string>{"radiosity", "no samples: it is solved"});
+    scene.rows.erase(scene.rows.begin(), scene.rows.end() - 1);
+    CHECK(equal_seconds(scene) == doctest::Approx(5)); // there is nothing else
+    TransportReport report = {.device = "CPU"};
+    report.scenes.push_back(scene);
+    CHECK(test::has(csv_of(report), ",400\n"));
+    CHECK(test::has(json_of(report), R"("is_solved":true,"device_bytes":3145728,"host_bytes":2097152)"));
+    const std::string html = html_of(report);
+    test::check_tags(html);
+    CHECK(test::count(html, "<svg") == 2); // over time alone
+}
+
 TEST_CASE("efficiency is one over error times time, and its ratio to path's stands in the tables") {
     const TransportScene scene = small_transport_scene();
     const auto path = at_samples(scene.rows[0], 8);
@@ -156,7 +198,7 @@ TEST_CASE("the report's texts have what was measured, and what was not with its 
     CHECK(test::has(csv, "\"lamps alone, and \"\"more\"\"\""));
     CHECK(test::has(json, R"("equal_samples":8)"));
     CHECK(test::has(json, R"("efficiency":5})")); // of path after 8 samples
-    CHECK(test::has(json, R"("refused":"lamps alone, and \"more\"","device_bytes":null)"));
+    CHECK(test::has(json, R"("refused":"lamps alone, and \"more\"","is_solved":false,"device_bytes":null)"));
     CHECK(test::has(text, "cast: lamps alone"));
     CHECK(test::has(text, "its own noise: relMSE 0.001"));
     test::check_tags(html);

@@ -1,0 +1,51 @@
+#pragma once
+
+// What each picture of the thesis (lab/thesis_pictures.h) is made of: one row a picture.
+
+#include <span>
+
+#include "lab/thesis_scenes.h"
+#include "render/tracer/combination.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// How a picture comes about.
+enum class ThesisWay : uint8_t {
+    Render,    // rendered
+    Radiosity, // solved, then rendered
+    Photons,   // photons of one pass as dots
+    Work,      // tests of the ray through the middle of each pixel
+    KdTree,    // points that a search in such a tree finds, drawn
+    Octree,    // likewise
+};
+
+/// Of Radiosity.
+struct RadiosityPanel {
+    bool is_early = false;   // after kEarlySteps patches have sent
+    bool has_ambient = true; // light that is unsent is shown too
+    bool is_flat = false;    // patches as they are solved, not divided where light changes
+};
+inline constexpr uint32_t kEarlySteps = 200; // `flags` say it too
+inline constexpr float kPanelPatch = 0.08f;  // metres; likewise
+
+inline constexpr uint32_t kThesisPhotons = 16384; // of a pass, for each map; likewise
+
+struct ThesisRecipe {
+    const char *name, *place, *title, *shows; // ThesisPicture's
+    ThesisWay way = ThesisWay::Render;
+    ThesisScene scene = ThesisScene::Box;
+    const char* integrator = "";
+    bool is_panel = false;                  // one of several: half the width and height
+    const char* flags = "";                 // of the command, beside scene and integrator
+    void (*set)(RenderSettings&) = nullptr; // does what `flags` say; null: nothing
+    RadiosityPanel panel = {};              // of Radiosity
+    StructureKind structure = {};           // of Work
+    WalkKind walk = {};                     // likewise
+    float stops = 2;                        // of exposure
+};
+
+/// Ordered as the thesis is.
+std::span<const ThesisRecipe> thesis_recipes();
+
+} // namespace pertev

@@ -1,0 +1,167 @@
+#include "lab/thesis_scenes.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "base/error.h"
+#include "formats/read_scene.h"
+#include "lab/transport_presets.h"
+#include "math/portable_math.h"
+#include "session/choose_camera.h"
+
+namespace pertev {
+namespace {
+
+uint32_t instance_named(const Scene& scene, std::string_view name) {
+    const auto found = std::ranges::find(scene.instances, name, &Instance::name);
+    PERTEV_CHECK(found != scene.instances.end());
+    return static_cast<uint32_t>(found - scene.instances.begin());
+}
+
+Bounds3 bounds_of(const Scene& scene, const Instance& instance) {
+    Bounds3 bounds;
+    for (const Vec3 p : scene.meshes[instance.mesh].positions) {
+        bounds.extend(transform_point(instance.world_from_local, p));
+    }
+    return bounds;
+}
+
+/// A light without size in the middle of the lamp, a centimetre below it, of the intensity that the lamp has straight
+/// down: its radiance times its area.
+void replace_lamp(Scene& scene) {
+    const uint32_t lamp = instance_named(scene, "light");
+    const Bounds3 bounds = bounds_of(scene, scene.instances[lamp]);
+    const Vec3 size = bounds.size();
+    Light light;
+    light.name = "point";
+    light.position = bounds.centre() - Vec3{0, 0.01f, 0};
+    light.intensity = (size.x * size.z) * scene.materials[scene.instances[lamp].material].emission;
+    scene.lights.push_back(light);
+    scene.instances[lamp].is_hidden = true;
+}
+
+/// To where the eye sees what it lights: under the ceiling, near the open front.
+void move_light_forward(Scene& scene) { scene.lights.back().position.z = 0.06f; }
+
+/// Longitude by latitude, `down` rings of twice as many quads, with smooth normals.
+Mesh make_ball(Vec3 centre, float radius, uint32_t down) {
+    const uint32_t around = 2 * down;
+    const auto number = [](uint32_t i) { return static_cast<float>(i); };
+    Mesh ball;
+    for (uint32_t j = 0; j <= down; ++j) {
+        for (uint32_t i = 0; i < around; ++i) {
+            const float theta = kPi * number(j) / number(down), phi = 2 * kPi * number(i) / number(around);
+            const Vec3 normal = {sin(theta) * cos(phi), cos(theta), sin(theta) * sin(phi)};
+            ball.normals.push_back(normalize(normal));
+            ball.positions.push_back(centre + radius * normal);
+        }
+    }
+    for (uint32_t j = 0; j < down; ++j) {
+        for (uint32_t i = 0; i < around; ++i) {
+            const uint32_t a = j * around + i, b = j * around + (i + 1) % around, c = a + around, d = b + around;
+            if (j > 0) ball.indices.insert(ball.indices.end(), {a, b, c});
+            if (j + 1 < down) ball.indices.insert(ball.indices.end(), {b, d, c});
+        }
+    }
+    return ball;
+}
+
+/// A ball of `material` that stands where the block stood.
+void replace_block(Scene& scene, std::string_view block, Material material, uint32_t rings) {
+    Instance& instance = scene.instances[instance_named(scene, block)];
+    const Bounds3 bounds = bounds_of(scene, instance);
+    const float radius = 0.1f; // metres
+    const Vec3 middle = bounds.centre();
+    instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+    instance.material = static_cast<uint32_t>(scene.materials.size());
+    instance.name = material.name;
+    instance.world_from_local = instance.node_from_local = {};
+    instance.node = kNoNode;
+    scene.meshes.push_back(make_ball({middle.x, bounds.lo.y + radius, middle.z}, radius, rings));
+    scene.meshes.back().name = material.name;
+    scene.materials.push_back(std::move(material));
+}
+
+Material mirror() {
+    Material material;
+    material.name = "mirror sphere";
+    material.kind = MaterialKind::MetallicRoughness;
+    material.base_color = {0.95f, 0.95f, 0.95f};
+    material.metallic = 1;
+    material.roughness = 0;
+    return material;
+}
+
+Material glass() {
+    Material material;
+    material.name = "glass sphere";
+    material.kind = MaterialKind::Dielectric;
+    material.base_color = {1, 1, 1};
+    material.roughness = 0;
+    return material;
+}
+
+Material plastic() {
+    Material material;
+    material.name = "plastic sphere";
+    material.kind = MaterialKind::MetallicRoughness;
+    material.base_color = {0.15f, 0.3f, 0.65f};
+    material.roughness = 0.35f;
+    return material;
+}
+
+constexpr uint32_t kSmoothRings = 48, kCoarseRings = 10;
+
+} // namespace
+
+Scene make_thesis_scene(ThesisScene which) {
+    Messages messages;
+    Scene scene = read_scene(which == ThesisScene::Caustic ? "caustic" : "cornell-box", {}, messages);
+    switch (which) {
+    case ThesisScene::Box:
+    case ThesisScene::Caustic:
+        break;
+    case ThesisScene::PointLight:
+        replace_lamp(scene);
+        break;
+    case ThesisScene::MirrorBall:
+        replace_block(scene, "short block", mirror(), kSmoothRings);
+        break;
+    case ThesisScene::PlasticBall:
+        replace_lamp(scene);
+        move_light_forward(scene);
+        replace_block(scene, "short block", plastic(), kCoarseRings);
+        break;
+    case ThesisScene::TwoBalls:
+        replace_lamp(scene);
+        move_light_forward(scene);
+        replace_block(scene, "short block", mirror(), kSmoothRings);
+        replace_block(scene, "tall block", glass(), kSmoothRings);
+        break;
+    }
+    return scene;
+}
+
+Camera camera_of(ThesisScene which, const Scene& scene, float aspect) {
+    Messages messages;
+    const bool is_preset = which == ThesisScene::Caustic;
+    return choose_camera(is_preset ? camera_choice(*find_transport_preset("caustic")) : CameraChoice{}, scene, aspect,
+                         messages);
+}
+
+const char* command_of(ThesisScene which) {
+    switch (which) {
+    case ThesisScene::Box:
+        return "cornell-box";
+    case ThesisScene::Caustic:
+        return "caustic --eye 0.5,1.6,2.6 --target 0,0.5,0 --fov 50";
+    case ThesisScene::PointLight:
+    case ThesisScene::MirrorBall:
+    case ThesisScene::PlasticBall:
+    case ThesisScene::TwoBalls:
+        break;
+    }
+    return "";
+}
+
+} // namespace pertev

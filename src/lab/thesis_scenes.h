@@ -1,0 +1,29 @@
+#pragma once
+
+// The scenes that pictures of the thesis (lab/thesis_pictures.h) are made of: the built-in Cornell box, with another
+// lamp or a ball or two in it, and the built-in caustic.
+
+#include <cstdint>
+
+#include "scene/scene.h"
+
+namespace pertev {
+
+enum class ThesisScene : uint8_t {
+    Box,         // cornell-box as it is
+    PointLight,  // a point light in the lamp's place
+    MirrorBall,  // a mirror sphere in the short block's place
+    PlasticBall, // a point light near the front, a sphere of glossy plastic of few triangles in the short block's place
+    TwoBalls,    // the same light, a mirror sphere there and one of glass in the tall block's place
+    Caustic,     // caustic, with the camera of lab --transport
+};
+
+Scene make_thesis_scene(ThesisScene which);
+
+/// Its view in a picture of this width / height.
+Camera camera_of(ThesisScene which, const Scene& scene, float aspect);
+
+/// As the command line names it, with the camera's flags; empty where only this file has it.
+const char* command_of(ThesisScene which);
+
+} // namespace pertev

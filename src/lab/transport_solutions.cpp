@@ -1,0 +1,61 @@
+#include "lab/transport_solutions.h"
+
+#include <memory>
+
+#include "base/stopwatch.h"
+#include "session/session.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kFirstPatch = 4; // of the default's edge
+constexpr std::size_t kMostSolutionBytes = std::size_t(4) << 30;
+
+} // namespace
+
+RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t number, uint32_t seed) {
+    RadiositySettings settings;
+    settings.patch_size = patch_size_of(prepared, settings) * kFirstPatch / static_cast<float>(1u << number);
+    settings.subdivisions = 1; // more would make each cost what the next does
+    settings.seed = seed;
+    return settings;
+}
+
+bool may_be_solved(const PreparedScene& prepared, uint32_t number) {
+    const RadiositySettings settings = solution_settings(prepared, number, 0);
+    const uint64_t patches = predicted_patches(prepared, settings);
+    return patches <= kMostPatches && predicted_bytes(patches, settings) <= kMostSolutionBytes;
+}
+
+SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
+                            uint32_t number, uint32_t samples, const SolveProgress& progress) {
+    const Stopwatch watch;
+    SolvedRadiosity solved =
+        solve_radiosity(prepared, solution_settings(prepared, number, settings.path.seed), progress);
+    SolvedPicture shown;
+    shown.figures.seconds = watch.seconds();
+    shown.figures.samples = samples;
+    shown.figures.patches = solved.stats.shown;
+    shown.host_bytes = solved.stats.bytes + solved.solution.bytes();
+    settings.radiosity = {std::make_shared<const RadiositySolution>(std::move(solved.solution)), false};
+    const std::size_t before = queue.allocated_bytes();
+    Session session(queue, prepared, camera, settings);
+    const auto render = [&](uint32_t count) {
+        double seconds = 0;
+        session.render(count, [&](const RenderProgress& now) {
+            seconds = now.seconds;
+            progress("rendering", static_cast<double>(now.samples_done) / now.samples);
+            return true;
+        });
+        return seconds;
+    };
+    render(1); // memory, caches and the driver's first launch are not timed
+    session.cut();
+    shown.figures.seconds += render(samples);
+    shown.picture = session.picture();
+    shown.device_bytes = queue.allocated_bytes() - before;
+    shown.invalid_samples = session.stats().invalid_samples;
+    return shown;
+}
+
+} // namespace pertev
