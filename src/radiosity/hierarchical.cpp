@@ -413,27 +413,28 @@ std::size_t most_hierarchical_bytes(uint64_t patches) {
 }
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                          const RadiositySettings& settings, const LinkProgress& progress) {
+                                          const RadiositySettings& settings, WorkWatch& watch) {
     Hierarchy hierarchy(scene, std::move(coarse), patch_size, settings);
     uint64_t passes = 0;
     double left = 1;
-    bool was_interrupted = false;
+    bool is_done = false;
     const auto keep_going = [&](double share) {
-        was_interrupted = was_interrupted || (progress && !progress(static_cast<uint32_t>(passes), share));
-        return !was_interrupted;
+        watch.set_share(share);
+        return !watch.is_over();
     };
     while (true) {
+        watch.begin(fmt::format("links, pass {}", passes + 1), 0);
         const bool divides = hierarchy.refine(keep_going);
         for (uint32_t k = 0; k < kSweeps; ++k) left = hierarchy.sweep();
         ++passes;
-        const bool is_done = !divides && !(left > static_cast<double>(settings.tolerance));
-        if (is_done || was_interrupted || passes == kMostPasses) break;
+        is_done = !divides && !(left > static_cast<double>(settings.tolerance));
+        if (is_done || watch.is_over() || passes == kMostPasses) break;
         if (divides) hierarchy.divide();
     }
     HierarchicalSolution solution = hierarchy.result();
     solution.passes = passes;
     solution.left = left;
-    solution.was_interrupted = was_interrupted;
+    solution.reached_limit = !is_done && !watch.is_over();
     return solution;
 }
 

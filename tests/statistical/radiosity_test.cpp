@@ -11,6 +11,7 @@
 #include "tests/support/options.h"
 #include "tests/support/radiosity_scenes.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -64,6 +65,60 @@ TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 
                 CHECK(received == doctest::Approx(known).epsilon(2e-4));
             }
         }
+    }
+}
+
+TEST_CASE("an unfinished solution of a closed box shows E / (1 - r) on the mean, with divided patches as without") {
+    Messages messages;
+    const float reflectance = 0.6f, radiance = 2;
+    const Scene scene = test::closed_box(test::lamp_material(reflectance, radiance));
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const double known = std::numbers::pi * static_cast<double>(radiance) / (1 - static_cast<double>(reflectance));
+    for (const uint32_t steps : {1u, 12u, 48u, 400u}) {
+        for (const uint32_t subdivisions : {0u, 1u, 2u}) {
+            RadiositySettings settings;
+            settings.patch_size = 0.8f;
+            settings.rays = 256;
+            settings.solver = RadiositySolver::Southwell;
+            settings.steps = steps;
+            settings.subdivisions = subdivisions;
+            settings.contrast = 0.02f;
+            const SolvedRadiosity solved = solve_radiosity(prepared, settings);
+            CHECK(solved.stats.left > 0.01);
+            if (subdivisions > 0 && steps > 1) CHECK(solved.stats.shown > solved.stats.patches);
+            double sum = 0;
+            constexpr int kPlaces = 64;
+            for (uint32_t triangle = 0; triangle < 12; ++triangle) {
+                for (int i = 0; i < kPlaces; ++i) {
+                    const Vec2 at = sample_uniform_triangle(
+                        {(static_cast<float>(i % 8) + 0.5f) / 8, (static_cast<float>(i / 8) + 0.5f) / 8});
+                    sum += static_cast<double>(solved.solution.view().irradiance(2 * triangle, at.x, at.y).g);
+                }
+            }
+            CAPTURE(steps);
+            CAPTURE(subdivisions);
+            CHECK(sum / (12 * kPlaces) == doctest::Approx(known).epsilon(0.01));
+        }
+    }
+}
+
+TEST_CASE("a closed box that reflects all light is refused, by every solver of rows") {
+    Messages messages;
+    for (const RadiositySolver solver :
+         {RadiositySolver::Southwell, RadiositySolver::GaussSeidel, RadiositySolver::Matrix}) {
+        RadiositySettings settings;
+        settings.patch_size = 1.5f;
+        settings.rays = 64;
+        settings.solver = solver;
+        const auto solve = [&](const Scene& scene) {
+            const PreparedScene prepared = prepare_scene(scene, {}, messages);
+            return solve_radiosity(prepared, settings);
+        };
+        const Scene box = test::closed_box(test::lamp_material(1, 1));
+        CHECK(test::bad_input_message([&] { solve(box); }).find("radiosity: light has no end") == 0);
+        Scene open = box;
+        open.instances.pop_back(); // a wall
+        CHECK(solve(open).stats.left < 1e-3);
     }
 }
 
