@@ -12,6 +12,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
+#include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "radiosity/solve_memory.h"
@@ -230,9 +231,16 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityF
 
 RadiosityLook radiosity_look(const RadiosityFlags& flags, const PreparedScene& prepared, uint32_t seed,
                              Reporter& reporter) {
-    RadiositySolution solution = flags.solution.empty() ? solve_and_report(prepared, flags, seed, reporter).solution
-                                                        : read_solution(flags.solution, *prepared.scene);
-    return {std::make_shared<const RadiositySolution>(std::move(solution)), flags.flat_patches};
+    const auto look = [&](RadiositySolution&& solution) {
+        return RadiosityLook{std::make_shared<const RadiositySolution>(std::move(solution)), flags.flat_patches};
+    };
+    if (!flags.solution.empty()) return look(read_solution(flags.solution, *prepared.scene));
+    SolvedRadiosity solved = solve_and_report(prepared, flags, seed, reporter);
+    if (solved.stats.was_interrupted) { // a picture of it could not be made again
+        throw Error(ErrorCode::Interrupted, "interrupted while radiosity was solved, so that there is nothing to show "
+                                            "(pertev solve radiosity keeps what has been solved by then)");
+    }
+    return look(std::move(solved.solution));
 }
 
 } // namespace pertev

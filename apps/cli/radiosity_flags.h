@@ -43,7 +43,8 @@ void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrato
 SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityFlags& flags, uint32_t seed,
                                  Reporter& reporter);
 
-/// What a picture shows: the solution of --solution, or one that is made now.
+/// What a picture shows: the solution of --solution, or one that is made now. Throws Error(Interrupted) where that was
+/// interrupted.
 RadiosityLook radiosity_look(const RadiosityFlags& flags, const PreparedScene& prepared, uint32_t seed,
                              Reporter& reporter);
 

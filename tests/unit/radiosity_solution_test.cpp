@@ -157,7 +157,8 @@ TEST_CASE("a solution's bytes do not depend on threads, and follow its settings"
     const Scene scene = lit_box();
     for (const auto& [method, solver] : {std::pair(FormFactors::Rays, RadiositySolver::Southwell),
                                          std::pair(FormFactors::Hemicube, RadiositySolver::GaussSeidel),
-                                         std::pair(FormFactors::Rays, RadiositySolver::Matrix)}) {
+                                         std::pair(FormFactors::Rays, RadiositySolver::Matrix),
+                                         std::pair(FormFactors::Rays, RadiositySolver::Hierarchical)}) {
         RadiositySettings settings = quick_settings();
         settings.rays = 16;
         settings.hemicube = 16;
