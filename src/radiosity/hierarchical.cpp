@@ -19,9 +19,8 @@ constexpr float kRaysOfLimit = 8;      // of a link that may be wrong by as much
 
 class Refiner {
 public:
-    Refiner(const SolvedScene& scene, LinkNodes& nodes, float patch_size, const RadiositySettings& settings,
-            WorkWatch& watch)
-        : scene_(scene), nodes_(nodes), watch_(watch), patch_size_(patch_size), seed_(settings.seed),
+    Refiner(const SolvedScene& scene, LinkNodes& nodes, const RadiositySettings& settings, WorkWatch& watch)
+        : scene_(scene), nodes_(nodes), watch_(watch), seed_(settings.seed),
           limit_(settings.link_error * nodes.mean_direct()) {}
 
     /// Divides links until each is as good as it has to be or waits for a patch to be divided: links of one size after
@@ -30,7 +29,7 @@ public:
         wishes_.assign(nodes_.tree().patches.size(), 0);
         for (uint32_t i = 0; i < wishes_.size(); ++i) {
             const bool is_seen = !is_black(nodes_.tree().patches[i].reflectance);
-            if (is_seen && can_divide(kIsPatch | i) && nodes_.direct_changes(i, limit_)) wishes_[i] = 1;
+            if (is_seen && nodes_.can_divide(kIsPatch | i) && nodes_.direct_changes(i, limit_)) wishes_[i] = 1;
         }
         std::vector<Link> open = std::move(links);
         links = {};
@@ -143,12 +142,9 @@ private:
         return min(most, power * kInvPi / square(nearest));
     }
 
-    bool can_divide(NodeCode code) const {
-        return is_cluster(code) || !is_patch(code) || nodes_.shape(code).longest > patch_size_;
-    }
     /// The larger of those that can be divided; kNoPatch where neither can be.
     NodeCode divided_of(const Link& link) const {
-        const bool receiver = can_divide(link.receiver), source = can_divide(link.source);
+        const bool receiver = nodes_.can_divide(link.receiver), source = nodes_.can_divide(link.source);
         if (!receiver && !source) return kNoPatch;
         const bool is_larger = nodes_.ball(link.receiver).radius > nodes_.ball(link.source).radius;
         return receiver && (is_larger || !source) ? link.receiver : link.source;
@@ -191,7 +187,6 @@ private:
     const SolvedScene& scene_;
     LinkNodes& nodes_;
     WorkWatch& watch_;
-    float patch_size_;
     uint32_t seed_;
     float limit_;                 // of what a link may stand for, W/m2
     std::vector<uint8_t> wishes_; // [patches] to be divided
@@ -207,8 +202,8 @@ std::size_t most_hierarchical_bytes(uint64_t patches) {
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
                                           const RadiositySettings& settings, WorkWatch& watch) {
-    LinkNodes nodes(scene, std::move(coarse), settings, watch);
-    Refiner refiner(scene, nodes, patch_size, settings, watch);
+    LinkNodes nodes(scene, std::move(coarse), patch_size, settings, watch);
+    Refiner refiner(scene, nodes, settings, watch);
     HierarchicalSolution solution;
     std::vector<Link> links = {{nodes.root(), nodes.root()}};
     bool is_done = false;

@@ -13,8 +13,10 @@ constexpr uint32_t kDirectRays = 32; // of each quarter of a patch, and 16 to la
 
 } // namespace
 
-LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, const RadiositySettings& settings, WorkWatch& watch)
-    : scene_(scene), view_(scene.view()), seed_(settings.seed), watch_(watch), tree_(std::move(coarse)) {
+LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_size, const RadiositySettings& settings,
+                     WorkWatch& watch)
+    : scene_(scene), view_(scene.view()), seed_(settings.seed), patch_size_(patch_size), watch_(watch),
+      tree_(std::move(coarse)) {
     PERTEV_CHECK(tree_.quads.empty());
     add_patches();
     std::vector<uint32_t> faces;
@@ -225,32 +227,38 @@ void LinkNodes::add_patches() {
     gathered_.resize(tree_.patches.size());
     irradiance_.resize(tree_.patches.size());
     patch_sent_.resize(tree_.patches.size());
-    const RadiositySettings rows = {.rays = kDirectRays, .seed = seed_};
-    const RowMakers makers(scene_, tree_, rows, &watch_);
+    const RadiositySettings whole = {.rays = 2 * kDirectRays, .seed = seed_},
+                            quarter = {.rays = kDirectRays, .seed = seed_};
+    const RowMakers of_whole(scene_, tree_, whole, &watch_), of_quarter(scene_, tree_, quarter, &watch_);
+    watch_.begin("direct light", stale_.size());
     parallel_for_ranges(stale_.size(), 8, [&](uint64_t begin, uint64_t end) {
-        const std::unique_ptr<RowMaker> maker = makers.for_thread();
-        for (uint64_t k = begin; k < end; ++k) find_direct(stale_[k], *maker);
+        const std::unique_ptr<RowMaker> makers[] = {of_whole.for_thread(), of_quarter.for_thread()};
+        for (uint64_t k = begin; k < end && !watch_.is_over(); ++k) {
+            find_direct(stale_[k], *makers[0], *makers[1]);
+            watch_.done();
+        }
     });
     stale_.clear();
 }
 
-void LinkNodes::find_direct(uint32_t number, RowMaker& maker) {
+/// Of a patch that may be divided quarter by quarter, to see whether it should be.
+void LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_quarter) {
     const Patch& patch = tree_.patches[number];
+    const uint32_t parts = can_divide(kIsPatch | number) ? 4 : 1;
     Rgb sum;
     float least = kInfinity, most = 0;
     FormFactorRow row;
-    for (uint32_t quarter = 0; quarter < 4; ++quarter) {
+    for (uint32_t k = 0; k < parts; ++k) {
         Patch part = patch;
-        part.corners = patch.corners.child(quarter);
-        part.area = 0.25f * patch.area;
-        const uint32_t key = hash_words(number, static_cast<uint32_t>(tree_.quads.size()), quarter, 0x64697265u).x;
-        maker.make(part, key, row);
+        if (parts > 1) part.corners = patch.corners.child(k);
+        const uint32_t key = hash_words(number, static_cast<uint32_t>(tree_.quads.size()), k, 0x64697265u).x;
+        (parts > 1 ? of_quarter : of_whole).make(part, key, row);
         Rgb light = row.direct;
         for (const FormFactor& from : row.factors) light += from.factor * tree_.patches[from.patch].exitance;
         sum += light;
         least = min(least, luminance(light)), most = max(most, luminance(light));
     }
-    direct_[number] = 0.25f * sum;
+    direct_[number] = (1.0f / static_cast<float>(parts)) * sum;
     direct_spread_[number] = most - least;
     patch_sent_[number] = patch.reflectance * direct_[number];
 }

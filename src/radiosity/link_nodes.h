@@ -24,8 +24,10 @@ class RowMaker;
 
 class LinkNodes {
 public:
-    /// `coarse`: whole triangles. `scene` and `watch` outlive it.
-    LinkNodes(const SolvedScene& scene, PatchTree coarse, const RadiositySettings& settings, WorkWatch& watch);
+    /// `coarse`: whole triangles. No patch whose edges are shorter than `patch_size` (metres) will be divided. `scene`
+    /// and `watch` outlive it.
+    LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_size, const RadiositySettings& settings,
+              WorkWatch& watch);
 
     /// All of the scene; of a scene of one triangle side the patch itself.
     NodeCode root() const { return code_of_cluster(0); }
@@ -57,6 +59,9 @@ public:
 
     /// Of patches that light reaches by way of no surface, its mean. W/m2, luminance.
     float mean_direct() const;
+    bool can_divide(NodeCode code) const {
+        return is_cluster(code) || !is_patch(code) || shape(code).longest > patch_size_;
+    }
     /// Patches over which that light changes by more than `limit`, W/m2.
     bool direct_changes(uint32_t patch, float limit) const { return direct_spread_[patch] > limit; }
 
@@ -91,7 +96,7 @@ private:
     std::size_t index_of(NodeCode code) const;
     std::size_t index_count() const { return clusters_.clusters.size() + tree_.quads.size() + tree_.patches.size(); }
     void add_patches();
-    void find_direct(uint32_t patch, RowMaker& maker);
+    void find_direct(uint32_t patch, RowMaker& of_whole, RowMaker& of_quarter);
     void gather(std::span<const Link> links);
     void receive(NodeCode receiver, std::span<const Link> links);
     Rgb push(PatchCode code, Rgb above, double& changed, double& all);
@@ -100,6 +105,7 @@ private:
     const SolvedScene& scene_;
     const SceneView& view_;
     uint32_t seed_;
+    float patch_size_;
     WorkWatch& watch_;
     PatchTree tree_;
     ClusterTree clusters_;

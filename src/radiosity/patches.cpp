@@ -144,12 +144,15 @@ uint64_t count_patches(const SceneView& scene, float patch_size) {
     return count;
 }
 
+void check_patch_count(uint64_t patches, float patch_size) {
+    if (patches <= kMostPatches) return;
+    throw Error(ErrorCode::OverLimit, fmt::format("--patch-size {}: divides this scene into {} patches; at most {}",
+                                                  patch_size, patches, kMostPatches));
+}
+
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch) {
     const uint64_t most = count_patches(scene, patch_size);
-    if (most > kMostPatches) {
-        throw Error(ErrorCode::OverLimit, fmt::format("--patch-size {}: divides this scene into {} patches; at most {}",
-                                                      patch_size, most, kMostPatches));
-    }
+    check_patch_count(most, patch_size);
     if (watch != nullptr) watch->begin("patches", most);
     PatchTree tree;
     tree.patches.reserve(most);

@@ -53,6 +53,9 @@ inline uint32_t face_of(const SceneView& scene, uint32_t instance, uint32_t prim
 /// Patches at most that make_patches makes: both sides of each triangle, whatever they are made of.
 uint64_t count_patches(const SceneView& scene, float patch_size);
 
+/// Throws Error(OverLimit) for more than kMostPatches.
+void check_patch_count(uint64_t patches, float patch_size);
+
 /// `scene` lies in the host's memory and numbers its triangles. Throws Error(OverLimit) where there are more than
 /// kMostPatches; Error(BadInput) where none of them reflects: there is nothing to solve.
 /// Error(Interrupted) where `watch` is over.

@@ -92,7 +92,13 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     const SolvedScene scene(prepared);
     const SceneView& view = scene.view();
     SolveMemory memory;
-    memory.patches = count_patches(view, patch_size_of(prepared, settings));
+    const float patch_size = patch_size_of(prepared, settings);
+    memory.patches = count_patches(view, patch_size);
+    if (settings.solver == RadiositySolver::Hierarchical) {
+        memory.patches = std::min<uint64_t>(memory.patches, kMostPatches); // it divides what it has to
+    } else {
+        check_patch_count(memory.patches, patch_size);
+    }
     memory.shown = std::min<uint64_t>(memory.patches << std::min(2 * settings.subdivisions, 30u), kMostPatches);
     Counts counts = {memory.patches, std::max(memory.shown, memory.patches), view.triangle_count, 0};
     for (const Instance& instance : prepared.scene->instances) {

@@ -24,7 +24,7 @@ struct SolveMemory {
     std::size_t bytes = 0;   // all of them
 };
 
-/// For solve_radiosity by `threads` threads. Throws as SolvedScene.
+/// For solve_radiosity by `threads` threads. Throws as SolvedScene and check_patch_count.
 SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySettings& settings, int threads);
 
 /// Throws Error(OutOfMemory), with the largest parts and what would make them less, where it is more than `limit`.
