@@ -10,7 +10,7 @@ import subprocess
 from cli_run import PATIENCE_S, PROGRAM, CliTest, main, write
 
 INTEGRATORS = ["path", "direct", "indirect", "hybrid", "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional",
-               "photon_map", "radiosity"]
+               "photon_map"]
 VIEW = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"]  # of the lit triangle
 
 
