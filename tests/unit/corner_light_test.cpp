@@ -79,31 +79,34 @@ TEST_CASE("a small object keeps its own light in a scene a hundred thousand time
 }
 
 TEST_CASE("neighbours that only rounding has put apart share their corners' light") {
-    Scene scene;
-    const Mesh tile = grid_at({0.5f, 0, 0.5f}, 1, 1);
-    for (int i = 0; i < 2; ++i) test::add(scene, tile, test::white(0.5f));
-    const float half = 0.5f; // a turn of 120 degrees, and then some
-    const Transform turned = compose(make_rotation(half, half, half, half), make_rotation(0.6f, 0, 0, 0.8f));
-    scene.instances[0].world_from_local = compose(make_translation({0.73f, -0.21f, 0.37f}), turned);
-    scene.instances[1].world_from_local = compose(scene.instances[0].world_from_local, make_translation({1, 0, 0}));
-    const test::PatchedScene patched(std::move(scene), 0.4f);
-    const Transform& placed = patched.solved.view().instances[0].world_from_local;
-    std::vector<Rgb> irradiance;
-    for (const Patch& patch : patched.tree.patches) irradiance.push_back(grey(patch.instance == 0 ? 1.0f : 3.0f));
-    const std::vector<PatchLight> lights = lights_of(patched, irradiance);
-    int shared = 0;
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        const Patch& patch = patched.tree.patches[i];
-        const PlacedTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
-        for (int k = 0; k < 3; ++k) {
-            const Vec3 at = triangle.at(patch.corners.at[k].x, patch.corners.at[k].y) - placed.translation;
-            const float along = dot(at, transform_vector(placed, {1, 0, 0}));
-            const bool is_between = std::abs(along - 1) < 1e-4f;
-            CHECK((lights[i].corner[k].r > 1.2f && lights[i].corner[k].r < 2.8f) == is_between);
-            shared += is_between ? 1 : 0;
+    for (int turn = 0; turn < 8; ++turn) {
+        Scene scene;
+        const Mesh tile = grid_at({0.5f, 0, 0.5f}, 1, 1);
+        for (int i = 0; i < 2; ++i) test::add(scene, tile, test::white(0.5f));
+        const Transform turned = compose(make_rotation(0.5f, 0.1f, 0.7f, 0.5f), make_rotation(0.1f, 0.7f, 0.1f, 0.7f));
+        const Transform on =
+            make_translation({0.73f - 0.1f * static_cast<float>(turn), -0.21f, 0.37f * static_cast<float>(turn)});
+        scene.instances[0].world_from_local = compose(on, turned);
+        scene.instances[1].world_from_local = compose(scene.instances[0].world_from_local, make_translation({1, 0, 0}));
+        const test::PatchedScene patched(std::move(scene), 0.4f);
+        const Transform& placed = patched.solved.view().instances[0].world_from_local;
+        std::vector<Rgb> irradiance;
+        for (const Patch& patch : patched.tree.patches) irradiance.push_back(grey(patch.instance == 0 ? 1.0f : 3.0f));
+        const std::vector<PatchLight> lights = lights_of(patched, irradiance);
+        int shared = 0;
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            const Patch& patch = patched.tree.patches[i];
+            const PlacedTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 at = triangle.at(patch.corners.at[k].x, patch.corners.at[k].y) - placed.translation;
+                const float along = dot(at, transform_vector(placed, {1, 0, 0}));
+                const bool is_between = std::abs(along - 1) < 1e-4f;
+                CHECK((lights[i].corner[k].r > 1.2f && lights[i].corner[k].r < 2.8f) == is_between);
+                shared += is_between ? 1 : 0;
+            }
         }
+        CHECK(shared > 20);
     }
-    CHECK(shared > 20);
 }
 
 TEST_CASE("corners are found in little time where tens of thousands of triangles meet") {
