@@ -1,5 +1,7 @@
 #include "apps/cli/radiosity_flags.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <utility>
 
@@ -8,7 +10,12 @@
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
+#include "apps/cli/report_result.h"
 #include "base/byte_units.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/stopwatch.h"
+#include "radiosity/solve_memory.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -20,7 +27,8 @@ std::pair<const char*, bool> given_flags_of_solving(const RadiosityFlags& flags)
           std::pair("--contrast", flags.contrast > 0), std::pair("--form-factors", !flags.form_factors.empty()),
           std::pair("--patch-rays", flags.rays > 0), std::pair("--hemicube", flags.hemicube > 0),
           std::pair("--solver", !flags.solver.empty()), std::pair("--tolerance", flags.tolerance > 0),
-          std::pair("--steps", flags.steps > 0), std::pair("--link-error", flags.link_error > 0)}) {
+          std::pair("--steps", flags.steps > 0), std::pair("--link-error", flags.link_error > 0),
+          std::pair("--max-memory", flags.max_memory > 0)}) {
         if (is_given) return {flag, true};
     }
     return {"", false};
@@ -83,6 +91,11 @@ void add_solving_flags(CLI::App& verb, RadiosityFlags& flags, const char* group)
         ->type_name("X")
         ->check(number_above_zero())
         ->group(group);
+    verb.add_option("--max-memory", flags.max_memory,
+                    "of radiosity: refuse at once what might take more of this\nmachine's memory (all there is)")
+        ->type_name("MIB")
+        ->check(number_above_zero())
+        ->group(group);
 }
 
 void add_radiosity_flags(CLI::App& verb, RadiosityFlags& flags, const char* group) {
@@ -135,18 +148,68 @@ void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrato
     radiosity_settings(flags, 0);
 }
 
-SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiositySettings& settings, Reporter& reporter) {
-    listen_for_interrupt();
+namespace {
+
+std::size_t memory_to_use(const RadiosityFlags& flags) {
+    if (flags.max_memory > 0) return static_cast<std::size_t>(static_cast<double>(flags.max_memory) * 0x1p20);
+    const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGESIZE);
+    return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
+}
+
+/// Shows how far each step is, and what is left of it.
+class StepProgress {
+public:
+    explicit StepProgress(Reporter& reporter) : reporter_(reporter) {}
+
+    void show(const char* what, double share) {
+        if (what_ != what) {
+            what_ = what;
+            first_ = share;
+            watch_.restart();
+        }
+        const double done = share - first_, seconds = watch_.seconds();
+        const bool is_known = done > 0.01 && seconds > 1;
+        reporter_.progress(share,
+                           is_known ? fmt::format("{}, {:.0f} s left", what, seconds * (1 - share) / done) : what);
+    }
+
+private:
+    Reporter& reporter_;
+    std::string what_;
+    double first_ = 0;
+    Stopwatch watch_;
+};
+
+void say_what_is_left(const SolveStats& stats, const RadiositySettings& settings, Reporter& reporter) {
+    if (!stats.reached_limit) return;
+    const bool is_ambient = settings.solver == RadiositySolver::Southwell;
+    reporter.messages().warn(fmt::format(
+        "radiosity: after {} steps, which is where it ends, {:.2g} of the light {}: more than --tolerance {} (next to "
+        "nothing absorbs it; lower reflectances, or a larger tolerance)",
+        stats.steps, stats.left, is_ambient ? "is unsent, and shown as ambient light" : "still changes",
+        settings.tolerance));
+    reporter.say_messages();
+}
+
+} // namespace
+
+SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityFlags& flags, uint32_t seed,
+                                 Reporter& reporter) {
+    const RadiositySettings settings = radiosity_settings(flags, seed);
     reporter.set_work("solving radiosity");
-    const uint64_t patches = predicted_patches(prepared, settings);
-    const std::size_t bytes = predicted_bytes(patches, settings);
+    const SolveMemory memory = predict_memory(prepared, settings, thread_count());
     reporter.say(fmt::format("radiosity: at most {} of {:.4g} m, {:.0f} MiB of this machine's memory",
-                             fmt::format("{} {}", patches, patches == 1 ? "patch" : "patches"),
-                             patch_size_of(prepared, settings), mebibytes(bytes)));
-    reporter.event(fmt::format(R"({{"event":"radiosity","most_patches":{},"patch_size":{},"predicted_bytes":{}}})",
-                               patches, patch_size_of(prepared, settings), bytes));
+                             fmt::format("{} {}", memory.patches, memory.patches == 1 ? "patch" : "patches"),
+                             patch_size_of(prepared, settings), mebibytes(memory.bytes)));
+    const uint64_t before = peak_memory_bytes();
+    reporter.event(fmt::format(
+        R"({{"event":"radiosity","most_patches":{},"most_shown":{},"patch_size":{},"predicted_bytes":{},"peak_bytes":{}}})",
+        memory.patches, memory.shown, patch_size_of(prepared, settings), memory.bytes, before));
+    check_memory(memory, settings, memory_to_use(flags));
+    listen_for_interrupt();
+    StepProgress progress(reporter);
     SolvedRadiosity solved = solve_radiosity(prepared, settings, [&](const char* what, double share) {
-        reporter.progress(share, what);
+        progress.show(what, share);
         return !interrupted();
     });
     reporter.end_progress();
@@ -157,20 +220,27 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityS
                     stats.patches, stats.shown, stats.factors,
                     static_cast<double>(stats.bytes) / static_cast<double>(std::max<uint64_t>(stats.patches, 1)),
                     stats.factor_seconds, stats.solve_seconds, stats.steps, stats.left, stats.divide_seconds));
+    say_what_is_left(stats, settings, reporter);
     reporter.event(fmt::format(
-        R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"steps":{},"left":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{}}})",
-        stats.patches, stats.shown, stats.factors, stats.bytes, stats.steps, json_number(stats.left),
-        stats.factor_seconds, stats.solve_seconds, stats.divide_seconds, json_string(solved.solution.hash().hex()),
-        stats.was_interrupted));
+        R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"peak_bytes":{},"steps":{},"left":{},"reached_limit":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{}}})",
+        stats.patches, stats.shown, stats.factors, stats.bytes, peak_memory_bytes(), stats.steps,
+        json_number(stats.left), stats.reached_limit, stats.factor_seconds, stats.solve_seconds, stats.divide_seconds,
+        json_string(solved.solution.hash().hex()), stats.was_interrupted));
     return solved;
 }
 
 RadiosityLook radiosity_look(const RadiosityFlags& flags, const PreparedScene& prepared, uint32_t seed,
                              Reporter& reporter) {
-    RadiositySolution solution = flags.solution.empty()
-                                     ? solve_and_report(prepared, radiosity_settings(flags, seed), reporter).solution
-                                     : read_solution(flags.solution, *prepared.scene);
-    return {std::make_shared<const RadiositySolution>(std::move(solution)), flags.flat_patches};
+    const auto look = [&](RadiositySolution&& solution) {
+        return RadiosityLook{std::make_shared<const RadiositySolution>(std::move(solution)), flags.flat_patches};
+    };
+    if (!flags.solution.empty()) return look(read_solution(flags.solution, *prepared.scene));
+    SolvedRadiosity solved = solve_and_report(prepared, flags, seed, reporter);
+    if (solved.stats.was_interrupted) { // a picture of it could not be made again
+        throw Error(ErrorCode::Interrupted, "interrupted while radiosity was solved, so that there is nothing to show "
+                                            "(pertev solve radiosity keeps what has been solved by then)");
+    }
+    return look(std::move(solved.solution));
 }
 
 } // namespace pertev

@@ -25,6 +25,7 @@ struct RadiosityFlags {
     std::string form_factors, solver;
     std::string solution; // of pictures: a file
     bool flat_patches = false;
+    float max_memory = 0; // MiB
 };
 
 /// How it is solved.
@@ -37,10 +38,13 @@ RadiositySettings radiosity_settings(const RadiosityFlags& flags, uint32_t seed)
 /// Throws Error(BadInput) where one is given to another integrator, called `name`, or to a solution that is there.
 void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrator, const std::string& name);
 
-/// Solves the scene; says what it will take before, how far it is, and what came of it. Listens for Ctrl-C.
-SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiositySettings& settings, Reporter& reporter);
+/// Solves the scene; says what it will take before, how far it is, and what came of it. Listens for Ctrl-C. Throws
+/// Error(OutOfMemory) where it may take more of this machine's memory than `flags` allow, or than there is.
+SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityFlags& flags, uint32_t seed,
+                                 Reporter& reporter);
 
-/// What a picture shows: the solution of --solution, or one that is made now.
+/// What a picture shows: the solution of --solution, or one that is made now. Throws Error(Interrupted) where that was
+/// interrupted.
 RadiosityLook radiosity_look(const RadiosityFlags& flags, const PreparedScene& prepared, uint32_t seed,
                              Reporter& reporter);
 

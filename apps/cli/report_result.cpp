@@ -15,12 +15,6 @@
 namespace pertev {
 namespace {
 
-uint64_t peak_memory_bytes() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-}
-
 /// Of a value of an EXR's metadata.
 template <class Value>
 std::string json_of(const Value& value) {
@@ -32,6 +26,12 @@ std::string json_of(const Value& value) {
 }
 
 } // namespace
+
+uint64_t peak_memory_bytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
 
 void report_camera(const CameraSource& camera, Reporter& reporter) {
     std::string object = R"({"event":"camera")";

@@ -2,6 +2,7 @@
 
 // What a render says: the camera at its start, files, time and rates at its end.
 
+#include <cstdint>
 #include <string>
 
 #include "apps/cli/reporter.h"
@@ -9,6 +10,9 @@
 #include "session/write_picture.h"
 
 namespace pertev {
+
+/// Of the host's memory, the most that this process has had.
+uint64_t peak_memory_bytes();
 
 /// With --json, an object of the flags that place this camera, under the names and with the values that they have in an
 /// EXR's metadata.

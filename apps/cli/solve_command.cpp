@@ -34,7 +34,7 @@ struct SolveFlags {
 int solve(const SolveFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
-    const RadiositySettings settings = radiosity_settings(flags.radiosity, flags.seed); // before anything is read
+    radiosity_settings(flags.radiosity, flags.seed); // refused before anything is read
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.threads));
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
@@ -48,7 +48,7 @@ int solve(const SolveFlags& flags) {
     reporter.set_work("building trees");
     const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
     reporter.say_messages();
-    const SolvedRadiosity solved = solve_and_report(moving.prepared(), settings, reporter);
+    const SolvedRadiosity solved = solve_and_report(moving.prepared(), flags.radiosity, flags.seed, reporter);
     reporter.set_work("writing");
     write_solution(flags.output, solved.solution);
     reporter.output(flags.output);

@@ -7,32 +7,66 @@
 namespace pertev {
 namespace {
 
-/// Its cluster is pushed before those below it.
-uint32_t halve(ClusterTree& tree, std::span<const Ball> balls, std::vector<uint32_t>& order, uint32_t first,
-               uint32_t count) {
-    const auto number = static_cast<uint32_t>(tree.clusters.size());
-    tree.clusters.push_back({.first = first, .count = count});
-    if (count == 1) {
-        tree.clusters[number].ball = balls[order[first]];
+constexpr float kAlike = 1; // of normals: no component differs by more
+
+int longest_axis(Vec3 size) { return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2); }
+
+class ClusterMaker {
+public:
+    ClusterMaker(std::span<const Ball> balls, std::span<const Vec3> normals) : balls_(balls), normals_(normals) {
+        for (uint32_t i = 0; i < balls.size(); ++i) order_.push_back(i);
+    }
+
+    /// Its cluster is pushed before those below it.
+    uint32_t make(uint32_t first, uint32_t count) {
+        const auto number = static_cast<uint32_t>(clusters_.size());
+        clusters_.push_back({.first = first, .count = count});
+        if (count == 1) {
+            clusters_[number].ball = balls_[order_[first]];
+            return number;
+        }
+        const uint32_t before = part(first, count);
+        const uint32_t left = make(first, before);
+        const uint32_t right = make(first + before, count - before);
+        Cluster& cluster = clusters_[number];
+        cluster.left = left, cluster.right = right;
+        cluster.ball = ball_round(clusters_[left].ball, clusters_[right].ball);
         return number;
     }
-    Bounds3 bounds;
-    for (uint32_t i = first; i < first + count; ++i) bounds.extend(balls[order[i]].centre);
-    const Vec3 size = bounds.size();
-    const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-    const auto begin = order.begin() + first;
-    const auto is_before = [&](uint32_t a, uint32_t b) {
-        const float at_a = component(balls[a].centre, axis), at_b = component(balls[b].centre, axis);
-        return at_a != at_b ? at_a < at_b : a < b;
-    };
-    std::nth_element(begin, begin + count / 2, begin + count, is_before);
-    const uint32_t left = halve(tree, balls, order, first, count / 2);
-    const uint32_t right = halve(tree, balls, order, first + count / 2, count - count / 2);
-    Cluster& cluster = tree.clusters[number];
-    cluster.left = left, cluster.right = right;
-    cluster.ball = ball_round(tree.clusters[left].ball, tree.clusters[right].ball);
-    return number;
-}
+
+    const std::vector<uint32_t>& order() const { return order_; }
+    std::vector<Cluster> take() { return std::move(clusters_); }
+
+private:
+    /// Puts those of the left half first. Returns how many they are.
+    uint32_t part(uint32_t first, uint32_t count) {
+        const auto begin = order_.begin() + first, end = begin + count;
+        Bounds3 places, normals;
+        for (auto i = begin; i != end; ++i) {
+            places.extend(balls_[*i].centre);
+            normals.extend(normals_[*i]);
+        }
+        const Vec3 spread = normals.size();
+        if (max_component(spread) > kAlike) {
+            const int axis = longest_axis(spread);
+            const float middle = 0.5f * (component(normals.lo, axis) + component(normals.hi, axis));
+            const auto is_left = [&](uint32_t i) { return component(normals_[i], axis) < middle; };
+            return static_cast<uint32_t>(std::stable_partition(begin, end, is_left) - begin);
+        }
+        const int axis = longest_axis(places.size());
+        const auto is_before = [&](uint32_t a, uint32_t b) {
+            const float at_a = component(balls_[a].centre, axis), at_b = component(balls_[b].centre, axis);
+            return at_a != at_b ? at_a < at_b : a < b;
+        };
+        std::nth_element(begin, begin + count / 2, end, is_before);
+        return count / 2;
+    }
+
+    std::span<const Ball> balls_;
+    std::span<const Vec3> normals_;
+    std::vector<uint32_t> order_;
+    std::vector<Cluster> clusters_;
+};
 
 } // namespace
 
@@ -67,12 +101,12 @@ Ball ball_round(const Ball& a, const Ball& b) {
     return {a.centre + ((radius - a.radius) / distance) * way, radius};
 }
 
-ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls) {
+ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls, std::span<const Vec3> normals) {
     ClusterTree tree;
-    std::vector<uint32_t> order(faces.size());
-    for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    if (!order.empty()) halve(tree, balls, order, 0, static_cast<uint32_t>(order.size()));
-    for (const uint32_t i : order) tree.faces.push_back(faces[i]);
+    ClusterMaker maker(balls, normals);
+    if (!faces.empty()) maker.make(0, static_cast<uint32_t>(faces.size()));
+    for (const uint32_t i : maker.order()) tree.faces.push_back(faces[i]);
+    tree.clusters = maker.take();
     return tree;
 }
 

@@ -15,9 +15,9 @@
 
 namespace pertev {
 
-/// `irradiance`: of each of the tree's patches. Corners are one where they are as far apart as 2^-16 of the scene's
-/// `size` (metres) and their patches' normals by 30 degrees, at most about so.
-std::vector<PatchLight> light_corners(const SceneView& scene, const PatchTree& tree, std::span<const Rgb> irradiance,
-                                      float size);
+/// `irradiance`: of each of the tree's patches. Corners are one where they lie at one place and their patches' normals
+/// are 30 degrees apart at most, about (radiosity/corner_table.h); whatever the scene's size, in n log n of its
+/// patches.
+std::vector<PatchLight> light_corners(const SceneView& scene, const PatchTree& tree, std::span<const Rgb> irradiance);
 
 } // namespace pertev

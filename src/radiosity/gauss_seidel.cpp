@@ -7,19 +7,22 @@ namespace pertev {
 namespace {
 
 double sum_of(Rgb c) { return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b); }
-constexpr uint64_t kMostSweeps = 10000; // of reflectances near 1
+constexpr std::size_t kPatchesAtOnce = 1024; // between two looks at whether to go on
 
 } // namespace
 
 SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double tolerance, const KeepSolving& keep_going) {
     const std::size_t count = system.patches.size();
     SolvedSystem solved;
-    solved.irradiance.assign(count, {});
+    solved.irradiance = system.direct;
+    solved.left = 1;
+    bool goes_on = true;
     std::vector<Rgb> radiosity(count);
     for (std::size_t i = 0; i < count; ++i) radiosity[i] = system.patches[i].exitance;
     do {
         double changed = 0, all = 0;
         for (std::size_t i = 0; i < count; ++i) {
+            if (i % kPatchesAtOnce == kPatchesAtOnce - 1 && keep_going && !keep_going(solved.left)) return solved;
             const SystemPatch& patch = system.patches[i];
             double r = 0, g = 0, b = 0;
             for (const FormFactor& from : system.row(i)) {
@@ -40,8 +43,9 @@ SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double toleran
         }
         ++solved.steps;
         solved.left = all > 0 ? changed / all : 0;
-        if (keep_going && !keep_going(solved.left)) break;
-    } while (solved.left > tolerance && solved.steps < kMostSweeps);
+        goes_on = !keep_going || keep_going(solved.left);
+    } while (goes_on && solved.left > tolerance && solved.steps < kMostSweeps);
+    solved.reached_limit = goes_on && solved.left > tolerance;
     return solved;
 }
 

@@ -12,8 +12,11 @@ namespace {
 
 using PlacedCorners = HemicubeScene::PlacedCorners;
 
+constexpr uint64_t kWorkOfTriangle = 8, kWorkOfLook = 1u << 17; // at whether to go on
+
 std::vector<PlacedCorners> all_triangles(const SceneView& scene) {
     std::vector<PlacedCorners> all;
+    all.reserve(scene.triangle_count);
     for (uint32_t instance = 0; instance < scene.instance_count; ++instance) {
         const InstanceView& placed = scene.instances[instance];
         if (placed.is_hidden != 0) continue;
@@ -27,6 +30,11 @@ std::vector<PlacedCorners> all_triangles(const SceneView& scene) {
     }
     return all;
 }
+
+struct SeenAt {
+    uint32_t instance, primitive;
+    float u, v;
+};
 
 class HemicubeRows final : public RowMaker {
 public:
@@ -42,6 +50,7 @@ public:
         const Frame frame = make_frame(normal_of(view, patch, triangle));
         const SampleKey key = {number, 0, seed_};
         for (uint32_t face = 0; face < HemicubePixels::kFaces; ++face) {
+            if (scene_.is_over()) return;
             add_face(hemicube_.pixels.face(frame, face), patch, triangle.position, frame.normal, key, row);
         }
         if (rays_.count > 0) add_light_rays(scene_, patch, key, rays_, row);
@@ -54,12 +63,20 @@ private:
         const SceneView& view = scene_.scene.view();
         depths_.assign(std::size_t(face.width) * face.height, 1e300);
         seen_.resize(depths_.size());
+        uint64_t work = 0; // pixels, about
         for (const PlacedCorners& placed : hemicube_.triangles) {
+            if (work > kWorkOfLook) {
+                if (scene_.is_over()) return;
+                work = 0;
+            }
+            work += kWorkOfTriangle;
             if (placed.instance == patch.instance && placed.primitive == patch.primitive) continue;
             const Vec3 corners[] = {placed.at[0] - middle, placed.at[1] - middle, placed.at[2] - middle};
             if (!(max(dot(corners[0], normal), max(dot(corners[1], normal), dot(corners[2], normal))) > 0)) continue;
             HemicubeTriangle seen;
-            if (see_triangle(face, corners, seen)) draw(face, placed, seen, key);
+            if (!see_triangle(face, corners, seen)) continue;
+            draw(face, placed, seen, key);
+            work += uint64_t(seen.x1 - seen.x0) * (seen.y1 - seen.y0);
         }
         for (std::size_t pixel = 0; pixel < depths_.size(); ++pixel) {
             if (!(depths_[pixel] < 1e300)) continue;
@@ -98,11 +115,6 @@ private:
         }
     }
 
-    struct SeenAt {
-        uint32_t instance, primitive;
-        float u, v;
-    };
-
     RowScene scene_;
     uint32_t seed_;
     const HemicubeScene& hemicube_;
@@ -112,6 +124,10 @@ private:
 };
 
 } // namespace
+
+std::size_t most_hemicube_bytes(uint32_t resolution) {
+    return std::size_t(resolution) * resolution * (sizeof(double) + sizeof(SeenAt));
+}
 
 HemicubeScene::HemicubeScene(const SceneView& scene, uint32_t resolution)
     : triangles(all_triangles(scene)), pixels(resolution) {}

@@ -9,12 +9,12 @@
 // Arvo, Greenberg 1994 (radiosity/cluster_tree.h). Light by way of no surface, of lamps too, is found by shadow rays.
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "radiosity/patches.h"
 #include "radiosity/radiosity_settings.h"
 #include "radiosity/solved_scene.h"
+#include "radiosity/work_watch.h"
 
 namespace pertev {
 
@@ -22,18 +22,16 @@ struct HierarchicalSolution {
     PatchTree tree;              // as it was divided
     std::vector<Rgb> irradiance; // [patches] W/m2
     uint64_t links = 0, passes = 0;
-    double left = 0;       // share of the light that the last pass changed
-    std::size_t bytes = 0; // of links and of what stands for patches and clusters
-    bool was_interrupted = false;
+    double left = 0;            // share of the light that the last pass changed
+    std::size_t bytes = 0;      // of links and of what stands for patches and clusters
+    bool reached_limit = false; // ended by the most passes there are
 };
 
-/// Told the pass and the share of it that is done; false ends the solution where it is.
-using LinkProgress = std::function<bool(uint32_t pass, double share)>;
-
 /// `coarse`: whole triangles. They are divided until no edge is longer than `patch_size` (metres), but where the oracle
-/// asks for it alone. Throws Error(OverLimit) where there are more than kMostLinks links.
+/// asks for it alone. Once `watch` is over the solution ends where it is. Throws Error(OverLimit) where there are more
+/// than kMostLinks links.
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                          const RadiositySettings& settings, const LinkProgress& progress = {});
+                                          const RadiositySettings& settings, WorkWatch& watch);
 
 /// What it holds at most, were all patches as small as they may become.
 std::size_t most_hierarchical_bytes(uint64_t patches);

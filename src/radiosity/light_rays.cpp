@@ -46,6 +46,7 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
     bool met[kRaysAtOnce];
     const float each = 1.0f / static_cast<float>(rays.count);
     for (uint32_t first = 0; first < rays.count; first += kRaysAtOnce) {
+        if (scene.is_over()) return;
         uint32_t count = 0;
         for (uint32_t k = first; k < min(rays.count, first + kRaysAtOnce); ++k) {
             const SampleKey of_ray = {key.pixel, k, key.seed};

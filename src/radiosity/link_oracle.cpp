@@ -28,8 +28,10 @@ bool is_before(const LinkedPatch& patch, const LinkedPatch& other) {
     return false;
 }
 
-float most_form_factor(const LinkedPatch& receiver, const Ball& source, float area) {
-    const float nearest = length(source.centre - receiver.ball.centre) - receiver.ball.radius; // to its middle
+bool balls_meet(const Ball& a, const Ball& b) { return !(length(a.centre - b.centre) > a.radius + b.radius); }
+
+float most_form_factor(const Ball& receiver, const Ball& source, float area) {
+    const float nearest = length(source.centre - receiver.centre) - receiver.radius; // to its middle
     if (!(nearest > source.radius)) return 1;
     const float of_ball = square(source.radius / nearest); // of a ball that is faced
     const float gap = nearest - source.radius;

@@ -21,7 +21,10 @@ LinkedPatch linked_patch(const SceneView& scene, const Patch& patch);
 bool is_before(const LinkedPatch& patch, const Ball& ball);
 bool is_before(const LinkedPatch& patch, const LinkedPatch& other);
 
-/// The form factor from any place on `receiver` to a source of this ball and area is at most so much.
-float most_form_factor(const LinkedPatch& receiver, const Ball& source, float area);
+/// Whether they overlap: then there is no direction from one to the other.
+bool balls_meet(const Ball& a, const Ball& b);
+
+/// The form factor from any place in `receiver` to a source of this ball and area is at most so much.
+float most_form_factor(const Ball& receiver, const Ball& source, float area);
 
 } // namespace pertev

@@ -36,7 +36,7 @@ std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSo
             b[pivot + 1 + below] -= factor * b[pivot];
         });
         const double left = static_cast<double>(3 - k) / 3 - static_cast<double>(pivot) / static_cast<double>(3 * n);
-        if (pivot % 64 == 0 && keep_going && !keep_going(left)) return {};
+        if (keep_going && !keep_going(left)) return {};
     }
     for (std::size_t i = n; i-- > 0;) {
         for (std::size_t column = i + 1; column < n; ++column) b[i] -= matrix[i * n + column] * b[column];

@@ -50,10 +50,16 @@ void set_surface(const SceneView& scene, Patch& patch) {
     patch.exitance = exitance;
 }
 
+struct DividedScene {
+    const SceneView& scene;
+    WorkWatch* watch; // null: nobody looks
+};
+
 /// Divides `patch` `levels` times. Returns its code; kNoPatch where there is nothing on it to solve for.
-PatchCode divide(const SceneView& scene, PatchTree& tree, Patch patch, uint32_t levels) {
+PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint32_t levels) {
     if (levels == 0) {
-        set_surface(scene, patch);
+        if (divided.watch != nullptr && divided.watch->is_over()) throw Error(ErrorCode::Interrupted, "interrupted");
+        set_surface(divided.scene, patch);
         tree.patches.push_back(patch);
         return kIsPatch | static_cast<uint32_t>(tree.patches.size() - 1);
     }
@@ -63,7 +69,7 @@ PatchCode divide(const SceneView& scene, PatchTree& tree, Patch patch, uint32_t 
         Patch child = patch;
         child.corners = patch.corners.child(k);
         child.area = 0.25f * patch.area;
-        const PatchCode code = divide(scene, tree, child, levels - 1);
+        const PatchCode code = divide(divided, tree, child, levels - 1);
         tree.quads[quad].child[k] = code;
     }
     return quad;
@@ -138,13 +144,19 @@ uint64_t count_patches(const SceneView& scene, float patch_size) {
     return count;
 }
 
-PatchTree make_patches(const SceneView& scene, float patch_size) {
+void check_patch_count(uint64_t patches, float patch_size) {
+    if (patches <= kMostPatches) return;
+    throw Error(ErrorCode::OverLimit, fmt::format("--patch-size {}: divides this scene into {} patches; at most {}",
+                                                  patch_size, patches, kMostPatches));
+}
+
+PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch) {
     const uint64_t most = count_patches(scene, patch_size);
-    if (most > kMostPatches) {
-        throw Error(ErrorCode::OverLimit, fmt::format("--patch-size {}: divides this scene into {} patches; at most {}",
-                                                      patch_size, most, kMostPatches));
-    }
+    check_patch_count(most, patch_size);
+    if (watch != nullptr) watch->begin("patches", most);
     PatchTree tree;
+    tree.patches.reserve(most);
+    tree.quads.reserve(most / 3);
     tree.roots.assign(2 * scene.triangle_count, kNoPatch);
     bool any_reflects = false;
     for_each_triangle(scene, [&](uint32_t instance, uint32_t primitive, const PlacedTriangle& triangle) {
@@ -155,7 +167,8 @@ PatchTree make_patches(const SceneView& scene, float patch_size) {
             patch.face = face_of(scene, instance, primitive, side);
             patch.area = area_of(triangle);
             const std::size_t first = tree.patches.size(), first_quad = tree.quads.size();
-            tree.roots[patch.face] = divide(scene, tree, patch, levels_of(triangle, patch_size));
+            tree.roots[patch.face] = divide({scene, watch}, tree, patch, levels_of(triangle, patch_size));
+            if (watch != nullptr) watch->done(uint64_t(1) << (2 * levels_of(triangle, patch_size)));
             bool counts = false;
             for (std::size_t i = first; i < tree.patches.size(); ++i) {
                 const bool reflects = !is_black(tree.patches[i].reflectance);

@@ -12,6 +12,7 @@
 
 #include "math/rgb.h"
 #include "radiosity/patch_tree.h"
+#include "radiosity/work_watch.h"
 #include "render/scene_view.h"
 #include "render/surface.h"
 
@@ -52,8 +53,12 @@ inline uint32_t face_of(const SceneView& scene, uint32_t instance, uint32_t prim
 /// Patches at most that make_patches makes: both sides of each triangle, whatever they are made of.
 uint64_t count_patches(const SceneView& scene, float patch_size);
 
+/// Throws Error(OverLimit) for more than kMostPatches.
+void check_patch_count(uint64_t patches, float patch_size);
+
 /// `scene` lies in the host's memory and numbers its triangles. Throws Error(OverLimit) where there are more than
 /// kMostPatches; Error(BadInput) where none of them reflects: there is nothing to solve.
-PatchTree make_patches(const SceneView& scene, float patch_size);
+/// Error(Interrupted) where `watch` is over.
+PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch = nullptr);
 
 } // namespace pertev

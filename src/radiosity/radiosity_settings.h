@@ -45,7 +45,7 @@ inline constexpr uint32_t kMostPatches = 1u << 25;
 inline constexpr uint32_t kMostSubdivisions = 8;
 inline constexpr uint32_t kLeastPatchRays = 16, kMostPatchRays = 1u << 20;
 inline constexpr uint32_t kLeastHemicube = 8, kMostHemicube = 2048;
-inline constexpr uint64_t kMostLinks = uint64_t(1) << 27; // RadiositySolver::Hierarchical: 1.5 GiB
+inline constexpr uint64_t kMostLinks = uint64_t(1) << 26; // RadiositySolver::Hierarchical: 1 GiB
 inline constexpr uint32_t kMostMatrixPatches = 6000;      // RadiositySolver::Matrix: 275 MiB, a minute
 
 } // namespace pertev

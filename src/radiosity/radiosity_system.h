@@ -51,9 +51,21 @@ struct SolvedSystem {
     Rgb ambient;
     uint64_t steps = 0; // sweeps over all patches, or patches that have sent
     double left = 0;    // share of the light that is unsent, or that the last sweep changed
+    /// Of Southwell: [patches] of each patch's radiosity, W/m2, what no patch has received yet: the ambient light
+    /// stands for it, and for what becomes of it. Empty where all has been sent.
+    std::vector<Rgb> unsent;
+    bool reached_limit = false; // ended by kMostSweeps, with more left than the tolerance
 };
 
-/// Called now and then with the share of the light that is left; false ends the solution where it is.
+/// Sweeps over all patches at most; of Southwell, which sends from one at a time, so many for each patch. Only where
+/// next to nothing absorbs is it not enough.
+inline constexpr uint64_t kMostSweeps = 10000;
+
+/// Throws Error(BadInput) where light has no end: where it reaches patches that reflect all of it, to each other alone.
+/// There the system has no solution.
+void check_light_ends(const RadiositySystem& system);
+
+/// Called often, with the share of the light that is left; false ends the solution where it is.
 using KeepSolving = std::function<bool(double left)>;
 
 /// `tolerance`: ends where no more than this share is left. `steps`: at most so many patches send; 0: any number.

@@ -32,6 +32,7 @@ public:
         const float each = 1.0f / static_cast<float>(rays_.hemisphere);
         double lamps = 0, others = 0; // others: patches without light of their own, the sky, and where light ends
         for (uint32_t first = 0; first < rays_.hemisphere; first += kRaysAtOnce) {
+            if (scene_.is_over()) return;
             const uint32_t count = min(rays_.hemisphere - first, kRaysAtOnce);
             send(patch, key, first, count);
             for (uint32_t i = 0; i < count; ++i) others += add(i, each, row);

@@ -2,8 +2,9 @@
 
 namespace pertev {
 
-RowMakers::RowMakers(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings)
-    : scene_{scene, sources}, settings_(settings) {
+RowMakers::RowMakers(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings,
+                     WorkWatch* watch)
+    : scene_{scene, sources, watch}, settings_(settings) {
     if (settings.form_factors == FormFactors::Hemicube) hemicube_.emplace(scene.view(), settings.hemicube);
 }
 

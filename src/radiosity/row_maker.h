@@ -12,13 +12,17 @@
 #include "radiosity/patches.h"
 #include "radiosity/radiosity_settings.h"
 #include "radiosity/solved_scene.h"
+#include "radiosity/work_watch.h"
 
 namespace pertev {
 
-/// What a row is made of: `sources` are the patches that it names.
+/// What a row is made of: `sources` are the patches that it names. Once `watch` is over, rows are cut short.
 struct RowScene {
     const SolvedScene& scene;
     const PatchTree& sources;
+    WorkWatch* watch = nullptr;
+
+    bool is_over() const { return watch != nullptr && watch->is_over(); }
 };
 
 /// For one thread: it keeps its memory from row to row.
@@ -47,11 +51,15 @@ std::unique_ptr<RowMaker> make_ray_rows(const RowScene& scene, const RadiositySe
 std::unique_ptr<RowMaker> make_hemicube_rows(const RowScene& scene, const RadiositySettings& settings,
                                              const HemicubeScene& hemicube);
 
+/// Of a thread's hemicube, beside the row.
+std::size_t most_hemicube_bytes(uint32_t resolution);
+
 /// Makes them by what the settings say.
 class RowMakers {
 public:
-    /// Both outlive it.
-    RowMakers(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings);
+    /// All outlive it.
+    RowMakers(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings,
+              WorkWatch* watch = nullptr);
     std::unique_ptr<RowMaker> for_thread() const;
 
 private:

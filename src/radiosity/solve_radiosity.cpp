@@ -1,6 +1,7 @@
 #include "radiosity/solve_radiosity.h"
 
-#include <atomic>
+#include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -15,23 +16,26 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kRowsAtOnce = 4096; // between two looks at whether to go on
-constexpr uint64_t kRowsOfThread = 8;  // at least, one after the other
+constexpr uint64_t kRowsOfThread = 4; // at least, one after the other
 
 [[noreturn]] void interrupt() { throw Error(ErrorCode::Interrupted, "interrupted"); }
 
-/// Makes rows [first, first + count), each given to take(k, row), from any thread.
+/// Makes `count` rows, each given to take(k, row), from any thread. False where the watch was over before all were
+/// made.
 template <class PatchOf, class Take>
-void make_rows(const RowMakers& makers, uint64_t count, const PatchOf& patch_of, const Take& take) {
+bool make_rows(const RowMakers& makers, WorkWatch& watch, uint64_t count, const PatchOf& patch_of, const Take& take) {
     parallel_for_ranges(count, kRowsOfThread, [&](uint64_t begin, uint64_t end) {
         const std::unique_ptr<RowMaker> maker = makers.for_thread();
         FormFactorRow row;
         for (uint64_t k = begin; k < end; ++k) {
             const auto [patch, number] = patch_of(k);
             maker->make(*patch, number, row);
+            if (watch.is_over()) return; // it may have been cut short
             take(k, row);
+            watch.done();
         }
     });
+    return !watch.is_over();
 }
 
 struct NumberedPatch {
@@ -40,29 +44,27 @@ struct NumberedPatch {
 };
 
 RadiositySystem make_system(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings,
-                            const SolveProgress& progress) {
+                            WorkWatch& watch) {
     RadiositySystem system;
+    const uint64_t all = sources.patches.size();
+    system.patches.reserve(all);
     for (const Patch& patch : sources.patches) {
         system.patches.push_back({patch.area, patch.reflectance, patch.exitance});
     }
-    const RowMakers makers(scene, sources, settings);
-    const uint64_t all = sources.patches.size();
+    const RowMakers makers(scene, sources, settings, &watch);
     system.rows.resize(all);
     system.direct.resize(all);
-    for (uint64_t first = 0; first < all; first += kRowsAtOnce) {
-        const uint64_t count = std::min(kRowsAtOnce, all - first);
-        make_rows(
-            makers, count,
-            [&](uint64_t k) {
-                return NumberedPatch{&sources.patches[first + k], static_cast<uint32_t>(first + k)};
-            },
-            [&](uint64_t k, const FormFactorRow& row) {
-                system.rows[first + k] = row.factors;
-                system.direct[first + k] = row.direct;
-            });
-        const double share = static_cast<double>(first + count) / static_cast<double>(all);
-        if (progress && !progress("form factors", share)) interrupt();
-    }
+    watch.begin("form factors", all);
+    const bool is_whole = make_rows(
+        makers, watch, all,
+        [&](uint64_t k) {
+            return NumberedPatch{&sources.patches[k], static_cast<uint32_t>(k)};
+        },
+        [&](uint64_t k, const FormFactorRow& row) {
+            system.rows[k] = row.factors;
+            system.direct[k] = row.direct;
+        });
+    if (!is_whole) interrupt();
     return system;
 }
 
@@ -92,65 +94,73 @@ Rgb gathered(const FormFactorRow& row, const std::vector<Rgb>& radiosity) {
     return row.direct + Rgb{static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
 }
 
-/// Whether light changes over a patch by more than the share `contrast`.
-bool changes(const PatchLight& light, float contrast) {
+/// Whether light changes over a patch by more than the share `contrast` of all that it shows.
+bool changes(const PatchLight& light, Rgb ambient, float contrast) {
     float least = kInfinity, most = 0;
     for (const Rgb& corner : light.corner) {
         const float value = luminance(corner);
         least = min(least, value), most = max(most, value);
     }
-    return most - least > contrast * luminance(light.mean) && most > least;
+    return most - least > contrast * luminance(light.mean + ambient) && most > least;
 }
 
 /// Divides patches where light changes over them, and has the parts gather from `sources`.
 class Divider {
 public:
+    /// `sent`: by the sources so far, W/m2.
     Divider(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings,
-            const std::vector<Rgb>& radiosity, float size)
-        : scene_(scene), makers_(scene, sources, settings), settings_(settings), radiosity_(radiosity), size_(size) {}
-
-    bool was_interrupted() const { return was_interrupted_; }
+            const std::vector<Rgb>& sent, Rgb ambient, WorkWatch& watch)
+        : scene_(scene), makers_(scene, sources, settings, &watch), settings_(settings), sent_(sent), ambient_(ambient),
+          watch_(watch) {}
 
     /// True while there may be more to divide.
-    bool divide(PatchTree& tree, std::vector<Rgb>& irradiance, uint32_t level, const SolveProgress& progress) {
-        const std::vector<PatchLight> lights = light_corners(scene_.view(), tree, irradiance, size_);
-        std::vector<uint32_t> parts; // whose light is to be found
-        const auto before = static_cast<uint32_t>(tree.patches.size());
-        for (uint32_t i = 0; i < before; ++i) {
-            if (is_black(tree.patches[i].reflectance) || !changes(lights[i], settings_.contrast)) continue;
-            if (tree.patches.size() + 3 > kMostPatches) break;
-            parts.push_back(i);
-            for (uint32_t k = 0; k < 3; ++k) parts.push_back(static_cast<uint32_t>(tree.patches.size()) + k);
-            tree.split(scene_.view(), i);
-            irradiance.insert(irradiance.end(), 3, irradiance[i]); // until they have gathered
-        }
-        for (std::size_t first = 0; first < parts.size(); first += kRowsAtOnce) {
-            const std::size_t count = std::min<std::size_t>(kRowsAtOnce, parts.size() - first);
-            make_rows(
-                makers_, count,
-                [&](uint64_t k) {
-                    const uint32_t part = parts[first + k];
-                    return NumberedPatch{&tree.patches[part], hash_words(part, level, 0x70617274u).x};
-                },
-                [&](uint64_t k, const FormFactorRow& row) {
-                    irradiance[parts[first + k]] = gathered(row, radiosity_);
-                });
-            const double share = static_cast<double>(first + count) / static_cast<double>(parts.size());
-            if (progress && !progress("dividing patches", (level - 1 + share) / settings_.subdivisions)) {
-                was_interrupted_ = true;
-                return false;
-            }
-        }
-        return !parts.empty();
+    bool divide(PatchTree& tree, std::vector<Rgb>& irradiance, uint32_t level) {
+        const auto share = [&](uint32_t levels) { return static_cast<double>(levels) / settings_.subdivisions; };
+        watch_.begin("dividing patches", 0, share(level - 1), share(level - 1));
+        const std::vector<uint32_t> parts = split(tree, irradiance);
+        watch_.begin("dividing patches", parts.size(), share(level - 1), share(level));
+        make_rows(
+            makers_, watch_, parts.size(),
+            [&](uint64_t k) {
+                return NumberedPatch{&tree.patches[parts[k]], hash_words(parts[k], level, 0x70617274u).x};
+            },
+            [&](uint64_t k, const FormFactorRow& row) { irradiance[parts[k]] = gathered(row, sent_); });
+        return !parts.empty() && !watch_.is_over();
     }
 
 private:
+    /// Returns the parts, whose light is to be found; until then they have that of the whole.
+    std::vector<uint32_t> split(PatchTree& tree, std::vector<Rgb>& irradiance) {
+        std::vector<uint32_t> wholes;
+        {
+            const std::vector<PatchLight> lights = light_corners(scene_.view(), tree, irradiance);
+            const std::size_t most = (kMostPatches - tree.patches.size()) / 3;
+            for (uint32_t i = 0; i < lights.size() && wholes.size() < most; ++i) {
+                if (is_black(tree.patches[i].reflectance)) continue;
+                if (changes(lights[i], ambient_, settings_.contrast)) wholes.push_back(i);
+            }
+        }
+        tree.patches.reserve(tree.patches.size() + 3 * wholes.size());
+        tree.quads.reserve(tree.quads.size() + wholes.size());
+        irradiance.reserve(irradiance.size() + 3 * wholes.size());
+        std::vector<uint32_t> parts;
+        parts.reserve(4 * wholes.size());
+        for (const uint32_t whole : wholes) {
+            if (watch_.is_over()) break;
+            parts.push_back(whole);
+            for (uint32_t k = 0; k < 3; ++k) parts.push_back(static_cast<uint32_t>(tree.patches.size()) + k);
+            tree.split(scene_.view(), whole);
+            irradiance.insert(irradiance.end(), 3, irradiance[whole]);
+        }
+        return parts;
+    }
+
     const SolvedScene& scene_;
     RowMakers makers_;
     const RadiositySettings& settings_;
-    const std::vector<Rgb>& radiosity_;
-    float size_;
-    bool was_interrupted_ = false;
+    const std::vector<Rgb>& sent_;
+    Rgb ambient_;
+    WorkWatch& watch_;
 };
 
 float longest_side(const Bounds3& bounds) { return bounds.is_empty() ? 0.0f : max_component(bounds.size()); }
@@ -162,111 +172,108 @@ float patch_size_of(const PreparedScene& prepared, const RadiositySettings& sett
     return kPatchOfScene * longest_side(prepared.structures->bounds());
 }
 
-std::size_t predicted_bytes(uint64_t patches, const RadiositySettings& settings) {
-    if (settings.solver == RadiositySolver::Hierarchical) return most_hierarchical_bytes(patches);
-    const uint64_t all_rays = settings.form_factors == FormFactors::Rays
-                                  ? settings.rays + settings.rays / 4
-                                  : 3 * uint64_t(settings.hemicube) * settings.hemicube;
-    const uint64_t entries = patches * std::min(all_rays, patches);
-    std::size_t bytes = entries * sizeof(FormFactor) + patches * (2 * sizeof(Patch) + sizeof(SystemPatch) + 64);
-    if (settings.solver == RadiositySolver::Southwell) bytes += entries * sizeof(FormFactor);
-    if (settings.solver == RadiositySolver::Matrix) bytes += patches * patches * sizeof(double);
-    return bytes;
-}
-
-uint64_t predicted_patches(const PreparedScene& prepared, const RadiositySettings& settings) {
-    const SolvedScene scene(prepared);
-    return count_patches(scene.view(), patch_size_of(prepared, settings));
-}
-
 namespace {
 
 /// Patches with their light, before they are divided where it changes.
 struct SolvedPatches {
     PatchTree tree;
     std::vector<Rgb> irradiance;
+    std::vector<Rgb> unsent; // SolvedSystem's
     Rgb ambient;
+
+    /// What each has sent so far, W/m2.
+    std::vector<Rgb> sent() const {
+        std::vector<Rgb> all;
+        all.reserve(irradiance.size());
+        for (std::size_t i = 0; i < irradiance.size(); ++i) {
+            const Patch& patch = tree.patches[i];
+            all.push_back(patch.exitance + patch.reflectance * irradiance[i]);
+            if (!unsent.empty()) all[i] = all[i] - unsent[i];
+        }
+        return all;
+    }
 };
 
+/// How near to its end a solution is whose light that is left falls from 1 to `tolerance` by the same share each step.
+double share_done(double left, double tolerance) {
+    return left > 0 && tolerance > 0 && tolerance < 1 ? std::log(std::min(left, 1.0)) / std::log(tolerance) : 1;
+}
+
 SolvedPatches solve_rows(const SolvedScene& scene, float patch_size, const RadiositySettings& settings,
-                         const SolveProgress& progress, SolveStats& stats) {
+                         WorkWatch& watch, SolveStats& stats) {
     SolvedPatches solved;
-    solved.tree = make_patches(scene.view(), patch_size);
+    solved.tree = make_patches(scene.view(), patch_size, &watch);
     if (settings.solver == RadiositySolver::Matrix)
         check_matrix_size(solved.tree.patches.size()); // before hours of rows
-    const Stopwatch watch;
-    const RadiositySystem system = make_system(scene, solved.tree, settings, progress);
+    const Stopwatch row_time;
+    const RadiositySystem system = make_system(scene, solved.tree, settings, watch);
     stats.factors = system.factor_count();
     stats.bytes = system.bytes();
-    stats.factor_seconds = watch.seconds();
+    stats.factor_seconds = row_time.seconds();
+    const Stopwatch solve_time;
+    check_light_ends(system);
+    watch.begin("solving", 0);
     SolvedSystem solution = solve(system, settings, [&](double left) {
-        stats.was_interrupted = progress && !progress("solving", std::min(1.0, 1 - left));
-        return !stats.was_interrupted;
+        const bool is_matrix = settings.solver == RadiositySolver::Matrix;
+        watch.set_share(is_matrix ? 1 - left : share_done(left, static_cast<double>(settings.tolerance)));
+        return !watch.is_over();
     });
     stats.steps = solution.steps;
     stats.left = solution.left;
-    stats.solve_seconds = watch.seconds() - stats.factor_seconds;
+    stats.reached_limit = solution.reached_limit;
+    stats.solve_seconds = solve_time.seconds();
     solved.irradiance = std::move(solution.irradiance);
+    solved.unsent = std::move(solution.unsent);
     solved.ambient = solution.ambient;
     return solved;
 }
 
 SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const RadiositySettings& settings,
-                          const SolveProgress& progress, SolveStats& stats) {
-    const Stopwatch watch;
-    HierarchicalSolution solution = solve_hierarchically(
-        scene, make_patches(scene.view(), kInfinity), patch_size, settings, [&](uint32_t pass, double share) {
-            const std::string what = fmt::format("links, pass {}", pass + 1);
-            return !progress || progress(what.c_str(), share);
-        });
-    stats.was_interrupted = solution.was_interrupted;
+                          WorkWatch& watch, SolveStats& stats) {
+    const Stopwatch time;
+    HierarchicalSolution solution =
+        solve_hierarchically(scene, make_patches(scene.view(), kInfinity, &watch), patch_size, settings, watch);
     stats.factors = solution.links;
     stats.steps = solution.passes;
     stats.left = solution.left;
+    stats.reached_limit = solution.reached_limit;
     stats.bytes = solution.bytes;
-    stats.solve_seconds = watch.seconds();
-    return {std::move(solution.tree), std::move(solution.irradiance), {}};
-}
-
-std::vector<Rgb> radiosities(const SolvedPatches& solved) {
-    std::vector<Rgb> radiosity;
-    for (std::size_t i = 0; i < solved.irradiance.size(); ++i) {
-        const Patch& patch = solved.tree.patches[i];
-        radiosity.push_back(patch.exitance + patch.reflectance * solved.irradiance[i]);
-    }
-    return radiosity;
+    stats.solve_seconds = time.seconds();
+    return {std::move(solution.tree), std::move(solution.irradiance), {}, {}};
 }
 
 } // namespace
 
 SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
                                 const SolveProgress& progress) {
+    WorkWatch watch(progress);
     const SolvedScene scene(prepared);
     const float patch_size = patch_size_of(prepared, settings);
     SolvedRadiosity solved;
     SolveStats& stats = solved.stats;
     SolvedPatches shown = settings.solver == RadiositySolver::Hierarchical
-                              ? solve_links(scene, patch_size, settings, progress, stats)
-                              : solve_rows(scene, patch_size, settings, progress, stats);
+                              ? solve_links(scene, patch_size, settings, watch, stats)
+                              : solve_rows(scene, patch_size, settings, watch, stats);
     stats.patches = shown.tree.patches.size();
-    const Stopwatch watch;
-    const PatchTree sources = shown.tree;
-    const std::vector<Rgb> radiosity = radiosities(shown);
-    const float size = longest_side(scene.bounds());
-    Divider divider(scene, sources, settings, radiosity, size);
-    for (uint32_t level = 1; level <= settings.subdivisions && !stats.was_interrupted; ++level) {
-        if (!divider.divide(shown.tree, shown.irradiance, level, progress)) break;
+    const Stopwatch divide_time;
+    if (settings.subdivisions > 0 && !watch.is_over()) {
+        const PatchTree sources = shown.tree;
+        const std::vector<Rgb> sent = shown.sent();
+        Divider divider(scene, sources, settings, sent, shown.ambient, watch);
+        for (uint32_t level = 1; level <= settings.subdivisions; ++level) {
+            if (!divider.divide(shown.tree, shown.irradiance, level)) break;
+        }
     }
-    stats.was_interrupted = stats.was_interrupted || divider.was_interrupted();
+    stats.was_interrupted = watch.is_over();
     RadiositySolution& solution = solved.solution;
     solution.geometry = geometry_hash(*prepared.scene);
     solution.made = json_of(settings);
-    solution.patches = light_corners(scene.view(), shown.tree, shown.irradiance, size);
+    solution.patches = light_corners(scene.view(), shown.tree, shown.irradiance);
     solution.roots = std::move(shown.tree.roots);
     solution.quads = std::move(shown.tree.quads);
     solution.ambient = shown.ambient;
     stats.shown = solution.patches.size();
-    stats.divide_seconds = watch.seconds();
+    stats.divide_seconds = divide_time.seconds();
     return solved;
 }
 

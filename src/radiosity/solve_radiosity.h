@@ -12,12 +12,10 @@
 
 #include "radiosity/radiosity_settings.h"
 #include "radiosity/radiosity_solution.h"
+#include "radiosity/work_watch.h"
 #include "render/prepare_scene.h"
 
 namespace pertev {
-
-/// What is being done, and the share of it that is done, [0, 1]. False ends it: see solve_radiosity.
-using SolveProgress = std::function<bool(const char* what, double share)>;
 
 struct SolveStats {
     uint64_t patches = 0, shown = 0; // that send; that are shown
@@ -27,6 +25,7 @@ struct SolveStats {
     double factor_seconds = 0, solve_seconds = 0, divide_seconds = 0;
     std::size_t bytes = 0; // that the system took, of the host's memory
     bool was_interrupted = false;
+    bool reached_limit = false; // ended by the most steps that a solver takes, with more left than the tolerance
 };
 
 struct SolvedRadiosity {
@@ -37,13 +36,9 @@ struct SolvedRadiosity {
 /// Metres: what is asked for, or kPatchOfScene of the scene's longest side.
 float patch_size_of(const PreparedScene& prepared, const RadiositySettings& settings);
 
-/// Of the host's memory that solve_radiosity takes for so many patches, at most.
-std::size_t predicted_bytes(uint64_t patches, const RadiositySettings& settings);
-/// Patches at most that the scene will be divided into, before they are subdivided.
-uint64_t predicted_patches(const PreparedScene& prepared, const RadiositySettings& settings);
-
-/// The same bytes for any number of threads. Where `progress` returns false during form factors Error(Interrupted) is
-/// thrown; later the solution has what has been solved by then. Throws as SolvedScene and make_patches.
+/// The same bytes for any number of threads. Where `progress` returns false before there are form factors
+/// Error(Interrupted) is thrown; later the solution has what has been solved by then. Throws as SolvedScene,
+/// make_patches and check_light_ends.
 SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
                                 const SolveProgress& progress = {});
 

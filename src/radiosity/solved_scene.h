@@ -21,6 +21,8 @@ public:
 
     const SceneView& view() const { return scene_->view(); }
     const HostTrees& trees() const { return *tracer_->host_trees(); }
+    /// Of the host's memory, for what rays need to know of the scene.
+    std::size_t bytes() const { return queue_.allocated_bytes(); }
     const Bounds3& bounds() const { return tracer_->bounds(); } // of all that rays can meet, metres
 
 private:

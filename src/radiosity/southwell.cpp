@@ -1,6 +1,7 @@
 // Southwell's relaxation: the patch with the most unsent light sends it, to all that receive of it, and so on. Where
 // this ends early most of the light is there, and what is not is shown as ambient light.
 
+#include <algorithm>
 #include <bit>
 
 #include "radiosity/radiosity_system.h"
@@ -16,18 +17,25 @@ struct Receiver {
 /// Of each patch, those that receive of it, by ascending number.
 class Receivers {
 public:
-    explicit Receivers(const RadiositySystem& system)
-        : starts_(system.patches.size() + 1), all_(system.factor_count()) {
-        for (const std::vector<FormFactor>& row : system.rows) {
-            for (const FormFactor& from : row) ++starts_[from.patch + 1];
+    explicit Receivers(const RadiositySystem& system) : starts_(system.patches.size() + 1) {}
+
+    /// False where it was to end.
+    bool find(const RadiositySystem& system, const KeepSolving& keep_going) {
+        const auto goes_on = [&](std::size_t i) { return i % 1024 != 0 || !keep_going || keep_going(1); };
+        all_.resize(system.factor_count());
+        for (std::size_t i = 0; i < system.patches.size(); ++i) {
+            if (!goes_on(i)) return false;
+            for (const FormFactor& from : system.row(i)) ++starts_[from.patch + 1];
         }
         for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
         std::vector<uint64_t> next(starts_.begin(), starts_.end() - 1);
         for (std::size_t i = 0; i < system.patches.size(); ++i) {
+            if (!goes_on(i)) return false;
             for (const FormFactor& from : system.row(i)) {
                 all_[next[from.patch]++] = {static_cast<uint32_t>(i), from.factor};
             }
         }
+        return true;
     }
     std::span<const Receiver> of(std::size_t sender) const {
         return {all_.data() + starts_[sender], static_cast<std::size_t>(starts_[sender + 1] - starts_[sender])};
@@ -63,25 +71,36 @@ private:
     std::vector<double> most_;
 };
 
+constexpr double kLeastAbsorbed = 1e-6;
+constexpr uint64_t kLeastWork = 64; // of a patch that sends: what it costs beside those that receive
+
 double light_of(const SystemPatch& patch, Rgb unsent) {
     return static_cast<double>(patch.area) *
            (static_cast<double>(unsent.r) + static_cast<double>(unsent.g) + static_cast<double>(unsent.b));
 }
 
-/// What unsent light would be everywhere if it were spread evenly, with all of its reflections.
+/// What unsent light would be everywhere if it were spread evenly, with all of its reflections. A patch that others
+/// cover the share s of the hemisphere of sends them s of its light, and receives s of what is spread: those that face
+/// nothing take no part in it.
 Rgb ambient_of(const RadiositySystem& system, const std::vector<Rgb>& unsent) {
-    double area = 0, sum[3] = {}, reflected[3] = {};
+    double area = 0, squared = 0, arrives[3] = {}, reflected[3] = {};
     for (std::size_t i = 0; i < unsent.size(); ++i) {
         const SystemPatch& patch = system.patches[i];
-        const auto size = static_cast<double>(patch.area);
+        double covered = 0;
+        for (const FormFactor& from : system.row(i)) covered += static_cast<double>(from.factor);
+        const double size = static_cast<double>(patch.area) * covered;
         const Rgb u = unsent[i], r = patch.reflectance;
         area += size;
-        sum[0] += size * static_cast<double>(u.r), reflected[0] += size * static_cast<double>(r.r);
-        sum[1] += size * static_cast<double>(u.g), reflected[1] += size * static_cast<double>(r.g);
-        sum[2] += size * static_cast<double>(u.b), reflected[2] += size * static_cast<double>(r.b);
+        squared += size * covered;
+        arrives[0] += size * static_cast<double>(u.r), reflected[0] += size * covered * static_cast<double>(r.r);
+        arrives[1] += size * static_cast<double>(u.g), reflected[1] += size * covered * static_cast<double>(r.g);
+        arrives[2] += size * static_cast<double>(u.b), reflected[2] += size * covered * static_cast<double>(r.b);
     }
     if (!(area > 0)) return {};
-    const auto of = [&](int k) { return static_cast<float>(sum[k] / area / std::max(1 - reflected[k] / area, 1e-3)); };
+    const auto of = [&](int k) {
+        const double absorbed = std::max(1 - reflected[k] / area, kLeastAbsorbed);
+        return static_cast<float>(arrives[k] / area / absorbed * (squared / area));
+    };
     return {of(0), of(1), of(2)};
 }
 
@@ -101,16 +120,17 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
         most.set(i, light_of(patch, unsent[i]));
         all += light_of(patch, unsent[i]);
     }
-    const Receivers receivers(system);
-    double left = all; // rounds a little each step; counted anew now and then
     const auto count_left = [&] {
-        left = 0;
+        double left = 0;
         for (std::size_t i = 0; i < count; ++i) left += light_of(system.patches[i], unsent[i]);
         solved.left = all > 0 ? left / all : 0;
     };
     count_left();
-    constexpr uint64_t kLook = 256;
-    while (solved.left > tolerance && (steps == 0 || solved.steps < steps)) {
+    Receivers receivers(system);
+    const uint64_t most_steps = steps > 0 ? steps : kMostSweeps * count;
+    uint64_t work = 0; // since the last look at whether to go on
+    bool goes_on = receivers.find(system, keep_going);
+    while (goes_on && solved.left > tolerance && solved.steps < most_steps) {
         const std::size_t sender = most.first();
         const Rgb sent = unsent[sender];
         unsent[sender] = {};
@@ -122,11 +142,16 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
             unsent[receiver.patch] += patch.reflectance * received;
             most.set(receiver.patch, light_of(patch, unsent[receiver.patch]));
         }
-        if (++solved.steps % kLook != 0) continue;
+        ++solved.steps;
+        work += receivers.of(sender).size() + kLeastWork;
+        if (work < kLeastWork * 256 + count) continue;
+        work = 0;
         count_left();
-        if (keep_going && !keep_going(solved.left)) break;
+        goes_on = !keep_going || keep_going(solved.left);
     }
     count_left();
+    solved.reached_limit = goes_on && steps == 0 && solved.left > tolerance;
+    solved.unsent = unsent;
     solved.ambient = ambient_of(system, unsent);
     return solved;
 }

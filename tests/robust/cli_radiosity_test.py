@@ -3,8 +3,11 @@
 
 import json
 import os
+import signal
+import subprocess
+import time
 
-from cli_run import FLOOR, UNMETERED, CliTest, main, write
+from cli_run import FLOOR, PATIENCE_S, PROGRAM, UNMETERED, CliTest, main, write
 
 COARSE = ["--patch-size", "0.3", "--patch-rays", "16", "--subdivisions", "0"]
 SMALL = ["--integrator", "radiosity", "--size", "16x16", "--spp", "1", "--device", "cpu", *UNMETERED]
@@ -32,6 +35,74 @@ class Radiosity(CliTest):
                                 ["--environment", "1,1,1"], ["--lamp", "light=100lm"]]}
         self.assertEqual(len(hashes), 8)
         self.assertEqual(self.solve(*COARSE, "--threads", "1")[0]["hash"], told["hash"])
+
+    def start(self, *arguments):
+        program = subprocess.Popen([PROGRAM, *arguments, "--json"], cwd=self.folder, env=self.environment,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        return program
+
+    def end(self, program):
+        """Ctrl-C; gives the events that follow, and the processor time that they took."""
+        before = spent = sum(self.times_of(program))
+        program.send_signal(signal.SIGINT)
+        while program.poll() is None:
+            spent = sum(self.times_of(program))
+            time.sleep(0.01)
+        lines = program.communicate(timeout=PATIENCE_S)[0].decode().splitlines()
+        return [json.loads(line) for line in lines], spent - before
+
+    @staticmethod
+    def times_of(program):
+        """Seconds of user and system time."""
+        with open(f"/proc/{program.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return [int(fields[i]) / os.sysconf("SC_CLK_TCK") for i in (11, 12)]
+
+    def test_a_picture_of_a_solution_that_ctrl_c_ended_has_the_hash_of_one_of_as_many_samples(self):
+        self.solve(*COARSE)
+        flags = ["render", "cornell-box", "--integrator", "radiosity", "--solution", "box.rad", "--size", "16x16",
+                 "--device", "cpu", "-o", "x.exr"]
+        program = self.start(*flags, "--spp", "8388607", "--threads", "2")
+        next(line for line in program.stdout if json.loads(line)["event"] == "progress")
+        done = next(event for event in self.end(program)[0] if event["event"] == "done")
+        self.assertEqual((program.returncode, done["interrupted"]), (75, True))
+        again = self.succeed(*flags, "--spp", done["samples"], "--threads", "1", "--json").events("done")[0]
+        self.assertEqual(again["hash"], done["hash"])
+
+    def test_ctrl_c_is_heard_while_rows_are_made_and_leaves_no_picture_of_half_a_solution(self):
+        long = ["--patch-size", "0.1", "--patch-rays", "1048576"]
+        for arguments in [["solve", "radiosity", "cornell-box", "-o", "long.rad", *long],
+                          ["render", "cornell-box", *SMALL, "-o", "long.png", *long]]:
+            program = self.start(*arguments)
+            next(line for line in program.stdout if json.loads(line)["event"] == "radiosity")
+            self.wait_while(program, False)
+            time.sleep(0.3)
+            events, seconds = self.end(program)
+            self.assertEqual(program.returncode, 75)
+            self.assertLess(seconds, 1)  # a row alone takes as long
+            self.assertEqual([event["event"] for event in events], ["error"])
+        self.assertEqual([name for name in self.files() if name.startswith("long")], [])
+
+    def test_memory_stays_below_what_was_said_and_a_lower_limit_is_refused(self):
+        for flags in [["--patch-size", "0.04"], ["--patch-size", "0.04", "--solver", "southwell"],
+                      ["--patch-size", "0.08", "--form-factors", "hemicube", "--hemicube", "32"],
+                      ["--patch-size", "0.04", "--solver", "hierarchical"]]:
+            flags = [*flags, "--patch-rays", "64", "--subdivisions", "1"]
+            told, before = self.solve(*flags)
+            self.assertLess(told["peak_bytes"] - before["peak_bytes"], before["predicted_bytes"], flags)
+            self.assertLessEqual(told["shown"], before["most_shown"])
+            self.solve(*flags, "--max-memory", before["predicted_bytes"] / 2**20 + 0.01)
+            self.refuse(4, "solve", "radiosity", "cornell-box", "-o", "m.rad", *flags, "--max-memory",
+                        before["predicted_bytes"] / 2**20 - 0.01, says=["radiosity: may take", "--max-memory", "largest parts"])
+
+    def test_light_without_end_is_refused(self):
+        box = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1))
+        for a, b, c, d in [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]:
+            box += f"f {a} {d} {c} {b}\n"  # inwards
+        write(self.path("white.mtl"), "newmtl a\nKd 1 1 1\nKe 1 1 1\n")
+        write(self.path("white.obj"), "mtllib white.mtl\nusemtl a\n" + box)
+        self.refuse(2, "solve", "radiosity", "white.obj", "-o", "w.rad", "--patch-size", "0.5", says=["radiosity: light has no end"])
 
     def test_what_cannot_be_is_one_line(self):
         write(self.path("mirror.mtl"), MIRROR)

@@ -9,6 +9,8 @@
 #include "base/read_file.h"
 #include "integrators/make_integrator.h"
 #include "radiosity/corner_light.h"
+#include "radiosity/solve_memory.h"
+#include "tests/support/cpu_seconds.h"
 #include "tests/support/options.h"
 #include "tests/support/radiosity_scenes.h"
 #include "tests/support/random.h"
@@ -84,7 +86,7 @@ TEST_CASE("light that is shown has no gap where a patch meets smaller ones") {
         irradiance.push_back(grey(1 + middle.x + 3 * middle.y * middle.y));
     }
     const SceneView& view = patched.solved.view();
-    const std::vector<PatchLight> lights = light_corners(view, patched.tree, irradiance, 2);
+    const std::vector<PatchLight> lights = light_corners(view, patched.tree, irradiance);
     const RadiosityView shown = {patched.tree.view(), lights.data(), {}};
     // Across each edge of each patch, from both sides.
     int compared = 0;
@@ -155,7 +157,8 @@ TEST_CASE("a solution's bytes do not depend on threads, and follow its settings"
     const Scene scene = lit_box();
     for (const auto& [method, solver] : {std::pair(FormFactors::Rays, RadiositySolver::Southwell),
                                          std::pair(FormFactors::Hemicube, RadiositySolver::GaussSeidel),
-                                         std::pair(FormFactors::Rays, RadiositySolver::Matrix)}) {
+                                         std::pair(FormFactors::Rays, RadiositySolver::Matrix),
+                                         std::pair(FormFactors::Rays, RadiositySolver::Hierarchical)}) {
         RadiositySettings settings = quick_settings();
         settings.rays = 16;
         settings.hemicube = 16;
@@ -193,18 +196,73 @@ TEST_CASE("a scene that cannot be solved is refused in a line") {
     CHECK(error->code() == ErrorCode::Interrupted);
 }
 
-TEST_CASE("the memory of a system is said beforehand") {
+TEST_CASE("solving hears within moments that it is to end, however long a row takes") {
+    Messages messages;
+    const Scene scene = lit_box();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto seconds_to_end = [&](const RadiositySettings& settings, const char* during) {
+        double asked = -1;
+        int heard = 0;
+        const auto end_in = [&](const char* what, double) {
+            if (std::string(what) != during || ++heard == 1) return true; // it begins
+            if (asked < 0) asked = test::cpu_seconds();
+            return false;
+        };
+        try {
+            CHECK(solve_radiosity(prepared, settings, end_in).stats.was_interrupted);
+        } catch (const Error& error) {
+            CHECK(error.code() == ErrorCode::Interrupted);
+        }
+        CHECK(asked >= 0);
+        return test::cpu_seconds() - asked;
+    };
+    RadiositySettings few_long_rows;
+    few_long_rows.patch_size = 10;
+    few_long_rows.rays = kMostPatchRays; // seconds of each
+    CHECK(seconds_to_end(few_long_rows, "form factors") < test::allowed_seconds(0.5));
+    few_long_rows.rays = 64;
+    few_long_rows.hemicube = kMostHemicube;
+    few_long_rows.form_factors = FormFactors::Hemicube;
+    few_long_rows.subdivisions = 0;
+    CHECK(seconds_to_end(few_long_rows, "form factors") < test::allowed_seconds(1.5)); // 16 million pixels
+    RadiositySettings many_rows = quick_settings();
+    many_rows.subdivisions = 6;
+    many_rows.contrast = 1e-4f;
+    CHECK(seconds_to_end(many_rows, "dividing patches") < test::allowed_seconds(1));
+}
+
+TEST_CASE("the memory of a solution is said beforehand, and a byte less is refused") {
     Messages messages;
     const Scene scene = lit_box();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
-        RadiositySettings settings = quick_settings();
-        settings.form_factors = method;
-        settings.hemicube = 16;
-        const uint64_t patches = predicted_patches(prepared, settings);
-        const SolveStats stats = solve_radiosity(prepared, settings).stats;
-        CHECK(stats.patches <= patches);
-        CHECK(patches <= 2 * stats.patches);
-        CHECK(stats.bytes <= predicted_bytes(patches, settings));
+        for (const RadiositySolver solver : {RadiositySolver::Southwell, RadiositySolver::GaussSeidel,
+                                             RadiositySolver::Matrix, RadiositySolver::Hierarchical}) {
+            RadiositySettings settings = quick_settings();
+            settings.form_factors = method;
+            settings.hemicube = 16;
+            settings.solver = solver;
+            const SolveMemory memory = predict_memory(prepared, settings, 2);
+            const SolveStats stats = solve_radiosity(prepared, settings).stats;
+            CHECK(stats.patches <= memory.patches);
+            CHECK(memory.patches <= 2 * stats.patches);
+            CHECK(stats.shown <= memory.shown);
+            CHECK(stats.bytes <= memory.bytes);
+            check_memory(memory, settings, memory.bytes);
+            const auto error = test::thrown_error([&] { check_memory(memory, settings, memory.bytes - 1); });
+            CHECK(test::says(error, "of this machine's memory"));
+            CHECK(error->code() == ErrorCode::OutOfMemory);
+        }
     }
+    // Each of these takes more.
+    const RadiositySettings settings = quick_settings();
+    const std::size_t least = predict_memory(prepared, settings, 2).bytes;
+    RadiositySettings more = settings;
+    more.subdivisions = 4;
+    CHECK(predict_memory(prepared, more, 2).bytes > 8 * least);
+    more = settings;
+    more.form_factors = FormFactors::Hemicube;
+    more.hemicube = 512;
+    CHECK(predict_memory(prepared, more, 2).bytes > least + 2 * 512 * 512 * 24);
+    CHECK(predict_memory(prepared, more, 8).bytes > predict_memory(prepared, more, 2).bytes + 6 * 512 * 512 * 24);
 }

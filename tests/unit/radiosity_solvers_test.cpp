@@ -132,3 +132,58 @@ TEST_CASE("a solution ends when it is asked to, or is close enough") {
     CHECK(test::says(error, "--solver matrix: 6001 patches; at most 6000"));
     CHECK(error->code() == ErrorCode::OverLimit);
 }
+
+TEST_CASE("what next to nothing absorbs ends after a stated number of steps, and what is left is said") {
+    const RadiositySystem system = room_of(12, 0.999995f, 2);
+    const SolvedSystem southwell = solve_by_southwell(system, 1e-6, 0), few = solve_by_southwell(system, 1e-6, 10);
+    CHECK(southwell.steps == kMostSweeps * 12);
+    CHECK(southwell.reached_limit);
+    CHECK(southwell.left > 1e-6);
+    CHECK_FALSE(few.reached_limit); // as it was asked to
+    const SolvedSystem gauss_seidel = solve_by_gauss_seidel(system, 1e-6);
+    CHECK(gauss_seidel.steps == kMostSweeps);
+    CHECK(gauss_seidel.reached_limit);
+    CHECK_FALSE(solve_by_gauss_seidel(room_of(12, 0.9f, 2), 1e-6).reached_limit);
+    CHECK_FALSE(solve_by_southwell(room_of(12, 0.9f, 2), 1e-6, 0).reached_limit);
+}
+
+TEST_CASE("light that nothing ever absorbs is refused, and no other") {
+    const auto why = [](const RadiositySystem& system) {
+        return test::bad_input_message([&] { check_light_ends(system); });
+    };
+    const RadiositySystem white = room_of(30, 1, 2);
+    CHECK(why(white).find("light has no end: ") != std::string::npos); // red is reflected by a third of them alone
+    RadiositySystem system = white;
+    for (SystemPatch& patch : system.patches) patch.reflectance = grey(1);
+    CHECK(why(system).find("light has no end: 30 of 30 patches") != std::string::npos);
+    RadiositySystem dark = system;
+    for (SystemPatch& patch : dark.patches) patch.exitance = {};
+    for (Rgb& direct : dark.direct) direct = {};
+    CHECK(why(dark) == "no error");
+    RadiositySystem absorbing = system; // one is enough
+    absorbing.patches[3].reflectance = grey(0.99f);
+    CHECK(why(absorbing) == "no error");
+    RadiositySystem open = system; // a window before one
+    for (FormFactor& factor : open.rows[7]) factor.factor *= 0.99f;
+    CHECK(why(open) == "no error");
+    // Two rooms, of which the one without an end has no light.
+    RadiositySystem rooms;
+    rooms.patches = {{1, grey(1), {}}, {1, grey(1), {}}, {1, grey(0.5f), grey(1)}, {1, grey(1), {}}};
+    rooms.direct.assign(4, {});
+    rooms.rows = {{{1, 1.0f}}, {{0, 1.0f}}, {{3, 1.0f}}, {{2, 1.0f}}};
+    CHECK(why(rooms) == "no error");
+    rooms.direct[1] = grey(1);
+    CHECK(why(rooms).find("light has no end: 2 of 4 patches") != std::string::npos);
+}
+
+TEST_CASE("ambient light is that of the patches that see others: what faces nothing takes no part in it") {
+    const RadiositySystem inside = room_of(40, 0.8f, 2);
+    RadiositySystem with_outside = inside;
+    for (int i = 0; i < 40; ++i) {
+        with_outside.patches.push_back({5, grey(0.8f), {}});
+        with_outside.direct.push_back({});
+        with_outside.rows.emplace_back();
+    }
+    const Rgb alone = solve_by_southwell(inside, 0, 5).ambient, both = solve_by_southwell(with_outside, 0, 5).ambient;
+    CHECK(static_cast<double>(both.g) == doctest::Approx(static_cast<double>(alone.g)).epsilon(1e-5));
+}

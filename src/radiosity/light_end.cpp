@@ -1,0 +1,65 @@
+// Whether light ends. A patch loses light where it or those that it gathers from absorb some, or where some of what it
+// would gather comes from outside; what gathers from such a patch loses light with it. A set of patches that none of
+// this reaches keeps all its light, and its equations have no solution.
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "radiosity/radiosity_system.h"
+
+namespace pertev {
+namespace {
+
+constexpr double kLeastLoss = 1e-6; // of what a patch gathers, beyond rounding
+
+double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : k == 1 ? c.g : c.b); }
+
+/// Patches that light of channel `k` reaches and never leaves.
+uint64_t count_endless(const RadiositySystem& system, int k) {
+    const std::size_t count = system.patches.size();
+    std::vector<uint8_t> loses(count, 0), is_lit(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        double kept = 0;
+        bool reached = system.patches[i].area > 0 && channel(system.direct[i], k) > 0;
+        for (const FormFactor& from : system.row(i)) {
+            const SystemPatch& source = system.patches[from.patch];
+            kept += static_cast<double>(from.factor) * channel(source.reflectance, k);
+            reached = reached || channel(source.exitance, k) > 0;
+        }
+        loses[i] = kept < 1 - kLeastLoss ? 1 : 0;
+        is_lit[i] = reached ? 1 : 0;
+    }
+    for (bool changes = true; changes;) { // as often as light has to go from patch to patch
+        changes = false;
+        const auto spread = [&](std::size_t i) {
+            for (const FormFactor& from : system.row(i)) {
+                if (!(from.factor > 0) || !(channel(system.patches[from.patch].reflectance, k) > 0)) continue;
+                if (loses[i] == 0 && loses[from.patch] != 0) loses[i] = 1, changes = true;
+                if (is_lit[i] == 0 && is_lit[from.patch] != 0) is_lit[i] = 1, changes = true;
+            }
+        };
+        for (std::size_t i = 0; i < count; ++i) spread(i);
+        for (std::size_t i = count; i-- > 0;) spread(i);
+    }
+    uint64_t endless = 0;
+    for (std::size_t i = 0; i < count; ++i) endless += loses[i] == 0 && is_lit[i] != 0 ? 1 : 0;
+    return endless;
+}
+
+} // namespace
+
+void check_light_ends(const RadiositySystem& system) {
+    float largest = 0;
+    for (const SystemPatch& patch : system.patches) largest = max(largest, max_component(patch.reflectance));
+    if (static_cast<double>(largest) < 1 - kLeastLoss) return;
+    for (int k = 0; k < 3; ++k) {
+        const uint64_t endless = count_endless(system, k);
+        if (endless == 0) continue;
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("radiosity: light has no end: {} of {} patches reflect all of it, to each other alone "
+                                "(reflectances below 1 let it end; --integrator path follows it as far as --max-depth)",
+                                endless, system.patches.size()));
+    }
+}
+
+} // namespace pertev

@@ -1,0 +1,162 @@
+#include "radiosity/link_factors.h"
+
+#include "math/sampler.h"
+#include "radiosity/polygon_form_factor.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kDraws = 4; // of a pair of places, for each ray between places that face each other
+constexpr float kFar = 8;      // radii of a source, from where on its middle stands for all of it
+
+/// From a place to a patch, which turns its front to it or does not.
+float form_factor_at(const PatchPlace& place, const LinkedPatch& source) {
+    const Vec3 way = source.ball.centre - place.position;
+    if (!(dot(source.normal, source.corner[0] - place.position) < 0)) return 0;
+    const float squared = length_squared(way);
+    if (squared > square(kFar * source.ball.radius)) {
+        const float cosines = dot(way, place.normal) * -dot(way, source.normal);
+        return cosines > 0 ? cosines * source.area / (kPi * square(squared)) : 0.0f;
+    }
+    const Vec3 corner[] = {source.corner[0] - place.position, source.corner[1] - place.position,
+                           source.corner[2] - place.position};
+    return triangle_form_factor(corner, place.normal);
+}
+
+} // namespace
+
+void LinkFactors::clear() {
+    sights_.clear();
+    asked_.clear();
+    next_ = 0;
+}
+
+void LinkFactors::ask(const Link& link, uint32_t rays) {
+    Asked asked;
+    asked.first = static_cast<uint32_t>(sights_.size());
+    const uint32_t key = hash_words(link.receiver, link.source, rays, 0x6c696e6bu).x;
+    if (is_cluster(link.receiver) || is_cluster(link.source)) {
+        ask_clusters(link, rays, key, asked);
+    } else {
+        ask_patches(link, rays, key, asked);
+    }
+    asked.count = static_cast<uint32_t>(sights_.size()) - asked.first;
+    asked_.push_back(asked);
+}
+
+/// The mean, over places on the receiver, of the form factor from there where the source is seen.
+void LinkFactors::ask_patches(const Link& link, uint32_t rays, uint32_t key, Asked& asked) {
+    const Patch &receiver = nodes_.patch(link.receiver), &source = nodes_.patch(link.source);
+    const LinkedPatch& shape = nodes_.shape(link.source);
+    const float each = 1.0f / static_cast<float>(rays);
+    asked.rays = rays;
+    for (uint32_t k = 0; k < rays; ++k) {
+        const SampleKey of_ray = {key, k, seed_};
+        const Vec2 on_receiver = sample_2d(SamplerKind::Sobol, of_ray, 0);
+        const Vec2 on_source = sample_2d(SamplerKind::Sobol, of_ray, 0, Pair::Last);
+        const PatchPlace start = place_on_patch(scene_.view(), receiver, on_receiver);
+        const float factor = each * form_factor_at(start, shape);
+        if (!(factor > 0)) continue;
+        if (look(receiver, start, source, place_on_patch(scene_.view(), source, on_source), factor)) continue;
+        asked.known += factor; // the place drawn lies below the horizon
+        ++asked.seen;
+    }
+}
+
+PatchCode LinkFactors::triangle_of(NodeCode code, double u) const {
+    return is_cluster(code) ? nodes_.triangle_at(nodes_.cluster(code), u) : code;
+}
+
+/// Between triangles by their areas, at places that face each other: what share of the light gets through; and where
+/// there is no direction between the two, how much of it arrives.
+void LinkFactors::ask_clusters(const Link& link, uint32_t rays, uint32_t key, Asked& asked) {
+    const Ball &here = nodes_.ball(link.receiver), &there = nodes_.ball(link.source);
+    const bool is_even = balls_meet(here, there);
+    const float area = nodes_.area(link.source) / static_cast<float>(kDraws * rays);
+    float weights = 0;
+    for (uint32_t k = 0; k < kDraws * rays && sights_.size() - asked.first < rays; ++k) {
+        const SampleKey of_ray = {key, k, seed_};
+        const Vec2 triangles = sample_2d(SamplerKind::Sobol, of_ray, 1);
+        const PatchCode receiving = triangle_of(link.receiver, static_cast<double>(triangles.x));
+        const PatchCode sending = triangle_of(link.source, static_cast<double>(triangles.y));
+        if (!is_before(nodes_.shape(receiving), nodes_.shape(sending))) continue;
+        ++asked.rays; // the mean is that of what faces the source
+        if (!is_before(nodes_.shape(sending), nodes_.shape(receiving))) continue;
+        const Vec2 on_receiver = sample_2d(SamplerKind::Sobol, of_ray, 0);
+        const Vec2 on_source = sample_2d(SamplerKind::Sobol, of_ray, 0, Pair::Last);
+        const Patch &receiver = nodes_.patch(receiving), &source = nodes_.patch(sending);
+        const PatchPlace start = place_on_patch(scene_.view(), receiver, on_receiver);
+        const PatchPlace target = place_on_patch(scene_.view(), source, on_source);
+        const Vec3 way = target.position - start.position;
+        const float squared = length_squared(way);
+        const float cosines = dot(way, start.normal) * -dot(way, target.normal);
+        if (!(squared > 0) || !(dot(way, start.normal) > 0) || !(cosines > 0)) continue;
+        const float weight = is_even ? cosines / (squared * (kPi * squared + area)) : cosines / squared;
+        if (look(receiver, start, source, target, weight)) weights += weight;
+    }
+    if (is_even) {
+        asked.rays = max(asked.rays, 1u);
+        asked.scale = 1.0f / static_cast<float>(asked.rays);
+    } else {
+        const uint32_t looked = static_cast<uint32_t>(sights_.size()) - asked.first;
+        asked.rays = looked > 0 ? looked : rays; // none faces the other
+        const Vec3 way = there.centre - here.centre;
+        const float squared = length_squared(way);
+        float cosine = 1;
+        if (!is_cluster(link.receiver)) {
+            cosine = max(dot(way, nodes_.shape(link.receiver).normal), 0.0f) / sqrt(squared);
+        }
+        asked.scale = weights > 0 ? cosine * kInvPi / (squared * weights) : 0.0f;
+    }
+}
+
+/// False where the two do not face each other.
+bool LinkFactors::look(const Patch& from, const PatchPlace& start, const Patch& to, const PatchPlace& target,
+                       float weight) {
+    const Vec3 way = target.position - start.position;
+    const float squared = length_squared(way);
+    if (!(squared > 0)) return false;
+    const Vec3 direction = (1.0f / sqrt(squared)) * way;
+    if (!(dot(direction, start.normal) > 0) || !(dot(direction, target.normal) < 0)) return false;
+    Sight sight;
+    sight.ray.origin = offset_ray_origin(start.position, start.error, start.normal, direction);
+    sight.ray.direction =
+        offset_ray_origin(target.position, target.error, target.normal, -direction) - sight.ray.origin;
+    sight.ray.t_min = 0;
+    sight.ray.t_max = 1;
+    sight.start = {from.instance, from.primitive};
+    sight.target = {to.instance, to.primitive};
+    sight.weight = weight;
+    sights_.push_back(sight);
+    return true;
+}
+
+void LinkFactors::trace() {
+    if (sights_.size() > most_met_) {
+        most_met_ = 2 * sights_.size();
+        met_ = std::make_unique<bool[]>(most_met_);
+    }
+    find_occlusions(
+        scene_.trees(), static_cast<uint32_t>(sights_.size()), RayOrder::Scattered,
+        [&](uint32_t i) { return sights_[i].ray; },
+        [&](uint32_t i) {
+            return AcceptHit{scene_.view(), sights_[i].start, sights_[i].target, hash_word(seed_ + i)};
+        },
+        met_.get());
+}
+
+void LinkFactors::answer(Link& link) {
+    const Asked& asked = asked_[next_++];
+    float sum = asked.known;
+    uint32_t seen = asked.seen;
+    for (uint32_t i = asked.first; i < asked.first + asked.count; ++i) {
+        if (met_[i]) continue;
+        sum += sights_[i].weight;
+        ++seen;
+    }
+    link.factor = asked.scale * sum;
+    link.rays = static_cast<uint16_t>(asked.rays);
+    link.seen = static_cast<uint16_t>(min(seen, asked.rays));
+}
+
+} // namespace pertev

@@ -1,0 +1,56 @@
+#pragma once
+
+// Factors of links: geometry in closed form, and rays for what of it is seen. Links are asked for many at a time, so
+// that their rays are traced together.
+
+#include <memory>
+#include <vector>
+
+#include "radiosity/light_rays.h"
+#include "radiosity/link_nodes.h"
+#include "render/find_hits.h"
+
+namespace pertev {
+
+class LinkFactors {
+public:
+    /// Both outlive it.
+    LinkFactors(const SolvedScene& scene, const LinkNodes& nodes, uint32_t seed)
+        : scene_(scene), nodes_(nodes), seed_(seed) {}
+
+    void clear();
+    /// Has the factor of `link` found by `rays` rays, at most kMostRaysOfLink.
+    void ask(const Link& link, uint32_t rays);
+    /// Traces the rays of all that were asked for.
+    void trace();
+    /// Of the next one, in the order in which they were asked for.
+    void answer(Link& link);
+
+private:
+    struct Sight {
+        Ray ray;
+        TriangleId start, target;
+        float weight; // of it where it is seen
+    };
+    struct Asked {
+        uint32_t first = 0, count = 0; // sights
+        float known = 0;               // of what is seen without a ray
+        float scale = 1;               // of the sum of weights
+        uint32_t rays = 0, seen = 0;   // that were looked along, and found to be free without a ray
+    };
+    void ask_patches(const Link& link, uint32_t rays, uint32_t key, Asked& asked);
+    void ask_clusters(const Link& link, uint32_t rays, uint32_t key, Asked& asked);
+    PatchCode triangle_of(NodeCode code, double u) const;
+    bool look(const Patch& from, const PatchPlace& start, const Patch& to, const PatchPlace& target, float weight);
+
+    const SolvedScene& scene_;
+    const LinkNodes& nodes_;
+    uint32_t seed_;
+    std::vector<Sight> sights_;
+    std::vector<Asked> asked_;
+    std::unique_ptr<bool[]> met_;
+    std::size_t most_met_ = 0;
+    std::size_t next_ = 0;
+};
+
+} // namespace pertev

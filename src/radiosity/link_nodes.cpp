@@ -1,0 +1,275 @@
+#include "radiosity/link_nodes.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "radiosity/row_maker.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kDirectRays = 32; // of each quarter of a patch, and 16 to lamps
+
+} // namespace
+
+LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_size, const RadiositySettings& settings,
+                     WorkWatch& watch)
+    : scene_(scene), view_(scene.view()), seed_(settings.seed), patch_size_(patch_size), watch_(watch),
+      tree_(std::move(coarse)) {
+    PERTEV_CHECK(tree_.quads.empty());
+    add_patches();
+    std::vector<uint32_t> faces;
+    std::vector<Ball> balls;
+    std::vector<Vec3> normals;
+    for (uint32_t face = 0; face < tree_.roots.size(); ++face) {
+        if (tree_.roots[face] == kNoPatch) continue;
+        faces.push_back(face);
+        balls.push_back(shape(tree_.roots[face]).ball);
+        normals.push_back(shape(tree_.roots[face]).normal);
+    }
+    clusters_ = make_clusters(faces, balls, normals);
+    area_before_ = {0};
+    for (const uint32_t face : clusters_.faces) {
+        area_before_.push_back(area_before_.back() + static_cast<double>(shape(tree_.roots[face]).area));
+    }
+    cluster_sent_.resize(clusters_.clusters.size());
+    cluster_received_.resize(clusters_.clusters.size());
+    cluster_gathered_.resize(clusters_.clusters.size());
+    most_sent_.resize(clusters_.clusters.size());
+    sweep({});
+}
+
+NodeCode LinkNodes::code_of_cluster(uint32_t number) const {
+    const Cluster& cluster = clusters_.clusters[number];
+    return cluster.count == 1 ? tree_.roots[clusters_.faces[cluster.first]] : kIsCluster | number;
+}
+
+PatchCode LinkNodes::triangle_at(const Cluster& cluster, double u) const {
+    const double first = area_before_[cluster.first], last = area_before_[cluster.first + cluster.count];
+    const auto begin = area_before_.begin() + cluster.first + 1;
+    const auto found = std::upper_bound(begin, begin + cluster.count - 1, first + u * (last - first));
+    return tree_.roots[clusters_.faces[cluster.first + static_cast<uint32_t>(found - begin)]];
+}
+
+float LinkNodes::area(NodeCode code) const {
+    if (!is_cluster(code)) return shape(code).area;
+    const Cluster& c = cluster(code);
+    return static_cast<float>(area_before_[c.first + c.count] - area_before_[c.first]);
+}
+
+Rgb LinkNodes::power_towards(NodeCode code, Vec3 direction) const {
+    if (is_cluster(code)) return cluster_sent_[cluster_of(code)].towards(direction);
+    const LinkedPatch& from = shape(code);
+    return (from.area * max(dot(from.normal, direction), 0.0f)) * sent(code);
+}
+
+Rgb LinkNodes::power(NodeCode code) const {
+    return is_cluster(code) ? cluster_sent_[cluster_of(code)].all : shape(code).area * sent(code);
+}
+
+float LinkNodes::mean_direct() const {
+    double light = 0, area = 0;
+    for (std::size_t i = 0; i < direct_.size(); ++i) {
+        if (is_black(direct_[i])) continue;
+        light += static_cast<double>(tree_.patches[i].area * luminance(direct_[i]));
+        area += static_cast<double>(tree_.patches[i].area);
+    }
+    return area > 0 ? static_cast<float>(light / area) : 0.0f;
+}
+
+double LinkNodes::sweep(std::span<const Link> links) {
+    gather(links);
+    const std::size_t faces = clusters_.faces.size();
+    // A cluster's number is less than those of its halves.
+    std::vector<Rgb> above(faces);
+    for (const Cluster& cluster : clusters_.clusters) {
+        const auto number = static_cast<std::size_t>(&cluster - clusters_.clusters.data());
+        if (cluster.count == 1) {
+            const Vec3 normal = shape(tree_.roots[clusters_.faces[cluster.first]]).normal;
+            above[cluster.first] = cluster_gathered_[number] + cluster_received_[number].towards(normal);
+            continue;
+        }
+        for (const uint32_t half : {cluster.left, cluster.right}) {
+            cluster_gathered_[half] += cluster_gathered_[number];
+            cluster_received_[half].add(cluster_received_[number]);
+        }
+    }
+    std::vector<double> changed(faces), all(faces);
+    parallel_for(faces, 64, [&](uint64_t i) { push(tree_.roots[clusters_.faces[i]], above[i], changed[i], all[i]); });
+    send();
+    double change = 0, sum = 0;
+    for (std::size_t i = 0; i < faces; ++i) change += changed[i], sum += all[i];
+    return sum > 0 ? change / sum : 0;
+}
+
+void LinkNodes::gather(std::span<const Link> links) {
+    std::ranges::fill(gathered_, Rgb{});
+    std::ranges::fill(quad_gathered_, Rgb{});
+    std::ranges::fill(cluster_gathered_, Rgb{});
+    std::ranges::fill(cluster_received_, SentLight{});
+    parallel_for_ranges(links.size(), 1024, [&](uint64_t begin, uint64_t end) {
+        // Those of a receiver are of the range that its first one is in.
+        while (begin > 0 && begin < end && links[begin].receiver == links[begin - 1].receiver) ++begin;
+        while (begin < end) {
+            uint64_t last = begin + 1;
+            while (last < links.size() && links[last].receiver == links[begin].receiver) ++last;
+            receive(links[begin].receiver, links.subspan(begin, last - begin));
+            begin = last;
+        }
+    });
+}
+
+void LinkNodes::receive(NodeCode receiver, std::span<const Link> links) {
+    Rgb even;
+    SentLight directed;
+    const Ball& here = ball(receiver);
+    for (const Link& link : links) {
+        if (!(link.factor > 0)) continue;
+        const Ball& there = ball(link.source);
+        const bool any_cluster = is_cluster(receiver) || is_cluster(link.source);
+        if (!any_cluster) {
+            even += link.factor * sent(link.source);
+        } else if (balls_meet(here, there)) {
+            even += link.factor * power(link.source);
+        } else {
+            const Vec3 way = normalize(there.centre - here.centre);
+            const Rgb light = link.factor * power_towards(link.source, -way);
+            if (is_cluster(receiver)) {
+                directed.add(way, light);
+            } else {
+                even += light;
+            }
+        }
+    }
+    if (is_cluster(receiver)) {
+        cluster_gathered_[cluster_of(receiver)] = even;
+        cluster_received_[cluster_of(receiver)] = directed;
+    } else if (is_patch(receiver)) {
+        gathered_[number_of(receiver)] = even;
+    } else {
+        quad_gathered_[receiver] = even;
+    }
+}
+
+/// Down: what a quad gathers, all its parts receive. Up: it sends the mean of what they do.
+Rgb LinkNodes::push(PatchCode code, Rgb above, double& changed, double& all) {
+    if (is_patch(code)) {
+        const uint32_t i = number_of(code);
+        const Patch& patch = tree_.patches[i];
+        irradiance_[i] = direct_[i] + above + gathered_[i];
+        const Rgb sent = patch.reflectance * irradiance_[i];
+        changed += static_cast<double>(patch.area * abs(luminance(sent) - luminance(patch_sent_[i])));
+        all += static_cast<double>(patch.area * luminance(sent));
+        return patch_sent_[i] = sent;
+    }
+    const Rgb received = above + quad_gathered_[code];
+    Rgb sum;
+    for (const PatchCode child : tree_.quads[code].child) sum += push(child, received, changed, all);
+    return quad_sent_[code] = 0.25f * sum;
+}
+
+void LinkNodes::send() {
+    for (std::size_t i = clusters_.clusters.size(); i-- > 0;) {
+        const Cluster& cluster = clusters_.clusters[i];
+        cluster_sent_[i] = {};
+        if (cluster.count == 1) {
+            const PatchCode face = tree_.roots[clusters_.faces[cluster.first]];
+            cluster_sent_[i].add(shape(face).normal, shape(face).area * sent(face));
+            most_sent_[i] = luminance(sent(face));
+        } else {
+            cluster_sent_[i].add(cluster_sent_[cluster.left]);
+            cluster_sent_[i].add(cluster_sent_[cluster.right]);
+            most_sent_[i] = max(most_sent_[cluster.left], most_sent_[cluster.right]);
+        }
+    }
+}
+
+std::size_t LinkNodes::index_of(NodeCode code) const {
+    if (is_cluster(code)) return cluster_of(code);
+    const std::size_t clusters = clusters_.clusters.size();
+    return is_patch(code) ? clusters + tree_.quads.size() + number_of(code) : clusters + code;
+}
+
+void LinkNodes::sort(std::vector<Link>& links) const {
+    std::vector<uint32_t> next(index_count() + 1);
+    for (const Link& link : links) ++next[index_of(link.receiver) + 1];
+    for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+    std::vector<Link> sorted(links.size());
+    for (const Link& link : links) sorted[next[index_of(link.receiver)]++] = link;
+    links = std::move(sorted);
+}
+
+void LinkNodes::divide(std::span<const uint8_t> wishes) {
+    became_.assign(wishes.size(), kNoPatch);
+    for (uint32_t i = 0; i < wishes.size(); ++i) {
+        if (wishes[i] == 0 || tree_.patches.size() + 3 > kMostPatches) continue;
+        const auto quad = static_cast<uint32_t>(tree_.quads.size());
+        quad_shapes_.push_back(patch_shapes_[i]);
+        quad_patches_.push_back(tree_.patches[i]);
+        quad_sent_.push_back(patch_sent_[i]);
+        quad_gathered_.push_back({});
+        tree_.split(view_, i);
+        became_[i] = quad;
+        patch_shapes_[i] = linked_patch(view_, tree_.patches[i]);
+        stale_.push_back(i);
+    }
+    add_patches();
+}
+
+void LinkNodes::add_patches() {
+    for (auto i = static_cast<uint32_t>(patch_shapes_.size()); i < tree_.patches.size(); ++i) {
+        patch_shapes_.push_back(linked_patch(view_, tree_.patches[i]));
+        stale_.push_back(i);
+    }
+    direct_.resize(tree_.patches.size());
+    direct_spread_.resize(tree_.patches.size());
+    gathered_.resize(tree_.patches.size());
+    irradiance_.resize(tree_.patches.size());
+    patch_sent_.resize(tree_.patches.size());
+    const RadiositySettings whole = {.rays = 2 * kDirectRays, .seed = seed_},
+                            quarter = {.rays = kDirectRays, .seed = seed_};
+    const RowMakers of_whole(scene_, tree_, whole, &watch_), of_quarter(scene_, tree_, quarter, &watch_);
+    watch_.begin("direct light", stale_.size());
+    parallel_for_ranges(stale_.size(), 8, [&](uint64_t begin, uint64_t end) {
+        const std::unique_ptr<RowMaker> makers[] = {of_whole.for_thread(), of_quarter.for_thread()};
+        for (uint64_t k = begin; k < end && !watch_.is_over(); ++k) {
+            find_direct(stale_[k], *makers[0], *makers[1]);
+            watch_.done();
+        }
+    });
+    stale_.clear();
+}
+
+/// Of a patch that may be divided quarter by quarter, to see whether it should be.
+void LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_quarter) {
+    const Patch& patch = tree_.patches[number];
+    const uint32_t parts = can_divide(kIsPatch | number) ? 4 : 1;
+    Rgb sum;
+    float least = kInfinity, most = 0;
+    FormFactorRow row;
+    for (uint32_t k = 0; k < parts; ++k) {
+        Patch part = patch;
+        if (parts > 1) part.corners = patch.corners.child(k);
+        const uint32_t key = hash_words(number, static_cast<uint32_t>(tree_.quads.size()), k, 0x64697265u).x;
+        (parts > 1 ? of_quarter : of_whole).make(part, key, row);
+        Rgb light = row.direct;
+        for (const FormFactor& from : row.factors) light += from.factor * tree_.patches[from.patch].exitance;
+        sum += light;
+        least = min(least, luminance(light)), most = max(most, luminance(light));
+    }
+    direct_[number] = (1.0f / static_cast<float>(parts)) * sum;
+    direct_spread_[number] = most - least;
+    patch_sent_[number] = patch.reflectance * direct_[number];
+}
+
+std::size_t LinkNodes::bytes() const { return most_bytes(tree_.patches.size(), clusters_.faces.size()); }
+
+std::size_t LinkNodes::most_bytes(uint64_t patches, uint64_t faces) {
+    const uint64_t quads = patches / 3 + 1, clusters = 2 * faces;
+    return (patches + quads) * (sizeof(LinkedPatch) + sizeof(Patch) + 5 * sizeof(Rgb) + 2 * sizeof(uint32_t)) +
+           clusters * (sizeof(Cluster) + 2 * sizeof(SentLight) + 2 * sizeof(Rgb) + sizeof(uint32_t)) +
+           faces * (3 * sizeof(double) + sizeof(Rgb));
+}
+
+} // namespace pertev
