@@ -354,9 +354,8 @@ TEST_CASE("a display shows the picture's tones") {
         session.render(2);
         for (const ToneMap tone_map : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {
             session.display(tone_map, -0.7f);
-            const Rgba8Image shown = session.displayed();
-            CHECK(shown.width == 24);
-            CHECK(shown.pixels == tone_map_image(session.picture(), tone_map, -0.7f).pixels);
+            CHECK(session.displayed().width == 24);
+            CHECK(session.displayed().pixels == tone_map_image(session.picture(), tone_map, -0.7f).pixels);
         }
     }
 }
