@@ -58,7 +58,7 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
 
-/// `picture`: a Session's, or its Reconstruction.
+/// `picture`: a Session, or its Reconstruction.
 template <class Picture>
 Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stops) {
     picture.display(tone_map, exposure_stops);

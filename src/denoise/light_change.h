@@ -14,7 +14,7 @@ struct LightChangeRoom {
     Float4* after;   // until they are compared
     Float4* numbers; // from then on
 
-    /// Of each, in numbers for a frame of this size. `kNumbers`: guide; light as it was and as it is, twice.
+    /// Float4 of each for a pixel of the small pictures. `kNumbers`: guide; light as it was and as it is, twice.
     static constexpr std::size_t kPicture = NoisyFrame::arrays(true), kNumbers = 5;
     static constexpr uint32_t side(uint32_t of_frame) { return (of_frame + 3) / 4; }
     static std::size_t pixels(uint32_t frame_width, uint32_t frame_height) {
@@ -27,6 +27,12 @@ public:
     /// Of frames of this size. `splits_light`: NoisyFrame's.
     LightChange(Queue& queue, uint32_t frame_width, uint32_t frame_height, bool splits_light,
                 const LightChangeRoom& room);
+
+    /// Whether they are of frames like that.
+    bool fits(const NoisyFrame& frame) const {
+        return frame_width_ == frame.width() && frame_height_ == frame.height() &&
+               before_.splits_light() == frame.splits_light();
+    }
 
     // Take the scene as it was and as it is, seen by one camera and sampled by the same numbers.
     NoisyFrame& before() { return before_; }

@@ -2,7 +2,10 @@
 
 #include <memory>
 
+#include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/stopwatch.h"
+#include "radiosity/solve_memory.h"
 #include "session/session.h"
 
 namespace pertev {
@@ -22,9 +25,13 @@ RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t numb
 }
 
 bool may_be_solved(const PreparedScene& prepared, uint32_t number) {
-    const RadiositySettings settings = solution_settings(prepared, number, 0);
-    const uint64_t patches = predicted_patches(prepared, settings);
-    return patches <= kMostPatches && predicted_bytes(patches, settings) <= kMostSolutionBytes;
+    try {
+        const RadiositySettings settings = solution_settings(prepared, number, 0);
+        return predict_memory(prepared, settings, thread_count()).bytes <= kMostSolutionBytes;
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::OverLimit) throw;
+        return false; // too many patches
+    }
 }
 
 SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,

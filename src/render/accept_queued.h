@@ -66,8 +66,8 @@ private:
     }
 };
 
-/// `kMayMove`: not where all triangles are baked, since those stand still. One more argument would cost every candidate
-/// of a surface with alpha.
+/// `kMayMove`: not where everything stands still, as baked triangles always do. One more argument would cost every
+/// candidate of a surface with alpha.
 template <bool kMayMove>
 struct AcceptQueued {
     const TraceQuery& query;

@@ -57,10 +57,9 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     }
     frame_number_ = number;
     frame_sampler_ = of_light.path.sampler;
-    const bool split_light = noisy_frame_ && noisy_frame_->splits_light();
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
-    if (!reconstruction_ || reconstruction_->width() != of_light.width ||
-        reconstruction_->height() != of_light.height || frame.splits_light() != split_light) { // of other signals
+    if (!reconstruction_ || !light_change_ || !light_change_->fits(frame)) { // of another size, or of other signals
+        light_change_.reset();
         reconstruction_.reset(); // before the new one, so that both need not fit
         reconstruction_.emplace(queue_, of_light.width, of_light.height);
         light_change_.emplace(queue_, of_light.width, of_light.height, frame.splits_light(),
@@ -115,10 +114,12 @@ void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings 
 
 /// How light has changed since the frame before, where that has left a small picture of the scene as it was.
 LightChangeView Session::look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings) {
-    const bool is_known = settings.follow_light && scene_has_changed_ && camera_of_light_ &&
-                          reconstruction_->frames() > 0 && path_of_light_ == of_light.path;
+    const std::optional<Camera> camera =
+        std::exchange(camera_of_light_, {}); // it serves once: the frame takes its room
+    const bool is_known = settings.follow_light && scene_has_changed_ && camera && reconstruction_->frames() > 0 &&
+                          path_of_light_ == of_light.path;
     if (!is_known) return {};
-    take_sample(number_of_light_, *camera_of_light_, of_light, light_change_->after());
+    take_sample(number_of_light_, *camera, of_light, light_change_->after());
     return light_change_->compare();
 }
 

@@ -154,6 +154,8 @@ TEST_CASE("what finds a change of light lies where a reconstruction has room, an
         CHECK(apart >= 2 * pixels); // the frame's own signals
     }
     CHECK(Reconstruction::predicted_bytes(1920, 1080) == std::size_t(248) * 1920 * 1080);
+    // Of one pixel: histories, then the small pictures' 7 and 5; squares, then another 7.
+    CHECK(Reconstruction::predicted_bytes(1, 1) == (10 + 7 + 5 + 1 + 7) * sizeof(Float4));
 
     const auto held_by_frames = [&](bool follows) {
         Messages messages;
@@ -177,7 +179,7 @@ TEST_CASE("what finds a change of light lies where a reconstruction has room, an
 
 TEST_CASE("a look at a frame in between leaves what follows as it is") {
     Queue queue = queue_asked_for();
-    const auto frames = [&](bool looks) {
+    const auto frames = [&](float scale, bool looks) {
         Messages messages;
         Scene scene = lamp_scene();
         PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -190,7 +192,7 @@ TEST_CASE("a look at a frame in between leaves what follows as it is") {
             scene.lights[0].intensity = kStep * scene.lights[0].intensity;
             prepared = update_scene(prepared, scene, update, messages);
             session.update_scene(prepared, parts_of(update));
-            session.render_frame(k, {.follow_light = true, .keep_layers = true});
+            session.render_frame(k, {.follow_light = true, .keep_layers = true, .resolution_scale = scale});
             if (!looks) continue;
             session.frame_tones();
             session.frame().display(ToneMap::Agx, 0);
@@ -198,7 +200,7 @@ TEST_CASE("a look at a frame in between leaves what follows as it is") {
         }
         return picture_hash(session.frame().picture());
     };
-    CHECK(frames(true) == frames(false));
+    for (const float scale : {1.0f, 0.5f}) CHECK(frames(scale, true) == frames(scale, false));
 }
 
 TEST_CASE("where light does not change, looking for a change leaves the frame as it is") {

@@ -125,13 +125,16 @@ TEST_CASE("a blur of the camera alone is the same by stages as by the loop, dept
     Messages messages;
     MovingScene still(make_rushing_scene(false), 0.3, {}, messages, kHalfASecond);
     REQUIRE(still.prepared().motions == nullptr);
-    RenderSettings settings = blurred_settings(IntegratorKind::Path);
-    Queue cpu = Queue::make_cpu();
-    const Hash128 loop = picture_of(cpu, still.prepared(), rushing_camera(), settings);
-    settings.body = PathBody::Wavefront;
-    CHECK(picture_of(cpu, still.prepared(), rushing_camera(), settings) == loop);
-    Queue queue = test::queue_asked_for();
-    CHECK(picture_of(queue, still.prepared(), rushing_camera(), settings) == loop);
+    Queue cpu = Queue::make_cpu(), queue = test::queue_asked_for();
+    for (const IntegratorKind integrator : kWithShutter) {
+        CAPTURE(static_cast<int>(integrator));
+        RenderSettings settings = blurred_settings(integrator);
+        const Hash128 loop = picture_of(cpu, still.prepared(), rushing_camera(), settings);
+        settings.body = PathBody::Wavefront;
+        CHECK(picture_of(cpu, still.prepared(), rushing_camera(), settings) == loop);
+        CHECK(picture_of(queue, still.prepared(), rushing_camera(), settings) == loop);
+        CHECK(picture_of(cpu, still.prepared(), test::mixed_scene_camera(), settings) != loop);
+    }
 }
 
 TEST_CASE("every tracer finds the same in a scene that moves") {
@@ -289,7 +292,7 @@ TEST_CASE("integrators whose rays have no time refuse an open shutter by name") 
     Queue queue = Queue::make_cpu();
     for (const IntegratorKind integrator :
          {IntegratorKind::Hybrid, IntegratorKind::Raster, IntegratorKind::Reyes, IntegratorKind::Light,
-          IntegratorKind::Bidirectional, IntegratorKind::PhotonMap}) {
+          IntegratorKind::Bidirectional, IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache}) {
         const RenderSettings settings = blurred_settings(integrator);
         Session session(queue, moving.prepared(), test::mixed_scene_camera(), settings);
         CHECK(test::bad_input_message([&] { session.render(1); }).find("--shutter") == 0);

@@ -118,6 +118,8 @@ TEST_CASE("the mean has the bits of a division by the C library, for the least s
     CHECK(mean_of({0, (1u << 24) + 1}, 1) == 0x1p24f);
     CHECK(mean_of({0, (1u << 24) + 3}, 1) == 0x1p24f + 4);
     CHECK(mean_of({1, (1u << 24) + 1}, 1) == 0x1p24f + 2);
+    CHECK(mean_of({0, 3 * ((uint64_t(1) << 24) + 1)}, 3) == 0x1p24f);
+    CHECK(mean_of({1, 3 * ((uint64_t(1) << 24) + 1)}, 3) == 0x1p24f + 2);
 }
 
 TEST_CASE("a million samples lose nothing") {

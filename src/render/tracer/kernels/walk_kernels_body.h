@@ -111,8 +111,8 @@ void count_lanes(Queue& queue, const AnyTrees& trees, const RayBatch& batch, Lan
     }
 }
 
-/// Of the kernel for opaque scenes, of one tree or of several.
-template <class Walk, bool kAny, Distribution kDistribution>
+/// Of the kernel for opaque scenes that stand still, of one tree or of several.
+template <class Walk, bool kAny, Distribution kDistribution, bool kStillToo = false>
 KernelLimits limits(bool has_instances) {
     const auto of = []<class Kernel>(Kernel) {
         using Scene = typename Kernel::Scene;
@@ -126,7 +126,9 @@ KernelLimits limits(bool has_instances) {
             return limits_of(run_stage<Stage>);
         }
     };
-    return has_instances ? of(AnyScene<Walk>{}) : of(OneOpaqueTree<Walk>{});
+    if (!has_instances) return of(OneOpaqueTree<Walk>{});
+    if constexpr (kStillToo) return of(StillScene<Walk>{});
+    return of(AnyScene<Walk>{});
 }
 
 #endif
@@ -140,7 +142,7 @@ void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>
     row.count = count_work<Walk, kAny>;
 #if defined(__CUDACC__)
     if constexpr (kLanes) row.count_lanes = count_lanes<Walk, kAny, Distribution::OneAThread>;
-    row.limits = limits<Walk, kAny, Distribution::OneAThread>;
+    row.limits = limits < Walk, kAny, Distribution::OneAThread, kOfPictures<Walk> && !kFast > ;
     rows.push_back(row);
     row.distribution = Distribution::Persistent;
     row.trace = trace_persistent<Walk, kAny, false>;
@@ -152,7 +154,7 @@ void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>
         row.distribution = Distribution::DynamicFetch;
         row.trace = trace_dynamic<Walk, kAny>;
         if constexpr (kLanes) row.count_lanes = count_lanes<Walk, kAny, Distribution::DynamicFetch>;
-        row.limits = limits<Walk, kAny, Distribution::DynamicFetch>;
+        row.limits = limits<Walk, kAny, Distribution::DynamicFetch, kOfPictures<Walk>>;
     }
 #endif
     rows.push_back(row);
