@@ -133,9 +133,11 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
 
 /// Tells its progress as the share [from, to] of the picture's.
 RenderResult ThesisPictures::render_once(const Job& job, const RenderSettings& settings, double from, double to) {
-    return render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
+    RenderResult result = render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
         return job.tell("rendering", from + (to - from) * now.samples_done / now.samples);
     });
+    if (result.samples == 0) throw Error(ErrorCode::Interrupted, "interrupted before a picture had a sample");
+    return result;
 }
 
 void ThesisPictures::render(const Job& job, const RenderSettings& settings, ThesisPicture& picture) {

@@ -98,6 +98,20 @@ std::vector<TransportPoint> points_of(const TransportRow& row) {
     }
 }
 
+namespace {
+
+/// Between two figures samples go with time; what begins a picture takes time too, and the first figure has it whole.
+double samples_at(const Repetition& repetition, double seconds) {
+    const auto after = std::ranges::find_if(repetition, [&](const auto& f) { return f.seconds >= seconds; });
+    if (after == repetition.begin()) return after->samples;
+    const TransportFigures& before = *std::prev(after);
+    if (after == repetition.end() || after->seconds <= before.seconds) return before.samples;
+    const double share = (seconds - before.seconds) / (after->seconds - before.seconds);
+    return before.samples + share * (static_cast<double>(after->samples) - before.samples);
+}
+
+} // namespace
+
 std::optional<TransportPoint> at_time(const TransportRow& row, double seconds) {
     std::vector<TransportFigures> all;
     std::vector<double> samples;
@@ -110,9 +124,7 @@ std::optional<TransportPoint> at_time(const TransportRow& row, double seconds) {
             samples.push_back(one->samples);
             continue;
         }
-        // Time goes with samples but for what begins a picture, which the last step has least of.
-        const TransportFigures& last = repetition.back();
-        samples.push_back(last.seconds > 0 ? last.samples * seconds / last.seconds : last.samples);
+        samples.push_back(samples_at(repetition, seconds));
     }
     if (all.empty()) return std::nullopt;
     TransportPoint point = mean_of(all);

@@ -36,11 +36,14 @@ public:
         while (!open.empty() && !watch_.is_over()) {
             const uint64_t chunks = (open.size() + kLinksAtOnce - 1) / kLinksAtOnce;
             std::vector<Sorted> sorted(chunks);
+            std::atomic<uint64_t> count = links.size(); // looked at while they are made: there is no room for all
             parallel_for_ranges(chunks, 1, [&](uint64_t begin, uint64_t end) {
                 LinkFactors factors(scene_, nodes_, seed_);
                 for (uint64_t chunk = begin; chunk < end; ++chunk) {
                     const uint64_t first = chunk * kLinksAtOnce, last = std::min(first + kLinksAtOnce, open.size());
                     sort_out({open.data() + first, last - first}, factors, sorted[chunk]);
+                    const uint64_t made = sorted[chunk].kept.size() + sorted[chunk].open.size();
+                    check_count(count.fetch_add(made) + made);
                 }
             });
             open = {};
@@ -49,7 +52,6 @@ public:
                 open.insert(open.end(), some.open.begin(), some.open.end());
                 some = {};
             }
-            check_count(links.size() + open.size());
             watch_.set_share(static_cast<double>(links.size()) / static_cast<double>(links.size() + open.size() + 1));
         }
         links.insert(links.end(), open.begin(), open.end());
@@ -67,9 +69,9 @@ private:
 
     static void check_count(uint64_t count) {
         if (count <= kMostLinks) return;
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("--solver hierarchical: {} links; at most {} (a larger --link-error makes fewer)",
-                                count, kMostLinks));
+        throw Error(
+            ErrorCode::OverLimit,
+            fmt::format("--solver hierarchical: more than {} links (a larger --link-error makes fewer)", kMostLinks));
     }
 
     void sort_out(std::span<Link> links, LinkFactors& factors, Sorted& sorted) {

@@ -94,7 +94,7 @@ TEST_CASE("radiosity takes part with solutions of growing detail, whose time is 
     small.settings.max_solutions = 2;
     small.settings.max_samples = 16;
     const TransportScene scene = small.run();
-    const TransportRow& row = row_named(scene, "radiosity");
+    const TransportRow row = row_named(scene, "radiosity");
     CHECK(row.refused == "");
     CHECK(row.is_solved);
     CHECK(row.light == "all, by patches ever smaller");

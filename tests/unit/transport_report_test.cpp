@@ -77,6 +77,13 @@ TEST_CASE("at equal time every repetition is interpolated in logarithms") {
     CHECK(first->rel_mse.mean == doctest::Approx(2));
 }
 
+TEST_CASE("samples at equal time leave out what begins a picture") {
+    const TransportRow row = transport_row("irradiance_cache", {{{1, 10.1, 1, 1}, {64, 16.4, 0.5, 0.5}}});
+    const auto point = at_time(row, 10.2);
+    REQUIRE(point);
+    CHECK(point->samples == doctest::Approx(2));
+}
+
 TEST_CASE("an error of 0 is interpolated as it is") {
     TransportRow row = transport_row("raster", {{{1, 1, 0, 0.5}, {2, 2, 0, 0.5}}});
     const auto point = at_time(row, 1.5);
