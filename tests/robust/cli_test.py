@@ -23,12 +23,12 @@ FLAGS = {
               "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
-              "--solver --tolerance --steps --link-error --solution --flat-patches --real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
+              "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
               "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
-                       "--tolerance --steps --link-error --seed --time --lamp --efficacy --allow-path --environment --environment-rotation "
+                       "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --environment --environment-rotation "
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --quiet -q --json",
     "info": "--allow-path --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
