@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
+#include "math/portable_math.h"
 #include "radiosity/corner_light.h"
 #include "radiosity/hierarchical.h"
 #include "radiosity/radiosity_system.h"
@@ -196,7 +197,9 @@ struct SolvedPatches {
 
 /// How near to its end a solution is whose light that is left falls from 1 to `tolerance` by the same share each step.
 double share_done(double left, double tolerance) {
-    return left > 0 && tolerance > 0 && tolerance < 1 ? std::log(std::min(left, 1.0)) / std::log(tolerance) : 1;
+    if (!(left > 0 && tolerance > 0 && tolerance < 1)) return 1;
+    const auto halvings = [](double x) { return static_cast<double>(log2(static_cast<float>(x))); };
+    return halvings(std::min(left, 1.0)) / halvings(tolerance);
 }
 
 SolvedPatches solve_rows(const SolvedScene& scene, float patch_size, const RadiositySettings& settings,
