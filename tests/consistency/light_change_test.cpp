@@ -141,6 +141,32 @@ TEST_CASE("of two lamps frames follow most of what the one that dims takes, and 
     }
 }
 
+namespace {
+
+/// Six frames under a lamp that dims with each; `look` is called with the session after each of them.
+template <class Look>
+Hash128 dimming_frames(Queue& queue, uint32_t width, uint32_t height, const ReconstructionSettings& frames,
+                       const Look& look) {
+    Messages messages;
+    Scene scene = lamp_scene();
+    PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings;
+    settings.width = width, settings.height = height;
+    Session session(queue, prepared, mixed_scene_camera(), settings);
+    SceneUpdate update;
+    update.lights_changed = true;
+    for (uint32_t k = 0; k < 6; ++k) {
+        scene.lights[0].intensity = kStep * scene.lights[0].intensity;
+        prepared = update_scene(prepared, scene, update, messages);
+        session.update_scene(prepared, parts_of(update));
+        session.render_frame(k, frames);
+        look(session);
+    }
+    return picture_hash(session.frame().picture());
+}
+
+} // namespace
+
 TEST_CASE("what finds a change of light lies where a reconstruction has room, and takes no memory") {
     Queue queue = queue_asked_for();
     for (const auto& [width, height] : {std::pair(1u, 1u), std::pair(1u, 9u), std::pair(5u, 3u), std::pair(64u, 48u)}) {
@@ -158,21 +184,9 @@ TEST_CASE("what finds a change of light lies where a reconstruction has room, an
     CHECK(Reconstruction::predicted_bytes(1, 1) == (10 + 7 + 5 + 1 + 7) * sizeof(Float4));
 
     const auto held_by_frames = [&](bool follows) {
-        Messages messages;
-        Scene scene = lamp_scene();
-        PreparedScene prepared = prepare_scene(scene, {}, messages);
-        RenderSettings settings;
-        settings.width = 64, settings.height = 48;
-        Session session(queue, prepared, mixed_scene_camera(), settings);
-        SceneUpdate update;
-        update.lights_changed = true;
-        for (uint32_t k = 0; k < 4; ++k) {
-            scene.lights[0].intensity = kStep * scene.lights[0].intensity;
-            prepared = update_scene(prepared, scene, update, messages);
-            session.update_scene(prepared, parts_of(update));
-            session.render_frame(k, {.follow_light = follows});
-        }
-        return queue.allocated_bytes();
+        std::size_t held = 0;
+        dimming_frames(queue, 64, 48, {.follow_light = follows}, [&](Session&) { held = queue.allocated_bytes(); });
+        return held;
     };
     CHECK(held_by_frames(true) == held_by_frames(false));
 }
@@ -180,25 +194,13 @@ TEST_CASE("what finds a change of light lies where a reconstruction has room, an
 TEST_CASE("a look at a frame in between leaves what follows as it is") {
     Queue queue = queue_asked_for();
     const auto frames = [&](float scale, bool looks) {
-        Messages messages;
-        Scene scene = lamp_scene();
-        PreparedScene prepared = prepare_scene(scene, {}, messages);
-        RenderSettings settings;
-        settings.width = 33, settings.height = 17;
-        Session session(queue, prepared, mixed_scene_camera(), settings);
-        SceneUpdate update;
-        update.lights_changed = true;
-        for (uint32_t k = 0; k < 6; ++k) {
-            scene.lights[0].intensity = kStep * scene.lights[0].intensity;
-            prepared = update_scene(prepared, scene, update, messages);
-            session.update_scene(prepared, parts_of(update));
-            session.render_frame(k, {.follow_light = true, .keep_layers = true, .resolution_scale = scale});
-            if (!looks) continue;
+        const ReconstructionSettings settings = {.follow_light = true, .keep_layers = true, .resolution_scale = scale};
+        return dimming_frames(queue, 33, 17, settings, [&](Session& session) {
+            if (!looks) return;
             session.frame_tones();
             session.frame().display(ToneMap::Agx, 0);
             session.frame().motion();
-        }
-        return picture_hash(session.frame().picture());
+        });
     };
     for (const float scale : {1.0f, 0.5f}) CHECK(frames(scale, true) == frames(scale, false));
 }
