@@ -37,10 +37,11 @@ struct CacheBudget {
 };
 
 Image cached_picture(Queue& queue, const PreparedScene& prepared, IntegratorKind integrator, const CacheBudget& budget,
-                     uint32_t seed) {
+                     uint32_t seed, float filter_radius = RenderSettings{}.filter_radius) {
     RenderSettings settings;
     settings.width = settings.height = 32;
     settings.filter = PixelFilter::Box;
+    settings.filter_radius = filter_radius;
     settings.path.max_depth = 5;
     settings.path.seed = seed;
     settings.samples = budget.samples;
@@ -95,16 +96,7 @@ Scene room_under_a_point() {
 /// Of what is seen through the middle of each pixel.
 Image middles(Queue& queue, const PreparedScene& prepared, IntegratorKind integrator, const CacheBudget& budget,
               uint32_t seed) {
-    RenderSettings settings;
-    settings.width = settings.height = 32;
-    settings.filter = PixelFilter::Box;
-    settings.filter_radius = 0x1p-20f;
-    settings.path.max_depth = 5;
-    settings.path.seed = seed;
-    settings.samples = budget.samples;
-    settings.integrator = integrator;
-    settings.irradiance_cache = {.accuracy = budget.accuracy, .hemisphere_rays = budget.rays};
-    return render_picture(queue, prepared, test::room_camera(), settings).picture;
+    return cached_picture(queue, prepared, integrator, budget, seed, 0x1p-20f);
 }
 
 /// Mean of (a - b) (c - d) over that of the light squared. Of pictures c = a and references b, d of noise of their own
