@@ -82,7 +82,7 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
     }
     // Whoever has just lost the wheel may not know it yet: no reason to drop it. Looking at a place is free.
     const bool may = wheel_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
-    if (may && !inbox_.put(Steer{id, *std::move(message)})) return "too many messages wait";
+    if (may && !inbox_.put(Steer{id, *std::move(message)}) && !inbox_.is_closed()) return "too many messages wait";
     return {};
 }
 

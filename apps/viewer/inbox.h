@@ -43,7 +43,7 @@ public:
     /// While commands wait that make the samples under way useless, this flag is true. It outlives the inbox.
     void raise(std::atomic<bool>& flag) { flag_ = &flag; }
 
-    /// False where there is no room.
+    /// False where there is no room, or it is closed.
     bool put(Command command) {
         const std::lock_guard lock(mutex_);
         if (is_closed_ || commands_.size() >= kMost) return false;
@@ -52,6 +52,12 @@ public:
         commands_.push_back(std::move(command));
         there_is_more_.notify_one();
         return true;
+    }
+
+    /// Whether the viewer is ending: no fault of whoever still sends.
+    bool is_closed() const {
+        const std::lock_guard lock(mutex_);
+        return is_closed_;
     }
 
     /// All there are, in their order; waits for the first until `timeout` is over.
@@ -71,7 +77,7 @@ public:
     }
 
 private:
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     bool is_closed_ = false;
     std::condition_variable there_is_more_;
     std::vector<Command> commands_;

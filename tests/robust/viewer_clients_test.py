@@ -109,7 +109,7 @@ class SlowLink(WithViewer):
 
     def test_a_slow_link_gets_pictures_of_a_lower_quality_and_its_delay_does_not_grow(self):
         sent, delays, sizes, coarse, end = {}, [], [], [], time.monotonic() + 4
-        with Client(Tunnel(self.viewer, 32 << 10), key="far") as far:
+        with Tunnel(self.viewer, 32 << 10) as tunnel, Client(tunnel, key="far") as far:
             far.set("moving_scale", "1")
 
             def goes_on():  # a machine under load takes longer

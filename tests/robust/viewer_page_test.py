@@ -416,10 +416,10 @@ class Cameras(unittest.TestCase):
 class Comings(unittest.TestCase):
     def test_a_wrong_token_is_refused_and_the_page_comes_back_after_the_connection_was_lost(self):
         with Viewer(size="64x48", spp=2) as viewer, \
-                BROWSER.visit(viewer.address[:-1] + ("0" if viewer.address[-1] != "0" else "1")) as page:
+                BROWSER.visit(viewer.address[:-1] + ("0" if viewer.address[-1] != "0" else "1")) as page, \
+                Tunnel(viewer) as tunnel:  # on a port of its own, as ssh -L may have it
             page.until("document.body && document.body.innerText.includes('pertev view printed')")
             self.assertEqual([error for error in page.errors if "403 (Forbidden)" not in error], [])
-            tunnel = Tunnel(viewer)  # on a port of its own, as ssh -L may have it
             page.go(viewer.address.replace(f":{viewer.port}/", f":{tunnel.port}/"))
             page.until("document.body.dataset.kind == 'png' && document.body.dataset.steers == 'true'")
             page.key("KeyD", "d", 0.3)

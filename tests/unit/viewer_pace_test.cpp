@@ -327,6 +327,25 @@ TEST_CASE("messages reach the renderer from whoever steers alone, and floods and
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() <= 1000);
 }
 
+TEST_CASE("a client whose message comes while the viewer ends is not told that it sent too many") {
+    Inbox inbox;
+    Audience audience(inbox, "welcome");
+    audience.open(1, 0);
+    audience.said(1, kHello, 0);
+    inbox.close();
+    CHECK(audience.said(1, R"({"type":"home","n":1})", 0).empty());
+}
+
+TEST_CASE("where the renderer takes nothing, whoever steers is dropped before the messages fill the memory") {
+    Inbox inbox;
+    Audience audience(inbox, "welcome");
+    audience.open(1, 0);
+    audience.said(1, kHello, 0);
+    std::string why;
+    for (int i = 0; i < 10000 && why.empty(); ++i) why = audience.said(1, R"({"type":"home","n":1})", i);
+    CHECK(why == "too many messages wait");
+}
+
 TEST_CASE("there is room for so many clients, and those without a hello are dropped") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
