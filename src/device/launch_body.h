@@ -18,18 +18,26 @@ __global__ void __launch_bounds__(128) run_stage(Stage stage, WorkCount count) {
 }
 #endif
 
+#if defined(__CUDACC__)
+/// As launch(), with a queue of a GPU alone: the CPU's loop is not compiled.
 template <class Stage>
-void launch(Queue& queue, const char* name, WorkCount count, const Stage& stage) {
+void launch_on_gpu(Queue& queue, const char* name, WorkCount count, const Stage& stage) {
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
-#if defined(__CUDACC__)
-    if (queue.is_cuda()) {
-        constexpr uint32_t threads = 128;
-        const uint32_t blocks = uint32_t((uint64_t(count.most) + threads - 1) / threads);
-        run_stage<<<blocks, threads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count);
-        return queue.check_launch();
-    }
+    constexpr uint32_t threads = 128;
+    const uint32_t blocks = uint32_t((uint64_t(count.most) + threads - 1) / threads);
+    run_stage<<<blocks, threads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count);
+    queue.check_launch();
+}
 #endif
+
+template <class Stage>
+void launch(Queue& queue, const char* name, WorkCount count, const Stage& stage) {
+#if defined(__CUDACC__)
+    if (queue.is_cuda()) return launch_on_gpu(queue, name, count, stage);
+#endif
+    if (count.most == 0) return;
+    const Queue::Scope scope(queue, name);
     parallel_for(count.value(), 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 

@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-RenderSettings meter_settings(const RenderSettings& asked) {
+RenderSettings probe_settings(const RenderSettings& asked) {
     RenderSettings settings;
     settings.integrator = IntegratorKind::Path;
     settings.path = asked.path;
@@ -54,7 +54,7 @@ Camera meter_camera(const Scene& scene, const MeterPlace& place) {
 Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPlace& place,
                               const RenderSettings& asked, const std::function<bool(double)>& keep_going) {
     PERTEV_CHECK(asked.path.seed <= kMostMeterSeed);
-    RenderSettings settings = meter_settings(asked);
+    RenderSettings settings = probe_settings(asked);
     Session session(queue, scene, meter_camera(*scene.scene, place), settings);
     Irradiance result;
     double estimates[4][kMeterRepeats];

@@ -3,11 +3,11 @@
 
 namespace pertev {
 using enum MaterialsKnown;
-using enum PhotonSearch;
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Grid>&);
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, KdTree>&);
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Octree>&);
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Grid>&);
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, KdTree>&);
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Octree>&);
+using Search = PhotonSearch;
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Search::Grid>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Search::KdTree>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Search::Octree>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::Grid>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::KdTree>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::Octree>&);
 } // namespace pertev

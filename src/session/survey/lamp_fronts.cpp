@@ -12,9 +12,10 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kMostNames = 5;
-constexpr std::size_t kMostLamps = 16, kMostTriangles = 4; // that are looked at: of a lamp, spread over its list
-constexpr uint64_t kMostSceneTriangles = 2'000'000;        // a tenth of a second for 128 rays on one core
-constexpr float kMuchMore = 20;                            // room behind for each metre before
+constexpr std::size_t kMostLamps = 16;              // that are looked at
+constexpr std::size_t kMostOfLamp = 4;              // triangles that are looked at, spread over the lamp's list
+constexpr uint64_t kMostSceneTriangles = 2'000'000; // a tenth of a second for 128 rays on one core
+constexpr float kMuchMore = 20;                     // room behind for each metre before
 
 bool is_one_sided_lamp(const Material& material) { return material.is_lamp() && !material.two_sided_emission; }
 
@@ -22,7 +23,7 @@ bool is_one_sided_lamp(const Material& material) { return material.is_lamp() && 
 std::vector<LookRay> rays_from(const Scene& scene, const Instance& lamp) {
     const Mesh& mesh = scene.meshes[lamp.mesh];
     std::vector<LookRay> rays;
-    const std::size_t count = mesh.triangle_count(), looked_at = std::min(count, kMostTriangles);
+    const std::size_t count = mesh.triangle_count(), looked_at = std::min(count, kMostOfLamp);
     for (std::size_t k = 0; k < looked_at; ++k) {
         const uint32_t* index = mesh.indices.data() + 3 * (k * count / looked_at);
         const auto corner = [&](int i) { return transform_point(lamp.world_from_local, mesh.positions[index[i]]); };

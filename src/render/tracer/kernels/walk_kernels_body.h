@@ -107,7 +107,7 @@ void count_lanes(Queue& queue, const AnyTrees& trees, const RayBatch& batch, Lan
         launch_persistent(queue, "count lanes", batch.count, CountLanes<Walk, kAny>{scene, batch.query, counts},
                           batch.pool);
     } else {
-        launch(queue, "count lanes", batch.count, CountLanes<Walk, kAny>{scene, batch.query, counts});
+        launch_on_gpu(queue, "count lanes", batch.count, CountLanes<Walk, kAny>{scene, batch.query, counts});
     }
 }
 
