@@ -1,7 +1,6 @@
 #include "apps/cli/radiosity_flags.h"
 
-#include <unistd.h>
-
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
 #include "base/error.h"
+#include "base/machine_memory.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "radiosity/solve_memory.h"
@@ -21,14 +21,15 @@
 namespace pertev {
 namespace {
 
-std::pair<const char*, bool> given_flags_of_solving(const RadiosityFlags& flags) {
+/// The first that is given. `with_memory`: of --max-memory too.
+std::pair<const char*, bool> given_flags_of_solving(const RadiosityFlags& flags, bool with_memory) {
     for (const auto& [flag, is_given] :
          {std::pair("--patch-size", flags.patch_size > 0), std::pair("--subdivisions", flags.subdivisions.has_value()),
           std::pair("--contrast", flags.contrast > 0), std::pair("--form-factors", !flags.form_factors.empty()),
           std::pair("--patch-rays", flags.rays > 0), std::pair("--hemicube", flags.hemicube > 0),
           std::pair("--solver", !flags.solver.empty()), std::pair("--tolerance", flags.tolerance > 0),
           std::pair("--steps", flags.steps > 0), std::pair("--link-error", flags.link_error > 0),
-          std::pair("--max-memory", flags.max_memory > 0)}) {
+          std::pair("--max-memory", with_memory && flags.max_memory > 0)}) {
         if (is_given) return {flag, true};
     }
     return {"", false};
@@ -92,7 +93,8 @@ void add_solving_flags(CLI::App& verb, RadiosityFlags& flags, const char* group)
         ->check(number_above_zero())
         ->group(group);
     verb.add_option("--max-memory", flags.max_memory,
-                    "of radiosity: refuse at once what might take more of this\nmachine's memory (all there is)")
+                    "refuse at once what takes more: radiosity of this machine's\nmemory, pertev render of the "
+                    "device's (all there is)")
         ->type_name("MIB")
         ->check(number_above_zero())
         ->group(group);
@@ -133,8 +135,9 @@ RadiositySettings radiosity_settings(const RadiosityFlags& flags, uint32_t seed)
     return settings;
 }
 
-void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrator, const std::string& name) {
-    const auto [flag, is_given] = given_flags_of_solving(flags);
+void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrator, const std::string& name,
+                           bool limits_memory) {
+    const auto [flag, is_given] = given_flags_of_solving(flags, !limits_memory);
     if (integrator != IntegratorKind::Radiosity) {
         refuse(is_given, fmt::format("{}: of --integrator radiosity; {} has no patches", flag, name));
         refuse(!flags.solution.empty(), fmt::format("--solution: of --integrator radiosity; {} has none", name));
@@ -148,13 +151,12 @@ void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrato
     radiosity_settings(flags, 0);
 }
 
-namespace {
-
-std::size_t memory_to_use(const RadiosityFlags& flags) {
-    if (flags.max_memory > 0) return static_cast<std::size_t>(static_cast<double>(flags.max_memory) * 0x1p20);
-    const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGESIZE);
-    return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
+std::optional<std::size_t> max_memory_bytes(const RadiosityFlags& flags) {
+    if (!(flags.max_memory > 0)) return std::nullopt;
+    return static_cast<std::size_t>(std::min(flags.max_memory * 0x1p20, 0x1p62));
 }
+
+namespace {
 
 /// Shows how far each step is, and what is left of it.
 class StepProgress {
@@ -205,7 +207,7 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityF
     reporter.event(fmt::format(
         R"({{"event":"radiosity","most_patches":{},"most_shown":{},"patch_size":{},"predicted_bytes":{},"peak_bytes":{}}})",
         memory.patches, memory.shown, patch_size_of(prepared, settings), memory.bytes, before));
-    check_memory(memory, settings, memory_to_use(flags));
+    check_memory(memory, settings, max_memory_bytes(flags).value_or(machine_memory_bytes()));
     listen_for_interrupt();
     StepProgress progress(reporter);
     SolvedRadiosity solved = solve_radiosity(prepared, settings, [&](const char* what, double share) {

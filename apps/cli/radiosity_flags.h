@@ -2,6 +2,7 @@
 
 // The flags of radiosity: how it is solved, for pertev solve and for pictures, and how a solution is shown.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -25,7 +26,7 @@ struct RadiosityFlags {
     std::string form_factors, solver;
     std::string solution; // of pictures: a file
     bool flat_patches = false;
-    float max_memory = 0; // MiB
+    double max_memory = 0; // MiB; of pictures by any integrator too
 };
 
 /// How it is solved.
@@ -35,8 +36,12 @@ void add_radiosity_flags(CLI::App& verb, RadiosityFlags& flags, const char* grou
 
 /// What they ask for. Throws Error(BadInput) where flags do not go together.
 RadiositySettings radiosity_settings(const RadiosityFlags& flags, uint32_t seed);
-/// Throws Error(BadInput) where one is given to another integrator, called `name`, or to a solution that is there.
-void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrator, const std::string& name);
+/// Throws Error(BadInput) where one is given to another integrator, called `name`, or to a solution that is there; but
+/// for --max-memory, where the verb `limits_memory` of all integrators.
+void check_radiosity_flags(const RadiosityFlags& flags, IntegratorKind integrator, const std::string& name,
+                           bool limits_memory);
+/// --max-memory in bytes.
+std::optional<std::size_t> max_memory_bytes(const RadiosityFlags& flags);
 
 /// Solves the scene; says what it will take before, how far it is, and what came of it. Listens for Ctrl-C. Throws
 /// Error(OutOfMemory) where it may take more of this machine's memory than `flags` allow, or than there is.

@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "session/render_memory.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -46,7 +47,7 @@ void say_hidden_backs(double share, Messages& messages) {
                               100 * share));
 }
 
-/// What is about to be rendered, and on what.
+/// What is about to be rendered, and on what. Throws Error(OutOfMemory) where that is too much.
 void report_start(const RenderFlags& flags, const Scene& scene, const PreparedScene& prepared,
                   const RenderSettings& settings, const Queue& queue, double load_s, Reporter& reporter) {
     const std::size_t bytes =
@@ -66,6 +67,7 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
     reporter.event(
         fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",
                     settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
+    check_render_memory(bytes, settings, memory_to_render_in(queue, settings, max_memory_bytes(flags.radiosity)));
 }
 
 /// Of a picture that an integrator had not begun to sample.

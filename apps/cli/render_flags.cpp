@@ -13,6 +13,7 @@
 #include "apps/cli/real_time_flags.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "image/write_exr.h"
 #include "image/write_image.h"
 #include "session/check_integrator.h"
 #include "session/height_maps.h"
@@ -132,7 +133,7 @@ RenderSettings light_settings(const RenderFlags& flags) {
     set_integrator(settings, flags.integrator);
     settings.photon_map = photon_map_settings(flags.photons, settings.integrator, flags.integrator);
     settings.irradiance_cache = irradiance_cache_settings(flags.cache, settings.integrator, flags.integrator);
-    check_radiosity_flags(flags.radiosity, settings.integrator, flags.integrator);
+    check_radiosity_flags(flags.radiosity, settings.integrator, flags.integrator, flags.limits_memory);
     check_integrator(settings);
     if (flags.shading_rate > 0) settings.shading_rate = flags.shading_rate;
     height_maps(flags);
@@ -285,6 +286,7 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags) {
 }
 
 void add_render_flags(CLI::App& verb, RenderFlags& flags) {
+    flags.limits_memory = true;
     add_scene_options(verb, flags.scene);
     verb.add_option("-o,--output", flags.outputs, "picture to write: .exr .png .jpg .hdr; may be given again")
         ->type_name("FILE")
@@ -311,7 +313,7 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
         ->group("Picture");
     verb.add_option("--lpe", flags.light_paths,
                     "a layer of an EXR with the light of some paths alone, from the\nlight to the eye: LD+E, or "
-                    "caustics LS+DE, or L<'lamp'>.*E;\nmay be given again (docs/transport.md)")
+                    "caustics LS+DE, or L<'lamp'>.*E;\nmay be given again, any number of times (docs/transport.md)")
         ->type_name("NAME=EXPRESSION")
         ->allow_extra_args(false)
         ->group("Picture");
@@ -407,6 +409,7 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
     } else {
         set_default_size(settings, scene_camera(flags.scene, scene));
     }
+    check_exr_row(settings.width, film_channel_count(settings.aovs) + std::size_t(3) * light_layers_of(settings));
     return settings;
 }
 

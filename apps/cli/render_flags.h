@@ -51,6 +51,7 @@ struct RenderFlags {
     PhotonFlags photons;
     IrradianceCacheFlags cache;
     RadiosityFlags radiosity;
+    bool limits_memory = false; // --max-memory counts for all integrators
     float filter_radius = 0, clamp = 0;
     uint32_t max_depth = PathSettings{}.max_depth, seed = PathSettings{}.seed;
     MachineFlags machine;

@@ -21,7 +21,7 @@ constexpr uint32_t kTiled = 0x200, kDeep = 0x800, kMultiPart = 0x1000;
 constexpr uint32_t kKnownFlags = kTiled | 0x400 /* long names */ | kDeep | kMultiPart;
 constexpr uint8_t kDwaa = 8, kDwab = 9;
 constexpr std::size_t kMostParts = 1024;
-constexpr std::size_t kMostChannels = 4096;
+constexpr std::size_t kMostChannels = std::size_t(1) << 20;
 
 struct Box {
     int64_t x0 = 0, y0 = 0, x1 = -1, y1 = -1; // inclusive

@@ -14,6 +14,8 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "base/write_file_atomically.h"
 
@@ -40,11 +42,17 @@ private:
     std::size_t offset_ = 0;
 };
 
+constexpr std::size_t kMostChunkBytes = std::size_t(1) << 28; // of 16 rows, which OpenEXR packs at once
+constexpr std::size_t kMostRowBytes = std::size_t(1) << 30;   // it counts them in int
+
+constexpr std::size_t row_bytes(uint32_t width, std::size_t channels) { return sizeof(float) * width * channels; }
+
 class Builder {
 public:
-    Builder(uint32_t width, uint32_t height)
+    Builder(uint32_t width, uint32_t height, std::size_t channels)
         : header(static_cast<int>(width), static_cast<int>(height)), width_(width) {
-        header.compression() = Imf::ZIP_COMPRESSION;
+        const bool is_wide = 16 * row_bytes(width, channels) > kMostChunkBytes;
+        header.compression() = is_wide ? Imf::ZIPS_COMPRESSION : Imf::ZIP_COMPRESSION;
     }
 
     // OpenEXR's slices are of one type for reading and writing; it only reads here.
@@ -79,12 +87,22 @@ void add_metadata(Imf::Header& header, const ExrMetadata& metadata) {
 
 } // namespace
 
+void check_exr_row(uint32_t width, std::size_t channels) {
+    if (row_bytes(width, channels) <= kMostRowBytes) return;
+    throw Error(ErrorCode::OverLimit, fmt::format("{} channels of {} pixels a row: an EXR takes rows of 1 GiB at most, "
+                                                  "which are {} channels of that width",
+                                                  channels, width, kMostRowBytes / row_bytes(width, 1)));
+}
+
 std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer> layers, const ExrMetadata& metadata) {
     const std::size_t pixels = std::size_t(picture.width) * picture.height;
     PERTEV_CHECK(pixels > 0 && picture.channels >= 1 && picture.channels <= 4);
     PERTEV_CHECK(picture.pixels.size() == pixels * picture.channels);
 
-    Builder builder(picture.width, picture.height);
+    std::size_t channels = picture.channels;
+    for (const ExrLayer& layer : layers) channels += layer.channels.size();
+    PERTEV_CHECK(row_bytes(picture.width, channels) <= kMostRowBytes);
+    Builder builder(picture.width, picture.height, channels);
     constexpr const char* kNames[4][4] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     for (uint32_t c = 0; c < picture.channels; ++c)
         builder.add(kNames[picture.channels - 1][c], Imf::FLOAT, picture.pixels.data() + c, picture.channels * 4);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Writes OpenEXR: 32-bit float, lossless (ZIP), scanlines; further layers beside the picture; metadata. Equal
-// pictures give equal bytes: nothing of the time or the machine goes in.
+// Writes OpenEXR: 32-bit float, lossless (ZIP of 16 rows; of one, where 16 are over 256 MiB), scanlines; further layers
+// beside the picture; metadata. Equal pictures give equal bytes: nothing of the time or the machine goes in.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +23,9 @@ struct ExrLayer {
     // Interleaved, [height * width * channels.size()]. Ids are integers, since float is exact only up to 2^24.
     std::variant<std::vector<float>, std::vector<uint32_t>> values;
 };
+
+/// Throws Error(OverLimit) for a picture whose rows of so many channels an EXR cannot hold: over 1 GiB each.
+void check_exr_row(uint32_t width, std::size_t channels);
 
 /// The file's bytes. Channels of `picture`: 1 Y, 2 Y A, 3 R G B, 4 R G B A (colour premultiplied by alpha, as EXR
 /// has it). Metadata names of the format's own attributes ("channels", ...) are a programmer's mistake.

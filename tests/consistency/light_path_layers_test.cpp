@@ -4,9 +4,16 @@
 
 #include <doctest/doctest.h>
 
+#include <span>
+
+#include <fmt/format.h>
+
+#include "base/machine_memory.h"
 #include "base/parallel_for.h"
+#include "session/render_memory.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -16,16 +23,34 @@ namespace {
 constexpr const char* kLightLayers[] = {"seen=LE",       "direct=L[DG]E",           "mirrored=L.*SE",
                                         "rest=L.+[DG]E", "sky=L<'environment'>.*E", "lamps=L<^'environment'>.*E"};
 
+std::shared_ptr<const LightPathLayers> light_layers_in(const Scene& scene, std::span<const std::string> texts) {
+    std::vector<LightPathExpression> expressions;
+    for (const std::string& text : texts) expressions.push_back(parse_light_path(text));
+    return std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), scene));
+}
+
 RenderSettings with_light_layers(const Scene& scene) {
     RenderSettings settings;
     settings.width = 61; // odd on purpose: tiles do not fit
     settings.height = 35;
     settings.samples = 4;
     settings.aovs = kAovAlbedo | kAovDepth;
-    std::vector<LightPathExpression> expressions;
-    for (const char* text : kLightLayers) expressions.push_back(parse_light_path(text));
-    settings.light_paths = std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), scene));
+    settings.light_paths =
+        light_layers_in(scene, std::vector<std::string>(std::begin(kLightLayers), std::end(kLightLayers)));
     return settings;
+}
+
+/// A hundred that differ, n0 to n99: many of them take part in the same light.
+std::vector<std::string> hundred_expressions() {
+    std::vector<std::string> texts;
+    for (const char* end : {"D", "G", "S", ".", "[^D]"}) {
+        for (const char* between : {"", ".?", ".*", "[DS]*"}) {
+            for (const char* light : {"L", "L<'environment'>", "L<^'environment'>", "L<'*'>D", "LD"}) {
+                texts.push_back("n" + std::to_string(texts.size()) + "=" + light + between + end + "E");
+            }
+        }
+    }
+    return texts;
 }
 
 RenderResult render_mixed_layers(Queue& queue, const RenderSettings& settings) {
@@ -44,8 +69,10 @@ const Hash128& reference_layers_hash() {
 
 TEST_CASE("layers do not depend on threads, passes, bodies and batches") {
     const RenderSettings settings = with_light_layers(test::make_mixed_scene());
-    set_thread_count(3);
-    CHECK(cpu_layers_hash(settings) == reference_layers_hash());
+    for (const int threads : {1, 5}) {
+        set_thread_count(threads);
+        CHECK(cpu_layers_hash(settings) == reference_layers_hash());
+    }
     set_thread_count(0);
     RenderSettings other = settings;
     other.pass_samples = 1;
@@ -108,6 +135,58 @@ TEST_CASE("layers that share out all paths add up to the picture within 1e-6") {
     }
 }
 
+TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes that it has alone") {
+    const Scene scene = test::make_mixed_scene();
+    const std::vector<std::string> texts = hundred_expressions();
+    REQUIRE(texts.size() == 100);
+    RenderSettings settings;
+    settings.width = 29;
+    settings.height = 17;
+    settings.samples = 3;
+    settings.aovs = kAovDepth;
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto layers_by = [&](Session& session, std::span<const std::string> asked) {
+        settings.light_paths = light_layers_in(scene, asked);
+        session.set_settings(settings);
+        session.render(settings.samples);
+        std::vector<FilmLayer> layers = session.layers();
+        CHECK(layers.size() == 1 + asked.size());
+        layers.erase(layers.begin()); // depth
+        return layers;
+    };
+    Queue queue = Queue::make_cpu();
+    std::vector<Image> alone;
+    {
+        Session session(queue, prepared, test::mixed_scene_camera(), settings);
+        for (const std::string& text : texts) alone.push_back(layers_by(session, {&text, 1}).front().image);
+    }
+    std::size_t lit = 0;
+    for (const Image& image : alone) lit += test::mean_of(image) > 0 ? 1 : 0;
+    CHECK(lit >= 90);
+    for (const std::size_t border : {31u, 32u, 63u, 64u, 95u, 96u, 99u}) CHECK(test::mean_of(alone[border]) > 0);
+    const auto check = [&](Queue& on, PathBody body, IntegratorKind integrator) {
+        settings.body = body;
+        settings.integrator = integrator;
+        Session session(on, prepared, test::mixed_scene_camera(), settings);
+        for (const std::size_t count : {33u, 64u, 65u, 100u}) {
+            CAPTURE(count);
+            const std::vector<FilmLayer> layers = layers_by(session, {texts.data(), count});
+            for (std::size_t i = 0; i < count; ++i) {
+                CAPTURE(i);
+                CHECK(layers[i].name == "n" + std::to_string(i));
+                CHECK(layers[i].image.pixels == alone[i].pixels);
+            }
+        }
+    };
+    check(queue, PathBody::Loop, IntegratorKind::Path);
+    check(queue, PathBody::Wavefront, IntegratorKind::Path);
+    check(queue, PathBody::Wavefront, IntegratorKind::Hybrid);
+    if (!test::cuda_requested()) return;
+    Queue gpu = test::make_cuda_queue();
+    check(gpu, PathBody::Wavefront, IntegratorKind::Path);
+}
+
 TEST_CASE("a session goes from layers to none and to others, and has the pictures of fresh ones") {
     Queue queue = test::queue_asked_for();
     const Scene scene = test::make_mixed_scene();
@@ -133,8 +212,11 @@ TEST_CASE("what layers take is said beforehand, by either body") {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = with_light_layers(scene);
-    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+    const auto few = settings.light_paths, many = light_layers_in(scene, hundred_expressions());
+    for (const auto& [body, layers_asked] : {std::pair(PathBody::Loop, few), std::pair(PathBody::Wavefront, few),
+                                             std::pair(PathBody::Loop, many), std::pair(PathBody::Wavefront, many)}) {
         settings.body = body;
+        settings.light_paths = layers_asked;
         Queue queue = Queue::make_cpu();
         Session session(queue, prepared, test::mixed_scene_camera(), settings);
         session.render(settings.samples);
@@ -144,8 +226,17 @@ TEST_CASE("what layers take is said beforehand, by either body") {
         RenderSettings without = settings;
         without.light_paths = nullptr;
         const std::size_t pixels = settings.width * settings.height, paths = pixels * settings.samples;
-        const std::size_t layers = pixels * std::size(kLightLayers) * 3 * sizeof(FixedSum);
+        const std::size_t layers = pixels * layers_asked->count() * 3 * sizeof(FixedSum);
         const std::size_t queues = body == PathBody::Wavefront ? paths * 48 : 0;
         CHECK(said - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
+        check_render_memory(said, settings, said);
+        const auto error = test::thrown_error([&] { check_render_memory(said, settings, said - 1); });
+        REQUIRE((error && error->code() == ErrorCode::OutOfMemory));
+        CHECK(std::string(error->what()).find(fmt::format(" and {} layers of --lpe has ", layers_asked->count())) !=
+              std::string::npos);
+        CHECK(memory_to_render_in(queue, settings, said) == said);
+        const std::size_t of_machine = memory_to_render_in(queue, settings, {});
+        const std::size_t channels = 4 + 3 + 1 + 3 * layers_asked->count(); // with albedo and depth
+        CHECK(of_machine == machine_memory_bytes() - pixels * channels * sizeof(float));
     }
 }

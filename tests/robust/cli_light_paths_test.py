@@ -1,7 +1,13 @@
 #!/usr/bin/env python3
 """--lpe on the command line: layers of an EXR, what is refused, and what of it stands in the file."""
 
+import os
+
 from cli_run import CliTest, main, read_exr
+
+
+def lpe(expressions):
+    return [flag for name, text in expressions.items() for flag in ("--lpe", f"{name}={text}")]
 
 
 class Layers(CliTest):
@@ -9,8 +15,7 @@ class Layers(CliTest):
         flags = ["--size", "24x24", "--spp", "4", "--device", "cpu", "--json"]
         plain = self.succeed("render", "cornell-box", "-o", "plain.exr", *flags).events("done")[0]
         expressions = ["seen=LE", "direct=LDE", "bounced=LD{2,}E"]
-        lpe = [flag for text in expressions for flag in ("--lpe", text)]
-        run = self.succeed("render", "cornell-box", "-o", "x.exr", *flags, *lpe)
+        run = self.succeed("render", "cornell-box", "-o", "x.exr", *flags, *lpe(dict(text.split("=") for text in expressions)))
         self.assertEqual(run.events("done")[0]["hash"], plain["hash"])
         self.assertGreater(run.events("picture")[0]["predicted_bytes"], 24 * 24 * 3 * 3 * 16)
         _, _, channels = read_exr(self.path("x.exr"))
@@ -31,6 +36,33 @@ class Layers(CliTest):
         self.refuse(2, "render", "cornell-box", "-o", "f-#.exr", "--turntable", "2", "--size", "8x8", "--spp", "1",
                     "--continue", "--lpe", "direct=LDDE", says=["--continue"])
 
+    def test_a_hundred_layers_are_each_what_it_is_alone(self):
+        flags = ["--size", "12x9", "--spp", "2", "--device", "cpu", "--json"]
+        many = {f"n{i}": f"L{'D' if i % 2 else ''}.{{{i // 2 % 7}}}{['', 'D', '[^S]', '.*'][i // 14 % 4]}E" for i in range(100)}
+        run = self.succeed("render", "cornell-box", "-o", "x.exr", *flags, *lpe(many))
+        self.assertGreater(run.events("picture")[0]["predicted_bytes"], 12 * 9 * 100 * 3 * 16)
+        _, _, channels = read_exr(self.path("x.exr"))
+        self.assertEqual(len(channels), 303)
+        self.assertEqual(self.info("x.exr")["pertev.lpe"], "\n".join(f"{name}={text}" for name, text in many.items()))
+        for name in ("n0", "n31", "n32", "n63", "n64", "n95", "n96", "n99"):
+            self.succeed("render", "cornell-box", "-o", "one.exr", *flags, "--lpe", f"{name}={many[name]}")
+            alone = read_exr(self.path("one.exr"))[2]
+            for channel in "RGB":
+                self.assertEqual(channels[f"{name}.{channel}"], alone[f"{name}.{channel}"], name)
+            self.assertGreater(sum(map(sum, alone[f"{name}.G"])), 0, name)
+
+    def test_a_render_that_takes_more_memory_than_it_may_is_refused(self):
+        flags = ["--size", "64x48", "--spp", "1", "--device", "cpu", *lpe({f"n{i}": "LE" for i in range(100)})]
+        bytes = self.succeed("render", "cornell-box", "-o", "x.exr", "--json", *flags).events("picture")[0]["predicted_bytes"]
+        self.succeed("render", "cornell-box", "-o", "x.exr", *flags, "--max-memory", repr(bytes / 2**20))
+        os.remove(self.path("x.exr"))
+        self.refuse(4, "render", "cornell-box", "-o", "x.exr", *flags, "--max-memory", repr((bytes - 1) / 2**20),
+                    says=["--max-memory", "100 layers of --lpe", "smaller --size"])
+        self.refuse(4, "render", "cornell-box", "-o", "x.exr", "--size", "32768x32768", *flags[2:],
+                    says=["the render takes", "--max-memory"])  # more than any machine has: 4.8 TiB
+        for verb in ("view cornell-box --max-memory 5", "bench noise cornell-box --max-memory 5"):
+            self.refuse(2, *verb.split(), says=["--max-memory: of --integrator radiosity"])
+
     def test_what_is_wrong_is_told_before_anything_is_rendered(self):
         def refuse(status, *flags, says):
             self.refuse(status, "render", "cornell-box", "-o", "x.exr", *flags, says=says)
@@ -42,8 +74,20 @@ class Layers(CliTest):
         refuse(2, "--lpe", "depth=LE", says=["another layer of this name"])
         refuse(2, "--lpe", "a=LE", "--integrator", "whitted", "--ambient", "0", says=["--lpe", "not by whitted"])
         refuse(2, "--lpe", "a=LE", "--denoise", "svgf", says=["--lpe", "--denoise svgf"])
-        refuse(3, *[flag for i in range(33) for flag in ("--lpe", f"n{i}=LE")], says=["33 expressions", "32 at most"])
-        refuse(3, "--lpe", "a=L.{15}D.*E", says=["16384 states"])
+        refuse(3, "--lpe", "a=L.{15}D.*E", says=["16384 states", "render some of the expressions apart"])
+        many = {f"n{i}": f"L.{{{i}}}E" for i in range(100)}
+        refuse(2, *lpe(many), "--lpe", "n57=LDE",
+               says=["--lpe n57: two expressions have this name\n  n57=L.{57}E\n  n57=LDE"])
+        refuse(2, *lpe(many | {"n98": "L.{2}(E"}), says=["--lpe n98: character 6: this ( is not closed\n  L.{2}(E\n       ^"])
+        refuse(2, *lpe(many | {"noisy": "LE"}), says=["--lpe noisy: files have another layer of this name"])
+        refuse(3, *lpe({f"n{i}": f"L(.{{{2 * i + 3}}})*E" for i in range(40)}), says=["16384 states"])
+        for unnamed in (" ", "=", "a", "=LE"):
+            refuse(2, "--lpe", unnamed, says=["expected NAME=EXPRESSION, as caustics=LS+DE"])
+        for empty in ("a=", "a= "):
+            refuse(2, "--lpe", empty, says=["--lpe a: character 1: an expression stands here: as LD*E"])
+        refuse(2, "--lpe=", says=["--lpe", "NAME=EXPRESSION missing"])
+        refuse(2, "--lpe", "a=CDL", says=["--lpe a: character 1: from the light to the eye: LD*E is what is CD*L elsewhere"])
+        refuse(2, "--lpe", "a=LDE,b=LE", says=["--lpe a: character 4: each expression has a --lpe"])
         self.refuse(2, "render", "cornell-box", "-o", "x.png", "--lpe", "a=LE", says=["EXR files alone"])
 
 

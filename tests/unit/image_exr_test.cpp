@@ -17,6 +17,7 @@
 #include <ImfTiledOutputFile.h>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "image/decode_image.h"
 #include "image/picture_hash.h"
 #include "image/read_exr.h"
@@ -224,6 +225,41 @@ TEST_CASE("a written EXR gives back every bit, its layers, ids over 2^24 and met
     REQUIRE(file.find("id.instance") != nullptr);
     CHECK(std::get<1>(file.find("id.instance")->values) == std::vector<uint32_t>{0, 16777217, 4294967295u, 5});
     for (const auto& entry : metadata) CHECK(std::count(file.metadata.begin(), file.metadata.end(), entry) == 1);
+}
+
+TEST_CASE("an EXR holds rows of any length: where sixteen are over 256 MiB, each is packed by itself") {
+    constexpr uint32_t kWidth = kMaxImageSide;
+    for (const auto& [layer_count, compression] :
+         {std::pair(20u, Imf::ZIP_COMPRESSION), std::pair(21u, Imf::ZIPS_COMPRESSION)}) {
+        CAPTURE(layer_count); // 63 channels of 2^18 bytes a row, and 66
+        const Image picture{kWidth, 1, 3, std::vector<float>(3 * kWidth, 0.5f)};
+        std::vector<ExrLayer> layers;
+        for (uint32_t i = 0; i < layer_count; ++i) {
+            layers.push_back(
+                {"n" + std::to_string(i), {"R", "G", "B"}, std::vector<float>(3 * kWidth, static_cast<float>(i))});
+        }
+        const std::vector<std::byte> bytes = encode_exr(picture, layers);
+        const char name[] = "compression\0compression\0\1\0\0"; // its size, 1, has a 0 more, which ends the array
+        const auto* const first = reinterpret_cast<const char*>(bytes.data());
+        const auto* const found = std::search(first, first + bytes.size(), name, name + sizeof name);
+        REQUIRE(found != first + bytes.size());
+        CHECK(static_cast<int>(found[sizeof name]) == static_cast<int>(compression));
+        const ExrFile file = read_exr(bytes, "wide.exr");
+        CHECK(file.channels.size() == 3 + 3 * layer_count);
+        const ExrChannel* const last = file.find("n" + std::to_string(layer_count - 1) + ".B");
+        REQUIRE(last != nullptr);
+        CHECK(std::get<0>(last->values) == std::vector<float>(kWidth, static_cast<float>(layer_count - 1)));
+    }
+}
+
+TEST_CASE("an EXR whose rows would be over 1 GiB is refused before it is made") {
+    check_exr_row(kMaxImageSide, 4096);
+    check_exr_row(1u << 14, 16384);
+    for (const auto& [width, channels] : {std::pair(kMaxImageSide, 4097u), std::pair((1u << 14) + 1, 16384u)}) {
+        const auto error = test::thrown_error([&, w = width, c = channels] { check_exr_row(w, c); });
+        REQUIRE((error && error->code() == ErrorCode::OverLimit));
+        CHECK(test::says(error, channels == 4097 ? "4096 channels of that width" : "16383 channels of that width"));
+    }
 }
 
 TEST_CASE("two layers of one name and metadata named as the format's own are a programmer's mistake") {

@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <regex>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "render/light_paths/light_path_automaton.h"
@@ -29,9 +32,8 @@ LightPathAutomaton automaton_of(const std::vector<std::string>& texts) {
     return make_automaton(expressions, {{tag}, {tag}});
 }
 
-/// The layers that take the light of a path whose scatterings are `word`, from the light to the eye; small letters are
-/// transmissions.
-uint32_t layers_of_word(const LightPathAutomaton& automaton, const std::string& word) {
+/// Where a path stands whose scatterings are `word`, from the light to the eye; small letters are transmissions.
+uint16_t state_after(const LightPathAutomaton& automaton, const std::string& word) {
     uint16_t state = automaton.start;
     for (auto letter = word.rbegin(); letter != word.rend(); ++letter) {
         const bool is_small = *letter >= 'a';
@@ -39,7 +41,26 @@ uint32_t layers_of_word(const LightPathAutomaton& automaton, const std::string& 
         const auto number = std::string_view(kLobeLetters).find(capital);
         state = automaton.next_state(state, 0, kLobeClasses[number], is_small);
     }
-    return automaton.layers_of(state, 0);
+    return state;
+}
+
+/// The layers that take its light, of 32 at most.
+uint32_t layers_of_word(const LightPathAutomaton& automaton, const std::string& word) {
+    REQUIRE(automaton.words == 1);
+    return automaton.layers_of(state_after(automaton, word), 0)[0];
+}
+
+/// In the letters of the standard library.
+std::regex as_regex(const std::string& text) {
+    return std::regex(
+        std::regex_replace(std::regex_replace(text, std::regex("\\."), "[DGS]"), std::regex("\\[\\^S\\]"), "[DG]"));
+}
+
+/// Whether making an automaton of `texts` ends with OverLimit and a message that says `says`.
+bool is_over(const std::vector<std::string>& texts, const std::string& says) {
+    const auto error = test::thrown_error([&] { automaton_of(texts); });
+    if (error) INFO(error->what());
+    return error && error->code() == ErrorCode::OverLimit && std::string(error->what()).find(says) != std::string::npos;
 }
 
 /// All words of up to `most` letters.
@@ -70,10 +91,7 @@ TEST_CASE("the automaton takes the words that a regular expression of the standa
         "L(D?S){2}E", "L((D|G)*S)*DE", "L(|D)E",  "L(D*)*E",     "L(S(D|GS)?)+E", "LD*E|LS*E|L.G.E"};
     const LightPathAutomaton automaton = automaton_of(texts);
     std::vector<std::regex> oracle;
-    for (const std::string& text : texts) {
-        oracle.emplace_back(
-            std::regex_replace(std::regex_replace(text, std::regex("\\."), "[DGS]"), std::regex("\\[\\^S\\]"), "[DG]"));
-    }
+    for (const std::string& text : texts) oracle.push_back(as_regex(text));
     for (const std::string& word : words_of_lobes(6)) {
         CAPTURE(word);
         uint32_t expected = 0;
@@ -81,6 +99,38 @@ TEST_CASE("the automaton takes the words that a regular expression of the standa
             expected |= std::regex_match("L" + word + "E", oracle[i]) ? 1u << i : 0;
         }
         REQUIRE(layers_of_word(automaton, word) == expected);
+    }
+}
+
+TEST_CASE("an automaton of any number of expressions takes for each the words that are its own") {
+    std::vector<std::string> texts;
+    for (const char* first : {"", "D", "G", "S", "[^S]"}) {
+        for (const char* last : {"", "D", "G", "S", "[^S]"}) {
+            for (const char* between : {"", ".", ".*", "D+"})
+                texts.push_back(std::string("L") + first + between + last + "E");
+        }
+    }
+    REQUIRE(texts.size() == 100);
+    std::vector<std::regex> oracle;
+    for (const std::string& text : texts) oracle.push_back(as_regex(text));
+    for (const std::size_t count : {1u, 31u, 32u, 33u, 63u, 64u, 65u, 96u, 97u, 100u}) {
+        CAPTURE(count);
+        const LightPathAutomaton automaton =
+            automaton_of({texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(count)});
+        CHECK(automaton.words == (count + 31) / 32);
+        std::vector<bool> is_taken(count);
+        for (const std::string& word : words_of_lobes(4)) {
+            CAPTURE(word);
+            const uint16_t state = state_after(automaton, word);
+            for (uint32_t i = 0; i < count; ++i) {
+                const bool takes = automaton.takes(state, 0, i);
+                REQUIRE(takes == std::regex_match("L" + word + "E", oracle[i]));
+                is_taken[i] = is_taken[i] || takes;
+            }
+            const std::size_t beyond = automaton.words * 32 - count; // bits of no layer
+            if (beyond > 0) REQUIRE((automaton.layers_of(state, 0).back() >> (32 - beyond)) == 0);
+        }
+        CHECK(std::ranges::count(is_taken, false) == 0);
     }
 }
 
@@ -132,11 +182,21 @@ TEST_CASE("a bad expression points at its character") {
     points_at("L<''>E", 3, "a name stands here");
     points_at("LD<^>E", 3, "before names");
     points_at("L<T>E", 0, "ways of scattering");
+    points_at("L[DG]<'x'>E", 5, "in brackets too");
+    points_at("L(D|G)<'x'>E", 6, "in brackets too");
+    points_at("LD<R><'x'>E", 5, "behind one letter");
+    points_at("L'lamp'E", 1, "names stand between < and >");
+    points_at("LE,b=LDE", 2, "a --lpe NAME=EXPRESSION of its own");
+    points_at("CD*L", 0, "from the light to the eye");
+    points_at("lde", 0, "capitals");
+    points_at("LdE", 1, "capitals");
     points_at("LDE<'x'>", 3, "the eye has no name");
     points_at("", 0, "an expression stands here");
     points_at(" DE", 1, "begins with one L");
     points_at("LD", 1, "ends with one E");
     points_at("ELE", 0, "begins with one L");
+    points_at("LEE", 0, "scatterings alone");
+    points_at("LLE", 0, "scatterings alone");
 }
 
 TEST_CASE("letters of a name count as they are seen") {
@@ -152,16 +212,54 @@ TEST_CASE("what is no NAME=EXPRESSION is refused") {
 }
 
 TEST_CASE("expressions that grow without end are refused") {
-    const auto over = [](const std::string& text) {
-        const auto error = test::thrown_error([&] { automaton_of({text}); });
-        return error && error->code() == ErrorCode::OverLimit;
-    };
-    CHECK(over("L" + std::string(5000, 'D') + "E"));
-    CHECK(over("L((D{255}){255}){255}E"));
-    CHECK(over("L.{15}D.*E")); // from the eye it needs a state for each of 2^15 pasts
+    CHECK(is_over({"L" + std::string(5000, 'D') + "E"}, "more than 4096 characters"));
+    CHECK(is_over({"L((D{255}){255}){255}E"}, "more than 4096 letters"));
+    CHECK(is_over({"L.{15}D.*E"}, "16384 states")); // from the eye it needs a state for each of 2^15 pasts
     CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("within each other") !=
           std::string::npos);
     parse_light_path("x=LD" + std::string(4000, '*') + "E"); // as deep as it is long
+}
+
+TEST_CASE("expressions that are too much together are refused, where each by itself is none too many") {
+    const auto repeated = [](std::size_t count, auto text_of) {
+        std::vector<std::string> texts;
+        for (std::size_t i = 0; i < count; ++i) texts.push_back(text_of(i));
+        return texts;
+    };
+    CHECK(is_over(repeated(600, [](std::size_t) { return std::string("L(D{255}){16}E"); }),
+                  "too many letters in 600 expressions together"));
+    const auto counting = [](std::size_t i) {
+        return fmt::format("L(.{{{0}}})*E", 2 * i + 3);
+    }; // states: their product
+    CHECK(automaton_of(repeated(4, counting)).state_count() == 3 * 5 * 7 * 9 / 3 + 1);
+    CHECK(is_over(repeated(12, counting), "16384 states"));
+}
+
+TEST_CASE("an automaton that takes too long is refused; where fewer states take too long, it says the same with more") {
+    const std::vector<LightPathExpression> expressions = {parse_light_path("x=LD{30}(SS|SD|SG)E")};
+    const LightPathTags tags = {{std::vector<bool>()}, {std::vector<bool>()}};
+    const auto with_steps = [&](uint64_t steps) { return make_automaton(expressions, tags, steps); };
+    uint64_t enough = 50; // to make one at all
+    for (;; enough += 10) {
+        const auto error = test::thrown_error([&] { with_steps(enough); });
+        if (!error) break;
+        REQUIRE(error->code() == ErrorCode::OverLimit);
+        REQUIRE(test::says(error, "--lpe: to make one automaton of 1 expression takes too long; render some of the "
+                                  "expressions apart"));
+    }
+    CHECK(enough > 100);
+    const LightPathAutomaton least = with_steps(kMaxLightPathSteps), larger = with_steps(enough);
+    CHECK(least.state_count() == 34); // E, one of DGS, S, 30 of D, and none
+    CHECK(larger.state_count() == 36);
+    for (const char* end : {"SS", "SD", "SG", "DS", "GS", "S", ""}) {
+        for (const std::size_t count : {0u, 29u, 30u, 31u}) {
+            const std::string word = std::string(count, 'D') + end;
+            CAPTURE(word);
+            const bool is_one = count == 30 && end[0] == 'S' && end[1] != 0;
+            CHECK(least.takes(state_after(least, word), 0, 0) == is_one);
+            CHECK(larger.takes(state_after(larger, word), 0, 0) == is_one);
+        }
+    }
 }
 
 TEST_CASE("names may have wildcards") {

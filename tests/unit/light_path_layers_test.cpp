@@ -1,6 +1,7 @@
 // Names in light-path expressions: what of a scene they mean, and what is said where they mean nothing.
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "render/light_paths/light_path_layers.h"
 #include "tests/support/flat_scenes.h"
@@ -106,19 +107,27 @@ TEST_CASE("a name that nothing has is refused at its letter, with names that the
     CHECK(message("a=LDE").find("two expressions have this name") != std::string::npos);
 }
 
-TEST_CASE("a render takes 32 layers and no more") {
+TEST_CASE("a render takes any number of layers") {
+    for (const uint32_t count : {1u, 32u, 33u, 64u, 65u, 100u, 250u}) {
+        CAPTURE(count);
+        std::vector<LightPathExpression> expressions;
+        for (uint32_t i = 0; i < count; ++i) expressions.push_back(parse_light_path(fmt::format("n{0}=LD{{{0}}}E", i)));
+        const LightPathLayers layers = put_to_scene(expressions, make_named_scene());
+        CHECK(layers.count() == count);
+        uint16_t state = layers.automaton.start;
+        for (uint32_t i = 0; i < count; ++i) {
+            for (uint32_t k = 0; k < count; ++k) CHECK(layers.automaton.takes(state, 0, k) == (i == k));
+            state = layers.automaton.next_state(state, 0, LobeClass::Diffuse, false);
+        }
+        CHECK(state == LightPathAutomaton::kNothing);
+    }
+}
+
+TEST_CASE("two layers of one name are told with what each is, wherever among many they stand") {
     std::vector<LightPathExpression> expressions;
-    for (int i = 0; i < 33; ++i) {
-        expressions.push_back(parse_light_path("n" + std::to_string(i) + "=LD{" + std::to_string(i) + "}E"));
-    }
-    const Scene scene = make_named_scene();
-    const auto error = test::thrown_error([&] { put_to_scene(expressions, scene); });
-    CHECK((error && error->code() == ErrorCode::OverLimit));
-    expressions.pop_back();
-    const LightPathLayers layers = put_to_scene(expressions, scene);
-    uint16_t state = layers.automaton.start;
-    for (int i = 0; i < 32; ++i) {
-        CHECK(layers.automaton.layers_of(state, 0) == 1u << i);
-        state = layers.automaton.next_state(state, 0, LobeClass::Diffuse, false);
-    }
+    for (int i = 0; i < 100; ++i) expressions.push_back(parse_light_path(fmt::format("n{}=LE", i)));
+    check_layers(expressions);
+    expressions[97] = parse_light_path("n35=LDE");
+    const std::string message = test::bad_input_message([&] { check_layers(expressions); });
+    CHECK(message == "--lpe n35: two expressions have this name\n  n35=LE\n  n35=LDE");
 }

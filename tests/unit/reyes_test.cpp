@@ -327,10 +327,12 @@ TEST_CASE("pictures of micropolygons do not depend on threads or passes, and lay
         const RenderResult one = test::render(queue, scene, test::mixed_scene_camera(), settings);
         CHECK(one.invalid_samples == 0);
         CHECK(test::mean_of(one.picture) > 0);
-        set_thread_count(1);
-        settings.pass_samples = 2;
-        CHECK(test::render_hash(test::render(queue, scene, test::mixed_scene_camera(), settings)) ==
-              test::render_hash(one));
+        for (const int threads : {1, 5}) {
+            set_thread_count(threads);
+            settings.pass_samples = threads == 1 ? 2 : 1;
+            CHECK(test::render_hash(test::render(queue, scene, test::mixed_scene_camera(), settings)) ==
+                  test::render_hash(one));
+        }
         set_thread_count(0);
         if (!test::cuda_requested()) continue;
         Queue gpu = test::make_cuda_queue();

@@ -1,12 +1,14 @@
 #include "render/light_paths/light_path_automaton.h"
 
 #include <algorithm>
-#include <map>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/message_text.h"
 #include "render/light_paths/light_path_nfa.h"
+#include "render/light_paths/minimise_automaton.h"
 
 namespace pertev {
 namespace {
@@ -14,195 +16,199 @@ namespace {
 using Kind = LightPathLetter::Kind;
 using StateSet = std::vector<uint32_t>; // of all automata, sorted
 
-/// The automata of all expressions side by side, as if they were one.
-struct AllExpressions {
-    LightPathNfa nfa;
-    std::vector<const LightPathLetter*> letters;
-    std::vector<uint32_t> first_filter; // [letters]: of its expression
-    std::vector<uint32_t> lasts;        // [layers]
+[[noreturn]] void refuse(const std::string& why) {
+    throw Error(ErrorCode::OverLimit, fmt::format("--lpe: {}; render some of the expressions apart", why));
+}
 
-    explicit AllExpressions(std::span<const LightPathExpression> expressions, StateSet& firsts) {
+/// The automata of all expressions side by side, as if they were one.
+class AllExpressions {
+public:
+    AllExpressions(std::span<const LightPathExpression> expressions, uint64_t most_steps, StateSet& firsts)
+        : steps_left_(most_steps) {
         uint32_t filters = 0;
         for (const LightPathExpression& expression : expressions) {
             const LightPathNfa one = make_nfa(expression);
-            const auto states = static_cast<uint32_t>(nfa.states.size());
-            const auto from = static_cast<uint32_t>(letters.size());
+            const auto states = static_cast<uint32_t>(nfa_.states.size());
+            const auto from = static_cast<uint32_t>(letters_.size());
             const auto moved = [](uint32_t index, uint32_t by) {
                 return index == LightPathNfa::kNone ? index : index + by;
             };
             for (const LightPathNfa::State& state : one.states) {
-                nfa.states.push_back({moved(state.letter, from),
-                                      moved(state.next, states),
-                                      {moved(state.empty[0], states), moved(state.empty[1], states)}});
+                nfa_.states.push_back({moved(state.letter, from),
+                                       moved(state.next, states),
+                                       {moved(state.empty[0], states), moved(state.empty[1], states)}});
+            }
+            if (nfa_.states.size() > kMaxLightPathParts) {
+                refuse(fmt::format("too many letters in {} together", counted(expressions.size(), "expression")));
             }
             for (const LightPathLetter& letter : expression.letters) {
-                letters.push_back(&letter);
-                first_filter.push_back(filters);
+                letters_.push_back(&letter);
+                first_filter_.push_back(filters);
             }
             firsts.push_back(one.first + states);
-            lasts.push_back(one.last + states);
+            layer_of_last_.resize(nfa_.states.size(), LightPathNfa::kNone);
+            layer_of_last_[one.last + states] = layers_++;
             filters += static_cast<uint32_t>(expression.filters.size());
         }
+        seen_.resize(nfa_.states.size());
     }
 
-    bool lets_through(uint32_t letter, uint32_t names, const std::vector<bool>& tag) const {
-        return names == kNoNames || tag[first_filter[letter] + names];
-    }
+    uint32_t words() const { return (layers_ + 31) / 32; }
     /// Which letters read a scattering.
-    std::vector<bool> readers_of(LobeClass lobe_class, bool is_transmission, const std::vector<bool>& tag) const {
-        std::vector<bool> readers(letters.size());
+    std::vector<bool> readers_of(LobeClass lobe_class, bool is_transmission, const std::vector<bool>& tag) {
+        std::vector<bool> readers(letters_.size());
         const int way = is_transmission ? kWayTransmitted : kWayReflected;
-        for (uint32_t i = 0; i < letters.size(); ++i) {
+        spend(letters_.size());
+        for (uint32_t i = 0; i < letters_.size(); ++i) {
             const auto is_one = [&](const ScatteringTerm& term) {
                 return term.classes.has(lobe_class) && (term.ways & way) != 0 && lets_through(i, term.names, tag);
             };
-            readers[i] = letters[i]->kind == Kind::Scattering &&
-                         std::ranges::any_of(letters[i]->terms, is_one) != letters[i]->is_negated;
+            readers[i] = letters_[i]->kind == Kind::Scattering &&
+                         std::ranges::any_of(letters_[i]->terms, is_one) != letters_[i]->is_negated;
         }
         return readers;
     }
-    std::vector<bool> readers_of_light(const std::vector<bool>& tag) const {
-        std::vector<bool> readers(letters.size());
-        for (uint32_t i = 0; i < letters.size(); ++i) {
-            readers[i] = letters[i]->kind == Kind::Light && lets_through(i, letters[i]->names, tag);
+    std::vector<bool> readers_of_light(const std::vector<bool>& tag) {
+        std::vector<bool> readers(letters_.size());
+        spend(letters_.size());
+        for (uint32_t i = 0; i < letters_.size(); ++i) {
+            readers[i] = letters_[i]->kind == Kind::Light && lets_through(i, letters_[i]->names, tag);
         }
         return readers;
     }
     std::vector<bool> readers_of_eye() const {
-        std::vector<bool> readers(letters.size());
-        for (uint32_t i = 0; i < letters.size(); ++i) readers[i] = letters[i]->kind == Kind::Eye;
+        std::vector<bool> readers(letters_.size());
+        for (uint32_t i = 0; i < letters_.size(); ++i) readers[i] = letters_[i]->kind == Kind::Eye;
         return readers;
     }
-    StateSet read(const StateSet& from, const std::vector<bool>& readers) const {
+    /// All that is reached from `states` by reading nothing, without those that neither read nor end an expression.
+    void close(StateSet& states) {
+        close_over_empty(nfa_, states, seen_);
+        spend(states.size());
+        std::erase_if(states, [&](uint32_t state) {
+            return nfa_.states[state].letter == LightPathNfa::kNone && layer_of_last_[state] == LightPathNfa::kNone;
+        });
+    }
+    StateSet read(const StateSet& from, const std::vector<bool>& readers) {
         StateSet to;
+        spend(from.size());
         for (const uint32_t state : from) {
-            const LightPathNfa::State& s = nfa.states[state];
+            const LightPathNfa::State& s = nfa_.states[state];
             if (s.letter != LightPathNfa::kNone && readers[s.letter]) to.push_back(s.next);
         }
-        std::ranges::sort(to);
-        to.erase(std::unique(to.begin(), to.end()), to.end());
-        close_over_empty(nfa, to);
+        close(to);
         return to;
     }
-    uint32_t layers_of(const StateSet& states) const {
-        uint32_t layers = 0;
-        for (uint32_t layer = 0; layer < lasts.size(); ++layer) {
-            layers |= std::ranges::binary_search(states, lasts[layer]) ? 1u << layer : 0;
+    /// Adds the layers whose expressions end in `states`.
+    void append_layers(const StateSet& states, std::vector<uint32_t>& sets) const {
+        const std::size_t first = sets.size();
+        sets.resize(first + words());
+        for (const uint32_t state : states) {
+            const uint32_t layer = layer_of_last_[state];
+            if (layer != LightPathNfa::kNone) sets[first + layer / 32] |= 1u << layer % 32;
         }
-        return layers;
+    }
+
+private:
+    bool lets_through(uint32_t letter, uint32_t names, const std::vector<bool>& tag) const {
+        return names == kNoNames || tag[first_filter_[letter] + names];
+    }
+    void spend(uint64_t steps) {
+        if (steps > steps_left_) {
+            refuse(fmt::format("to make one automaton of {} takes too long", counted(layers_, "expression")));
+        }
+        steps_left_ -= steps;
+    }
+
+    LightPathNfa nfa_;
+    std::vector<const LightPathLetter*> letters_;
+    std::vector<uint32_t> first_filter_;  // [letters]: of its expression
+    std::vector<uint32_t> layer_of_last_; // [states of nfa_]; kNone: no expression ends there
+    uint32_t layers_ = 0;
+    std::vector<bool> seen_; // close_over_empty's
+    uint64_t steps_left_;
+};
+
+/// Sets of letters, each once, in the order in which they came.
+class ReaderSets {
+public:
+    uint16_t number_of(std::vector<bool> readers) {
+        const auto [place, is_new] = numbers_.try_emplace(std::move(readers), static_cast<uint16_t>(sets_.size()));
+        if (is_new) sets_.push_back(&place->first);
+        if (sets_.size() > UINT16_MAX) refuse("the names tell more than 65535 things apart");
+        return place->second;
+    }
+    const std::vector<const std::vector<bool>*>& all() const { return sets_; }
+    uint32_t count() const { return static_cast<uint32_t>(sets_.size()); }
+
+private:
+    std::unordered_map<std::vector<bool>, uint16_t> numbers_;
+    std::vector<const std::vector<bool>*> sets_;
+};
+
+struct HashOfStates {
+    std::size_t operator()(const StateSet& states) const {
+        std::size_t hash = states.size();
+        for (const uint32_t state : states) hash = (hash ^ state) * 0x9e3779b97f4a7c15ull;
+        return hash ^ hash >> 32;
     }
 };
 
-/// The place of `value` among `values`, to which it is added where it is new.
-template <class T>
-uint16_t place_in(std::vector<T>& values, const T& value) {
-    const auto found = std::ranges::find(values, value);
-    if (found != values.end()) return static_cast<uint16_t>(found - values.begin());
-    if (values.size() > UINT16_MAX) throw Error(ErrorCode::OverLimit, "--lpe: the names tell too many things apart");
-    values.push_back(value);
-    return static_cast<uint16_t>(values.size() - 1);
-}
-
-constexpr uint64_t kMaxEntries = 1u << 24; // of the tables: states times all that a path may do in one
-
 /// Subsets of states as states, of which 0 is the empty one and 1 the first.
-LightPathAutomaton determinise(const AllExpressions& all, StateSet firsts, const LightPathTags& tags) {
+LightPathAutomaton determinise(AllExpressions& all, StateSet firsts, const LightPathTags& tags) {
     LightPathAutomaton automaton;
-    std::vector<std::vector<bool>> scatterings, lights;
+    ReaderSets scatterings, lights;
     for (const std::vector<bool>& tag : tags.surfaces) {
         for (const LobeClass lobe_class : {LobeClass::Diffuse, LobeClass::Glossy, LobeClass::Specular}) {
             for (const bool is_transmission : {false, true}) {
-                automaton.columns.push_back(place_in(scatterings, all.readers_of(lobe_class, is_transmission, tag)));
+                automaton.columns.push_back(scatterings.number_of(all.readers_of(lobe_class, is_transmission, tag)));
             }
         }
     }
     for (const std::vector<bool>& tag : tags.lights) {
-        automaton.lights.push_back(place_in(lights, all.readers_of_light(tag)));
+        automaton.lights.push_back(lights.number_of(all.readers_of_light(tag)));
     }
-    automaton.column_count = static_cast<uint32_t>(scatterings.size());
-    automaton.light_count = static_cast<uint32_t>(lights.size());
+    automaton.column_count = scatterings.count();
+    automaton.light_count = lights.count();
+    automaton.words = all.words();
 
-    std::map<StateSet, uint16_t> numbers;
+    const uint64_t entries_of_state = automaton.column_count + uint64_t(automaton.light_count) * automaton.words;
+    std::unordered_map<StateSet, uint16_t, HashOfStates> numbers;
     std::vector<const StateSet*> sets;
     const auto number_of = [&](StateSet set) {
         const auto [place, is_new] = numbers.try_emplace(std::move(set), static_cast<uint16_t>(numbers.size()));
         if (is_new) sets.push_back(&place->first);
         if (sets.size() > kMaxLightPathStates) {
-            throw Error(ErrorCode::OverLimit,
-                        fmt::format("--lpe: the expressions need more than {} states together; render some of them "
-                                    "apart",
-                                    kMaxLightPathStates));
+            refuse(fmt::format("the expressions need more than {} states together", kMaxLightPathStates));
         }
-        if (sets.size() * (scatterings.size() + lights.size()) > kMaxEntries) {
-            throw Error(ErrorCode::OverLimit,
-                        fmt::format("--lpe: the names tell {} things apart, too many for {} states; render some of the "
-                                    "expressions apart",
-                                    scatterings.size() + lights.size(), sets.size()));
+        if (sets.size() * entries_of_state > kMaxLightPathEntries) {
+            refuse(fmt::format("the names tell {} things apart, too many for {} states",
+                               automaton.column_count + automaton.light_count, sets.size()));
         }
         return place->second;
     };
     number_of({});
-    close_over_empty(all.nfa, firsts);
+    all.close(firsts);
     automaton.start = number_of(all.read(firsts, all.readers_of_eye()));
     for (std::size_t i = 0; i < sets.size(); ++i) {
-        for (const std::vector<bool>& readers : scatterings) {
-            automaton.next.push_back(number_of(all.read(*sets[i], readers)));
+        for (const std::vector<bool>* readers : scatterings.all()) {
+            automaton.next.push_back(number_of(all.read(*sets[i], *readers)));
         }
-        for (const std::vector<bool>& readers : lights) {
-            automaton.layers.push_back(all.layers_of(all.read(*sets[i], readers)));
+        for (const std::vector<bool>* readers : lights.all()) {
+            all.append_layers(all.read(*sets[i], *readers), automaton.layers);
         }
     }
     return automaton;
 }
 
-/// The least automaton that says the same: states are one where no path tells them apart. kNothing stays 0.
-LightPathAutomaton minimise(const LightPathAutomaton& all) {
-    const uint32_t states = all.state_count();
-    std::vector<uint16_t> group(states);
-    std::size_t groups = 0;
-    for (bool is_first = true;; is_first = false) {
-        std::map<std::vector<uint32_t>, uint16_t> of_signature;
-        std::vector<uint16_t> finer(states);
-        for (uint32_t s = 0; s < states; ++s) {
-            std::vector<uint32_t> signature;
-            if (is_first) {
-                signature.assign(all.layers.begin() + s * all.light_count,
-                                 all.layers.begin() + (s + 1) * all.light_count);
-            } else {
-                signature.push_back(group[s]);
-                for (uint32_t c = 0; c < all.column_count; ++c) {
-                    signature.push_back(group[all.next[s * all.column_count + c]]);
-                }
-            }
-            finer[s] = of_signature.try_emplace(std::move(signature), static_cast<uint16_t>(of_signature.size()))
-                           .first->second; // state 0 comes first: its group is 0
-        }
-        group = std::move(finer);
-        if (!is_first && of_signature.size() == groups) break;
-        groups = of_signature.size();
-    }
-    LightPathAutomaton least = all;
-    least.next.assign(groups * all.column_count, 0);
-    least.layers.assign(groups * all.light_count, 0);
-    for (uint32_t s = 0; s < states; ++s) {
-        for (uint32_t c = 0; c < all.column_count; ++c) {
-            least.next[group[s] * all.column_count + c] = group[all.next[s * all.column_count + c]];
-        }
-        for (uint32_t l = 0; l < all.light_count; ++l) {
-            least.layers[group[s] * all.light_count + l] = all.layers[s * all.light_count + l];
-        }
-    }
-    least.start = group[all.start];
-    return least;
-}
-
 } // namespace
 
-LightPathAutomaton make_automaton(std::span<const LightPathExpression> expressions, const LightPathTags& tags) {
-    PERTEV_CHECK(expressions.size() <= kMaxLightPathLayers && !tags.surfaces.empty() && !tags.lights.empty());
+LightPathAutomaton make_automaton(std::span<const LightPathExpression> expressions, const LightPathTags& tags,
+                                  uint64_t most_steps) {
+    PERTEV_CHECK(!expressions.empty() && !tags.surfaces.empty() && !tags.lights.empty());
     StateSet firsts;
-    const AllExpressions all(expressions, firsts);
-    return minimise(determinise(all, std::move(firsts), tags));
+    AllExpressions all(expressions, most_steps, firsts);
+    return minimise(determinise(all, std::move(firsts), tags), most_steps);
 }
 
 } // namespace pertev

@@ -15,6 +15,34 @@ constexpr uint32_t kMostNesting = 200;
 constexpr uint32_t kMostRepeats = 255;
 constexpr std::string_view kBlanks = " \t";
 
+/// Of a letter that begins nothing; what others write for it, or what was forgotten, where that is known.
+std::string_view why_no_atom(char letter) {
+    switch (letter) {
+    case '*':
+    case '+':
+    case '?':
+    case '{':
+        return "nothing stands before it that it could repeat";
+    case '<':
+        return "names stand once and behind one letter, in brackets too: D<R 'a'>, [D<'a'>G<'a'>]";
+    case '\'':
+    case '"':
+        return "names stand between < and >: L<'lamp'>";
+    case ',':
+        return "each expression has a --lpe NAME=EXPRESSION of its own";
+    case 'C':
+        return "from the light to the eye: LD*E is what is CD*L elsewhere";
+    case 'l':
+    case 'd':
+    case 'g':
+    case 's':
+    case 'e':
+        return "letters are capitals: L, D, G, S, E";
+    default:
+        return "no letter of an expression: L, D, G, S, ., E, ( and [ begin one";
+    }
+}
+
 class Parser {
 public:
     explicit Parser(LightPathExpression& expression) : expression_(expression), text_(expression.text) {}
@@ -23,7 +51,7 @@ public:
         if (text_.find_first_not_of(kBlanks) == std::string_view::npos) fail(0, "an expression stands here: as LD*E");
         expression_.root = parse_choice(0);
         if (peek() == ')') fail(at_, "no ( before it");
-        if (peek() != 0) fail(at_, "no letter of an expression: L, D, G, S, ., E, ( and [ begin one");
+        if (at_ < text_.size()) fail(at_, why_no_atom(text_[at_]));
     }
 
 private:
@@ -128,10 +156,7 @@ private:
             break;
         }
         if (const auto term = parse_term()) return add(LightPathLetter{.terms = {*term}});
-        if (letter == '*' || letter == '+' || letter == '?' || letter == '{') {
-            fail(place, "nothing stands before it that it could repeat");
-        }
-        fail(place, "no letter of an expression: L, D, G, S, ., E, ( and [ begin one");
+        fail(place, why_no_atom(letter));
     }
     /// D, G, S or . with what is said of it.
     std::optional<ScatteringTerm> parse_term() {

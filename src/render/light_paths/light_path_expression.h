@@ -73,8 +73,6 @@ struct LightPathExpression {
     uint32_t root = 0;
 };
 
-/// Layers of one render, a bit each.
-inline constexpr uint32_t kMaxLightPathLayers = 32;
 /// Of one expression, as it is written.
 inline constexpr std::size_t kMaxLightPathText = 4096;
 /// Of one expression, in letters, each counted as often as {n} asks for it.

@@ -1,8 +1,7 @@
 #include "render/light_paths/light_path_layers.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -79,7 +78,7 @@ private:
 
 /// Gives each thing the number of its tag.
 std::vector<uint16_t> tag(const Things& things, const Chooser& chooser, std::vector<std::vector<bool>>& tags) {
-    std::map<std::vector<bool>, uint16_t> numbers;
+    std::unordered_map<std::vector<bool>, uint16_t> numbers;
     std::vector<uint16_t> of_things;
     for (const Names& names : things.names) {
         const auto [place, is_new] = numbers.try_emplace(chooser.choose(names), static_cast<uint16_t>(tags.size()));
@@ -96,15 +95,12 @@ std::vector<uint16_t> tag(const Things& things, const Chooser& chooser, std::vec
 } // namespace
 
 void check_layers(std::span<const LightPathExpression> expressions) {
-    if (expressions.size() > kMaxLightPathLayers) {
-        throw Error(ErrorCode::OverLimit, fmt::format("--lpe: {} expressions; one render takes {} at most",
-                                                      expressions.size(), kMaxLightPathLayers));
-    }
-    std::set<std::string_view> names;
+    std::unordered_map<std::string_view, const LightPathExpression*> named;
     for (const LightPathExpression& expression : expressions) {
-        if (!names.insert(expression.name).second) {
-            throw Error(ErrorCode::BadInput, fmt::format("--lpe {}: two expressions have this name", expression.name));
-        }
+        const auto [first, is_new] = named.try_emplace(expression.name, &expression);
+        if (is_new) continue;
+        throw Error(ErrorCode::BadInput, fmt::format("--lpe {0}: two expressions have this name\n  {0}={1}\n  {0}={2}",
+                                                     expression.name, first->second->text, expression.text));
     }
 }
 

@@ -24,7 +24,7 @@ struct LightPathLayers {
     uint32_t count() const { return static_cast<uint32_t>(expressions.size()); }
 };
 
-/// Throws Error(BadInput) for two layers of one name, Error(OverLimit) past kMaxLightPathLayers.
+/// Throws Error(BadInput) for two layers of one name.
 void check_layers(std::span<const LightPathExpression> expressions);
 
 /// Names are those of scene/names.h. Throws Error(BadInput), with a caret, for a name

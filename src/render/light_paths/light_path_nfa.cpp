@@ -157,8 +157,9 @@ bool takes_a_path(const LightPathExpression& expression, const LightPathNfa& nfa
 
 LightPathNfa make_nfa(const LightPathExpression& expression) { return Builder(expression).build(); }
 
-void close_over_empty(const LightPathNfa& nfa, std::vector<uint32_t>& states) {
-    std::vector<bool> seen(nfa.states.size());
+void close_over_empty(const LightPathNfa& nfa, std::vector<uint32_t>& states, std::vector<bool>& seen) {
+    std::ranges::sort(states);
+    states.erase(std::unique(states.begin(), states.end()), states.end());
     for (const uint32_t state : states) seen[state] = true;
     for (std::size_t i = 0; i < states.size(); ++i) {
         for (const uint32_t to : nfa.states[states[i]].empty) {
@@ -167,6 +168,7 @@ void close_over_empty(const LightPathNfa& nfa, std::vector<uint32_t>& states) {
             states.push_back(to);
         }
     }
+    for (const uint32_t state : states) seen[state] = false;
     std::ranges::sort(states);
 }
 
@@ -174,11 +176,12 @@ void check_matches_something(const LightPathExpression& expression) {
     bool reads_eye = false;
     if (takes_a_path(expression, make_nfa(expression), reads_eye)) return;
     const std::string& text = expression.text;
-    throw Error(ErrorCode::BadInput, reads_eye
-                                         ? point_at(expression, std::min(text.find_first_not_of(" \t"), text.size()),
-                                                    "no path is like this: it begins with one L, the light")
-                                         : point_at(expression, text.empty() ? 0 : text.find_last_not_of(" \t"),
-                                                    "no path is like this: it ends with one E, the eye"));
+    throw Error(ErrorCode::BadInput,
+                reads_eye ? point_at(expression, std::min(text.find_first_not_of(" \t"), text.size()),
+                                     "no path is like this: it begins with one L, the light, and between "
+                                     "that and the last E are scatterings alone")
+                          : point_at(expression, text.empty() ? 0 : text.find_last_not_of(" \t"),
+                                     "no path is like this: it ends with one E, the eye"));
 }
 
 } // namespace pertev

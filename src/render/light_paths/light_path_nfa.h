@@ -25,8 +25,9 @@ struct LightPathNfa {
 /// Throws Error(OverLimit) past kMaxLightPathLetters.
 LightPathNfa make_nfa(const LightPathExpression& expression);
 
-/// Adds all states that are reached from those of `states` by reading nothing. Sorted, each once.
-void close_over_empty(const LightPathNfa& nfa, std::vector<uint32_t>& states);
+/// Adds all states that are reached from those of `states` by reading nothing. Sorted, each once. `seen`: of each state
+/// false, before and after.
+void close_over_empty(const LightPathNfa& nfa, std::vector<uint32_t>& states, std::vector<bool>& seen);
 
 /// Throws Error(BadInput) where no path matches: a light, scatterings, the eye.
 void check_matches_something(const LightPathExpression& expression);

@@ -39,6 +39,7 @@ struct LightPathView {
     const uint16_t* scene_lights = nullptr;
     uint32_t column_count = 0, light_count = 0;
     uint32_t start = 0, environment_light = 0;
+    uint32_t words = 0;         // LightPathAutomaton's, of a set of layers
     uint32_t first_channel = 0; // of the film, of layer 0
 
     HD bool is_there() const { return columns != nullptr; }
@@ -63,10 +64,13 @@ struct LightPathView {
         const float colours[] = {radiance.r, radiance.g, radiance.b};
         for (int colour = 0; colour < 3; ++colour) {
             if (!(colours[colour] != 0)) continue;
-            uint32_t bits = layers[state.of(colour) * light_count + light];
-            for (uint32_t layer = 0; bits != 0; ++layer, bits >>= 1) {
-                if ((bits & 1u) == 0) continue;
-                add_channel(film, pixel, first_channel + 3 * layer + static_cast<uint32_t>(colour), colours[colour]);
+            const uint32_t* const set = layers + (state.of(colour) * light_count + light) * words;
+            uint32_t channel = first_channel + static_cast<uint32_t>(colour); // of the word's first layer
+            for (uint32_t word = 0; word < words; ++word, channel += 3 * 32) {
+                uint32_t bits = set[word];
+                for (uint32_t c = channel; bits != 0; c += 3, bits >>= 1) {
+                    if ((bits & 1u) != 0) add_channel(film, pixel, c, colours[colour]);
+                }
             }
         }
     }

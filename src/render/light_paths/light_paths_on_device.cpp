@@ -15,6 +15,7 @@ LightPathsOnDevice::LightPathsOnDevice(Queue& queue, const LightPathLayers& laye
     view_.scene_lights = scene_lights_.data();
     view_.column_count = layers.automaton.column_count;
     view_.light_count = layers.automaton.light_count;
+    view_.words = layers.automaton.words;
     view_.start = layers.automaton.start;
     view_.environment_light = layers.environment_light;
     queue.wait(); // the copies may go

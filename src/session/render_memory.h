@@ -1,0 +1,20 @@
+#pragma once
+
+// A render that does not fit is refused before it begins, rather than ended by the system when its film fills.
+
+#include <cstddef>
+#include <optional>
+
+#include "device/queue.h"
+#include "session/render_settings.h"
+
+namespace pertev {
+
+/// What a render may take of the queue's device: `asked`, or without it, on the CPU, what the machine has but for the
+/// finished picture and its layers, and on a GPU whatever it gives when it is asked. Bytes.
+std::size_t memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked);
+
+/// Throws Error(OutOfMemory) where a render takes more: `bytes`, as predicted_bytes says.
+void check_render_memory(std::size_t bytes, const RenderSettings& settings, std::size_t limit);
+
+} // namespace pertev
