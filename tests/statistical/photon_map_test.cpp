@@ -81,14 +81,14 @@ TEST_CASE("photon mapping comes to path tracing's picture, at least as fast as K
             CHECK(many < few * std::pow(16, -2.0 / 3)); // the squared error falls with the passes to the power -2/3
             CHECK(end < c.bound);
             CHECK(means == doctest::Approx(light).epsilon(0.01));
-            MESSAGE(c.name, " ", static_cast<int>(gather), " ", few, " ", many, " ", end, " ", means / light - 1);
         }
     }
 }
 
-TEST_CASE("of a caustic photons have a twentieth of path tracing's error or less at equal time") {
+TEST_CASE("photons find a caustic with a 60th of path tracing's error or less at equal time") {
     Messages messages;
-    const PreparedScene prepared = prepare_scene(open_scene({.scene = "caustic"}, messages), {}, messages);
+    const Scene scene = open_scene({.scene = "caustic"}, messages);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Camera camera; // it sees the floor under the ball, not the lamp's reflection in it
     camera.world_from_camera = look_at({0, 0.6f, 2}, {-0.25f, 0, -0.1f}, {0, 1, 0});
     camera.fov_y = 0.14f;
@@ -103,8 +103,8 @@ TEST_CASE("of a caustic photons have a twentieth of path tracing's error or less
         settings.photon_map.photons = 1u << 12;
         return render_picture(queue, prepared, camera, settings).picture;
     };
-    const Image one = look(IntegratorKind::Bidirectional, 1024, 101);
-    const Image other = look(IntegratorKind::Bidirectional, 1024, 102);
+    const Image one = look(IntegratorKind::Bidirectional, 512, 101);
+    const Image other = look(IntegratorKind::Bidirectional, 512, 102);
     // Of each picture the product of its distances to two references: their own noise takes no part.
     const auto cost = [&](IntegratorKind integrator, uint32_t samples) {
         const double start = test::cpu_seconds();
@@ -124,8 +124,7 @@ TEST_CASE("of a caustic photons have a twentieth of path tracing's error or less
     const double path = cost(IntegratorKind::Path, 256), photons = cost(IntegratorKind::PhotonMap, 32);
     CAPTURE(path);
     CAPTURE(photons);
-    MESSAGE(path, " ", photons, " ", path / photons);
-    CHECK(path > 20 * photons);
+    CHECK(path > 60 * photons);
 }
 
 TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, from millimetres on") {
