@@ -252,7 +252,7 @@ TEST_CASE(
         // Nothing is lost on the way, to the last bit; and what arrives lies in the maps themselves, but where none is
         // to be left.
         CHECK(emitted + run.energy.went_on == run.energy.arrived + escaped);
-        if (&scene != scenes) { // whose ball of glass touches the floor: powers in it are over the square of the index
+        if (&scene != scenes + 1) { // who comes in at that glass's open sides is taken to be in other stuff
             CHECK(run.stored + run.energy.left_none == run.energy.arrived);
         }
         CHECK(run.counts.stored > 100);
