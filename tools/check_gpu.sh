@@ -40,7 +40,7 @@ for part in "${parts[@]}"; do
         done
         ;;
     references)
-        for script in images/bitterli_cornell_box images/mcguire_cornell_box statistical/sponza_energy; do
+        for script in images/bitterli_cornell_box images/bitterli_water_caustic images/mcguire_cornell_box statistical/sponza_energy; do
             run python3 "$here/../tests/$script.py" "$bin/pertev" --device cuda
         done
         ;;

@@ -1,15 +1,17 @@
-"""Turns the part of Mitsuba 3's scene format that Bitterli's Cornell box uses into a glTF: rectangles and cubes with a
-matrix, two-sided diffuse materials, one-sided area lights, one perspective camera. Anything else is refused, so that no
-picture is compared with one of another scene.
+"""Turns the part of Mitsuba's scene formats (3 and 0.6) that Bitterli's Cornell box and water caustic use into a glTF:
+rectangles, cubes and binary PLY files of triangles with a matrix, diffuse materials and smooth glass, one-sided area
+lights, one perspective camera. Anything else is refused, so that no picture is compared with one of another scene.
 
-Source: Mitsuba 3's plugin reference (rectangle, cube, diffuse, twosided, area, perspective).
+Source: Mitsuba's plugin reference (rectangle, cube, ply, diffuse, twosided, dielectric, area, perspective).
 The one thing to know: an area light of Mitsuba emits from its front alone, as a glTF material that is not double sided
-does here.
+does here. A diffuse material of Mitsuba that is not two-sided is black from behind; here it is not, which no picture of
+a scene shows whose surfaces are closed or look inwards.
 """
 
 import base64
 import json
 import math
+import pathlib
 import struct
 import xml.etree.ElementTree as ElementTree
 
@@ -51,7 +53,8 @@ class GltfScene:
         self.data = b""
         self.document = {
             "asset": {"version": "2.0"},
-            "extensionsUsed": ["KHR_materials_emissive_strength", "KHR_materials_specular"], "scene": 0,
+            "extensionsUsed": ["KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular",
+                               "KHR_materials_transmission", "KHR_materials_volume"], "scene": 0,
             "scenes": [{"nodes": []}], "nodes": [], "cameras": [], "materials": [], "meshes": [], "accessors": [],
             "bufferViews": []}
 
@@ -78,21 +81,78 @@ class GltfScene:
             material["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": strength}
         return self.add("materials", material)
 
-    def add_quads(self, name, quads, material):
-        points = [point for quad in quads for point in quad]
-        indices = [4 * i + k for i in range(len(quads)) for k in (0, 1, 2, 0, 2, 3)]
-        positions = self.add_accessor(
-            b"".join(struct.pack("<3f", *p) for p in points), componentType=5126, type="VEC3", count=len(points),
-            min=[min(c) for c in zip(*points)], max=[max(c) for c in zip(*points)])
+    def add_glass(self, ior):
+        return self.add("materials", {
+            "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0}, "extensions": {
+                "KHR_materials_ior": {"ior": ior}, "KHR_materials_transmission": {"transmissionFactor": 1},
+                "KHR_materials_volume": {"thicknessFactor": 1}}})
+
+    def add_mesh(self, name, points, normals, indices, material):
+        """Without `normals` its faces are flat."""
+        def vectors(values, **bounds):
+            return self.add_accessor(b"".join(struct.pack("<3f", *v) for v in values), componentType=5126, type="VEC3",
+                                     count=len(values), **bounds)
+        attributes = {"POSITION": vectors(points, min=[min(c) for c in zip(*points)],
+                                          max=[max(c) for c in zip(*points)])}
+        if normals:
+            attributes["NORMAL"] = vectors(normals)
         corners = self.add_accessor(struct.pack(f"<{len(indices)}I", *indices), componentType=5125, type="SCALAR",
                                     count=len(indices))
         mesh = self.add("meshes", {"primitives": [
-            {"attributes": {"POSITION": positions}, "indices": corners, "material": material}]})
-        self.place({"name": name, "mesh": mesh})
+            {"attributes": attributes, "indices": corners, "material": material}]})
+        self.place({"name": name or f"shape {mesh}", "mesh": mesh})
+
+    def add_quads(self, name, quads, material):
+        points = [point for quad in quads for point in quad]
+        indices = [4 * i + k for i in range(len(quads)) for k in (0, 1, 2, 0, 2, 3)]
+        self.add_mesh(name, points, None, indices, material)
 
     def text(self):
         uri = "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()
         return json.dumps({**self.document, "buffers": [{"byteLength": len(self.data), "uri": uri}]})
+
+
+def read_ply(path):
+    """Points, normals (None without) and corners of the triangles of a binary PLY file."""
+    header, _, data = path.read_bytes().partition(b"end_header\n")
+    words = [line.split() for line in header.decode().splitlines()]
+    names = [word[2] for word in words if word[:2] == ["property", "float"]]
+    counts = [int(word[2]) for word in words if word[0] == "element"]
+    if words[1][1:] != ["binary_little_endian", "1.0"] or ["property", "list", "uchar", "int", "vertex_indices"] not in \
+            words or names not in (["x", "y", "z"], ["x", "y", "z", "nx", "ny", "nz"]):
+        raise ValueError(f"{path.name} has other properties than positions, normals and triangles")
+    vertices = list(struct.iter_unpack(f"<{len(names)}f", data[:4 * len(names) * counts[0]]))
+    faces = list(struct.iter_unpack("<B3i", data[4 * len(names) * counts[0]:]))
+    if len(faces) != counts[1] or any(face[0] != 3 for face in faces):
+        raise ValueError(f"{path.name} has faces that are no triangles")
+    normals = [vertex[3:] for vertex in vertices] if len(names) == 6 else None
+    return [vertex[:3] for vertex in vertices], normals, [corner for face in faces for corner in face[1:]]
+
+
+def add_ply(gltf, folder, shape, material):
+    """Its matrix may scale along the axes alone."""
+    matrix = matrix_of(shape)
+    scale = [matrix[k][k] for k in range(3)]
+    if any(matrix[r][c] != (scale[r] if r == c else 0) for r in range(3) for c in range(4)) or min(scale) <= 0:
+        raise ValueError(f"shape {shape.get('id')} is turned or moved")
+    points, normals, indices = read_ply(folder / only(shape, "string").get("value"))
+    flags = {flag.get("name"): flag.get("value") for flag in shape.findall("boolean")}
+    if flags.pop("faceNormals", "false") == "true":
+        normals = None
+    if flags:
+        raise ValueError(f"shape {shape.get('id')} has other flags than faceNormals")
+    if normals:
+        normals = [tuple(n / s for n, s in zip(normal, scale)) for normal in normals]
+        normals = [tuple(n / math.hypot(*normal) for n in normal) for normal in normals]
+    gltf.add_mesh(shape.get("id"), [transformed(matrix, point) for point in points], normals, indices, material)
+
+
+def ior_of(bsdf):
+    """Of smooth glass in air."""
+    values = {f.get("name").replace("_ior", "IOR"): float(f.get("value")) for f in bsdf.findall("float")}
+    if set(values) != {"intIOR", "extIOR"} or values["extIOR"] != 1:
+        raise ValueError(f"material {bsdf.get('id')} is no glass in air")
+    return values["intIOR"]
 
 
 def add_camera(scene, sensor):
@@ -118,20 +178,32 @@ def convert(source):
     not know."""
     scene = ElementTree.parse(source).getroot()
     gltf = GltfScene()
-    reflectances = {}
+    reflectances, glasses = {}, {}
     for bsdf in scene.findall("bsdf"):
-        if bsdf.get("type") != "twosided":
-            raise ValueError(f"material {bsdf.get('id')} is not twosided")
-        reflectances[bsdf.get("id")] = rgb_of(only(bsdf, "bsdf", "diffuse"), "reflectance")
+        name = bsdf.get("id")
+        if bsdf.get("type") == "dielectric":
+            glasses[name] = gltf.add_glass(ior_of(bsdf))
+            continue
+        if bsdf.get("type") == "twosided":
+            bsdf = only(bsdf, "bsdf", "diffuse")
+        if bsdf.get("type") != "diffuse":
+            raise ValueError(f"material {name} is neither diffuse nor smooth glass")
+        reflectances[name] = rgb_of(bsdf, "reflectance")
 
     for shape in scene.findall("shape"):
+        material = only(shape, "ref").get("id")
+        emits = shape.find("emitter") is not None
+        if shape.get("type") == "ply" and not emits:
+            add_ply(gltf, pathlib.Path(source).parent, shape, glasses[material] if material in glasses else
+                    gltf.add_material(reflectances[material]))
+            continue
         quads = {"rectangle": RECTANGLE, "cube": CUBE}.get(shape.get("type"))
-        if quads is None:
-            raise ValueError(f"shape {shape.get('id')} is neither a rectangle nor a cube")
+        if quads is None or material not in reflectances:
+            raise ValueError(f"shape {shape.get('id')} is neither a rectangle nor a cube that is diffuse")
         matrix = matrix_of(shape)
         quads = [[transformed(matrix, corner) for corner in quad] for quad in quads]
-        reflectance = reflectances[only(shape, "ref").get("id")]
-        if shape.find("emitter") is None:
+        reflectance = reflectances[material]
+        if not emits:
             gltf.add_quads(shape.get("id"), quads, gltf.add_material(reflectance))
             continue
         if shape.get("type") != "rectangle" or any(reflectance):

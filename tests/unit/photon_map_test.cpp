@@ -20,6 +20,7 @@
 #include "tests/support/nasty_points.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/room_with_ball.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -165,9 +166,10 @@ namespace {
 struct PhotonRun {
     PhotonEnergy energy{};
     PhotonCounts counts{};
-    std::size_t bytes = 0;
+    FixedSum stored{}; // the powers of all photons in the maps, the three colours together
 
-    PhotonRun(const Scene& scene, uint32_t max_depth, uint32_t photons, bool in_loop = true) {
+    PhotonRun(const Scene& scene, uint32_t max_depth, uint32_t photons, bool in_loop = true,
+              PhotonGather gather = PhotonGather::Final) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
         Queue queue = Queue::make_cpu();
@@ -178,13 +180,26 @@ struct PhotonRun {
         const PictureView picture = {device.view(),
                                      make_camera_rays(test::camera_down({0, 0.1f, 0}, 0.2f),
                                                       filter.set(PixelFilter::Box, 0.5f), 8, 8, prepared.centre)};
-        PhotonMapIntegrator integrator(queue, {.max_depth = max_depth}, {.photons = photons}, in_loop, 1u << 20);
+        PhotonMapIntegrator integrator(queue, {.max_depth = max_depth}, {.photons = photons, .gather = gather}, in_loop,
+                                       1u << 20);
         integrator.begin(picture, tracer, 1);
         integrator.tell_energy(&energy);
         Film film(queue, 8, 8, 0);
         integrator.render(3, 1, film.view());
         counts = integrator.photons();
-        bytes = integrator.bytes();
+        const PhotonMapsView& maps = integrator.maps();
+        CHECK(maps.global_has_all == (gather == PhotonGather::Final));
+        CHECK(maps.caustic.count == counts.caustic);
+        add(maps.global);
+        if (!maps.global_has_all) add(maps.caustic);
+    }
+
+private:
+    void add(const PhotonMapView& map) {
+        for (uint32_t i = 0; i < map.count; ++i) {
+            const Float4 power = map.photons.powers[i];
+            stored = stored + to_fixed(power.x + power.y + power.z);
+        }
     }
 };
 
@@ -211,10 +226,11 @@ Scene sphere_that_glows(float albedo) {
 }
 
 /// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
-double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 eye = {0, 0.1f, 0}) {
+double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 eye = {0, 0.1f, 0},
+                 IntegratorKind integrator = IntegratorKind::PhotonMap) {
     RenderSettings settings = from;
     settings.width = settings.height = 8;
-    settings.integrator = IntegratorKind::PhotonMap;
+    settings.integrator = integrator;
     settings.filter = PixelFilter::Box;
     Queue queue = test::queue_asked_for();
     const RenderResult result = test::render(queue, scene, test::camera_down(eye, 0.2f), settings);
@@ -224,23 +240,33 @@ double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 eye = {0, 
 
 } // namespace
 
-TEST_CASE("the energy of photons that leave the lights is what surfaces absorb and what escapes") {
-    const Scene scenes[] = {test::make_mixed_scene(), under_two_faces_of_glass(), sphere_that_glows(0.5f)};
+TEST_CASE(
+    "the energy of photons that leave the lights is what lies in the maps, what surfaces absorb and what escapes") {
+    const Material glass = test::of_roughness(MaterialKind::Dielectric, 0);
+    const Scene scenes[] = {test::make_mixed_scene(), under_two_faces_of_glass(), sphere_that_glows(0.5f),
+                            test::room_with_ball(glass, test::white(0.6f), false)};
     for (const Scene& scene : scenes) {
         const PhotonRun run(scene, 6, 3000);
         const FixedSum emitted = run.energy.emitted, escaped = run.energy.escaped;
         CHECK(joules(emitted) > 0);
-        // Nothing is lost on the way, to the last bit.
+        // Nothing is lost on the way, to the last bit; and what arrives lies in the maps themselves, but where none is
+        // to be left.
         CHECK(emitted + run.energy.went_on == run.energy.arrived + escaped);
+        if (&scene != scenes + 1) { // who comes in at that glass's open sides is taken to be in other stuff
+            CHECK(run.stored + run.energy.left_none == run.energy.arrived);
+        }
         CHECK(run.counts.stored > 100);
-        CHECK(joules(run.energy.kept) > 0);
-        // The other body moves the very same photons.
-        const PhotonRun again(scene, 6, 3000, false);
-        CHECK(again.energy.emitted == emitted);
-        CHECK(again.energy.escaped == escaped);
-        CHECK(again.energy.kept == run.energy.kept);
-        CHECK(again.counts.stored == run.counts.stored);
-        CHECK(again.counts.caustic == run.counts.caustic);
+        CHECK(joules(run.stored) > 0);
+        // The other body moves the very same photons, and other maps hold them too.
+        for (const PhotonRun& again :
+             {PhotonRun(scene, 6, 3000, false), PhotonRun(scene, 6, 3000, true, PhotonGather::Direct)}) {
+            CHECK(again.energy.emitted == emitted);
+            CHECK(again.energy.escaped == escaped);
+            CHECK(again.energy.left_none == run.energy.left_none);
+            CHECK(again.stored == run.stored);
+            CHECK(again.counts.stored == run.counts.stored);
+            CHECK(again.counts.caustic == run.counts.caustic);
+        }
     }
 }
 
@@ -251,7 +277,7 @@ TEST_CASE("photons carry what the lights send, and leave what a closed room keep
     CHECK(joules(run.energy.emitted) == doctest::Approx(2 * inside).epsilon(0.01));
     CHECK(joules(run.energy.escaped) == doctest::Approx(inside).epsilon(0.01));
     // Arrivals after 1 to 4 scatterings are kept: 1/2 + 1/4 + 1/8 + 1/16 of what is sent.
-    CHECK(joules(run.energy.kept) == doctest::Approx(inside * 15 / 16).epsilon(0.02));
+    CHECK(joules(run.stored) == doctest::Approx(inside * 15 / 16).epsilon(0.02));
     CHECK(joules(run.energy.arrived) == doctest::Approx(inside * 31 / 16).epsilon(0.02));
     CHECK(run.counts.caustic == 0);
 }
@@ -295,6 +321,22 @@ TEST_CASE("what is seen in a mirror is there too: a caustic that neither end fin
     const double by_bidirectional = test::mean_of(test::render(queue, scene, camera, settings).picture);
     CHECK(seen > 0.3);
     CHECK(by_bidirectional < 0.1 * seen);
+}
+
+TEST_CASE("a floor within glass is as bright by photons as by path tracing") {
+    Scene scene = test::make_furnace_scene(0.6f);
+    scene.materials[0] = test::of_roughness(MaterialKind::Dielectric, 0); // the furnace's ball
+    test::add(scene, test::floor_at(0, 0.5f), test::white(0.6f));
+    for (const PhotonGather gather : {PhotonGather::Direct, PhotonGather::Final}) {
+        CAPTURE(static_cast<int>(gather));
+        RenderSettings settings;
+        settings.path.max_depth = 6;
+        settings.samples = 64;
+        settings.photon_map = {.photons = 4000, .radius = 0.2f, .caustic_radius = 0.1f, .gather = gather};
+        const double by_path = mean_seen(scene, settings, {0, 4, 0}, IntegratorKind::Path);
+        CHECK(by_path > 0.2);
+        CHECK(mean_seen(scene, settings, {0, 4, 0}) == doctest::Approx(by_path).epsilon(0.02));
+    }
 }
 
 TEST_CASE("a glowing room shows each scattering once, by direct estimate and by final gathering") {

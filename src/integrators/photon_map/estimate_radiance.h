@@ -21,6 +21,7 @@ namespace pertev {
 /// Both maps of a pass.
 struct PhotonMapsView {
     PhotonMapView global, caustic;
+    bool global_has_all = false; // the caustic map's photons too
 };
 
 template <MaterialsKnown kKnown, PhotonSearch kSearch>
@@ -37,7 +38,8 @@ struct EstimateRadiance {
         // Scatterings of a photon at most: the surface itself is one more.
         const uint32_t most = scene.settings.max_depth - lookup.scatterings - 1;
         const Place place = {surface, -lookup.direction, normal_towards(surface, -lookup.direction), most, i};
-        Rgb light = estimate(maps.caustic, place);
+        Rgb light = {};
+        if (!lookup.wants_all || !maps.global_has_all) light = estimate(maps.caustic, place);
         if (lookup.wants_all) light += estimate(maps.global, place);
         if (!is_black(light)) add_radiance(film, lookup.pixel, lookup.throughput * light);
     }

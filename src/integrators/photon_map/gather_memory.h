@@ -25,7 +25,7 @@ struct Lookup {
 };
 
 struct GatherView {
-    Float4* sights;  // [walks]
+    Float4* sights;  // [walks] of a photon index_squared alone
     uint32_t* marks; // [walks] 1: of a photon, scattered otherwise than by delta lobes; of a walk from the camera, it
                      // has turned at a diffuse surface
     // Lookups of a round, side by side; WalkCounts::vertices is their number.
@@ -40,6 +40,9 @@ struct GatherView {
         const Float4 s = sights[walk];
         return {{s.x, s.y, s.z}, s.w};
     }
+    /// Of a photon: the square of the refractive index of what it is in, over that of what its light stands in.
+    HD float index_squared(uint32_t walk) const { return sights[walk].w; }
+    HD void store_index(uint32_t walk, float squared) const { sights[walk] = {0, 0, 0, squared}; }
     HD void store(uint32_t at, const Lookup& lookup) const {
         const Hit& hit = lookup.hit;
         const Vec3 d = lookup.direction;

@@ -9,7 +9,8 @@
 //                  the walk goes on once more: a map blurs what is nearer than that.
 // Each light path is found in one of these ways and in no other. Where a walk ends, a ray of its own looks for lamps,
 // so that a lamp close by, of which a shadow ray finds much light by little chance, is no bright spot (Veach 1997,
-// section 9.2); seldom where the lamp that the shadow ray is sent to is far.
+// section 9.2); seldom where the lamp that the shadow ray is sent to is far. Where it goes on by glossy lobes alone,
+// the next ray does that: lamps and sky count for all lobes there, and what lies behind them for the glossy ones.
 //
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 5.
 
@@ -20,6 +21,8 @@
 namespace pertev {
 
 inline constexpr uint32_t kLooksForLamps = 2;       // GatherView::marks of a walk that does nothing else any more
+inline constexpr uint32_t kSeesLampsWhole = 4;      // ... beside others: but for lamps and sky that the ray meets, the
+                                                    // throughput is Sight::past_mirrors
 inline constexpr uint32_t kNumberOfLook = 2;        // of the choices of a vertex: whether a ray looks for lamps
 inline constexpr float kLeastChanceToLook = 0.125f; // of that
 inline constexpr float kLookWithin = 4.0f; // ... which is 1 where a lamp's area is more than 1/4 of the square of
@@ -56,6 +59,7 @@ struct ShadeSights {
         WalkState state = walks.states[walk];
         const Sight sight = gather.sight_of(walk);
         const bool looks_for_lamps = gather.marks[walk] == kLooksForLamps;
+        const bool sees_lamps_whole = (gather.marks[walk] & kSeesLampsWhole) != 0;
         if (hit.instance == kNoHit) {
             if (!looks_for_lamps) add_background(state, sight, ray);
             return;
@@ -67,11 +71,17 @@ struct ShadeSights {
         } else if (!is_black(surface.emission)) {
             const uint32_t light = light_of(picture.scene.lights, hit.instance, hit.primitive);
             const bool may_be_drawn = sight.pdf > 0 && light != kNoLight;
+            if (sees_lamps_whole && !may_be_drawn) state.throughput = sight.past_mirrors;
             add_light(state, sight, surface.emission,
                       may_be_drawn ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position) : 0.0f);
         }
         const uint32_t depth = state.depth(), max_depth = scene.settings.max_depth;
         if (looks_for_lamps || surface.is_unlit || depth >= max_depth) return;
+        if (sees_lamps_whole) {
+            if (is_black(sight.past_mirrors)) return;
+            state.throughput = sight.past_mirrors;
+            gather.marks[walk] &= ~kSeesLampsWhole;
+        }
 
         const bool is_diffuse = surface.bsdf.has(LobeClass::Diffuse), is_glossy = surface.bsdf.has(LobeClass::Glossy);
         const bool is_near = sight.pdf > 0 && hit.t < near;
@@ -149,11 +159,7 @@ private:
     HD Rgb drawn_share(const Vertex& vertex, const LightSample& light, const BsdfValue& all) const {
         const bool is_sky = !light.is_delta && light.instance == kNoLight;
         if (light.is_delta || (vertex.may_look && is_sky)) return all.f;
-        const float weight = power_heuristic(light.pdf, all.pdf);
-        if (vertex.turns || vertex.may_look || !vertex.is_diffuse) return weight * all.f;
-        const Surface& surface = vertex.surface;
-        return surface.evaluate(vertex.wo, light.wi, only(LobeClass::Diffuse)).f +
-               weight * surface.evaluate(vertex.wo, light.wi, only(LobeClass::Glossy)).f;
+        return power_heuristic(light.pdf, all.pdf) * all.f;
     }
 
     /// `nearness`: of ask_for_light.
@@ -176,7 +182,7 @@ private:
                 sample.weight = share_that_looks(vertex, nearness, choices) * sample.weight;
                 gather.marks[walk] = kLooksForLamps;
             } else if (!vertex.turns) {
-                sample.weight = past_mirrors;
+                gather.marks[walk] |= kSeesLampsWhole;
             }
         }
         if (is_black(sample.weight)) return;

@@ -52,6 +52,8 @@ public:
 
     /// Of the last pass.
     const PhotonCounts& photons() const { return maps_.counts(); }
+    /// Likewise, in the queue's memory.
+    const PhotonMapsView& maps() const { return maps_.view(); }
     /// From the next pass on tells what becomes of photons, which takes time. Null: no more. In the queue's memory.
     void tell_energy(PhotonEnergy* energy) { energy_ = energy; }
     /// Metres, of a pass of the present picture.

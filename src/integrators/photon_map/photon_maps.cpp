@@ -12,35 +12,41 @@
 namespace pertev {
 namespace {
 
-/// What each of two maps may hold.
-uint64_t room_of_map(const PhotonMapSettings& settings, uint32_t max_depth) {
+/// What photons of one kind may leave.
+uint64_t room_of_kind(const PhotonMapSettings& settings, uint32_t max_depth) {
     return uint64_t(settings.photons) * (max_depth > 1 ? max_depth - 1 : 1);
+}
+/// Gathering rays look up all light in the global map (Jensen 1996, section 5).
+bool global_has_all(const PhotonMapSettings& settings) { return settings.gather == PhotonGather::Final; }
+/// In both maps together.
+uint64_t room_of_maps(const PhotonMapSettings& settings, uint32_t max_depth) {
+    return (global_has_all(settings) ? 3 : 2) * room_of_kind(settings, max_depth);
 }
 std::size_t most_starts(uint64_t room) { return std::bit_ceil(room) + 1; }
 
 } // namespace
 
 std::size_t PhotonMaps::predicted_bytes(const PhotonMapSettings& settings, uint32_t max_depth, bool on_cuda) {
-    const uint64_t of_map = room_of_map(settings, max_depth), room = 2 * of_map;
+    const uint64_t of_kind = room_of_kind(settings, max_depth), in_maps = room_of_maps(settings, max_depth);
     std::size_t each = 6 * sizeof(Float4) + 2 * (sizeof(uint64_t) + sizeof(uint32_t));
     if (on_cuda) each += sizeof(uint64_t) + sizeof(uint32_t); // a copy of what is sorted, about
+    const std::size_t bytes = 2 * of_kind * each + sizeof(PhotonCounts);
     switch (settings.search) {
     case PhotonSearch::Grid:
-        break;
+        return bytes + (most_starts(in_maps - of_kind) + most_starts(of_kind)) * sizeof(uint32_t);
     case PhotonSearch::KdTree:
-        each += sizeof(PointKdNode);
-        break;
+        return bytes + in_maps * sizeof(PointKdNode);
     case PhotonSearch::Octree:
-        each += 2 * sizeof(PointOctreeNode) + sizeof(Sphere) + sizeof(uint32_t);
         break;
     }
-    const bool has_grid = settings.search == PhotonSearch::Grid;
-    return room * each + (has_grid ? 2 * most_starts(of_map) * sizeof(uint32_t) : 0) + sizeof(PhotonCounts);
+    return bytes + in_maps * (2 * sizeof(PointOctreeNode) + sizeof(Sphere) + sizeof(uint32_t));
 }
 
 void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth) {
-    const uint64_t of_map = room_of_map(settings, max_depth), room = 2 * of_map;
+    const uint64_t of_kind = room_of_kind(settings, max_depth), room = 2 * of_kind;
+    const uint64_t in_maps = room_of_maps(settings, max_depth);
     search_ = settings.search;
+    global_has_all_ = global_has_all(settings);
     const auto need = [&]<class T>(Buffer<T>& buffer, std::size_t count, const char* name) {
         if (buffer.size() >= count) return;
         buffer = {}; // before there is more
@@ -53,17 +59,19 @@ void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth
     for (int k = 0; k < 2; ++k) {
         need(keys_[k], room, "numbers of photons");
         need(order_[k], room, "order of photons");
-        if (search_ == PhotonSearch::Grid) need(starts_[k], most_starts(of_map), "hash grid over photons");
+        if (search_ == PhotonSearch::Grid) {
+            need(starts_[k], most_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
+        }
     }
     if (queue_.is_cuda()) {
         need(scratch_, sort_scratch_bytes(queue_, static_cast<uint32_t>(room)), "room for sorting photons");
     }
     need(counts_, 1, "counts of photons");
-    if (search_ == PhotonSearch::KdTree) need(kd_nodes_, room, "kd-tree over photons");
+    if (search_ == PhotonSearch::KdTree) need(kd_nodes_, in_maps, "kd-tree over photons");
     if (search_ == PhotonSearch::Octree) {
-        need(octree_nodes_, 2 * room, "octree over photons");
-        need(octree_spheres_, room, "octree over photons");
-        need(octree_indices_, room, "octree over photons");
+        need(octree_nodes_, 2 * in_maps, "octree over photons");
+        need(octree_spheres_, in_maps, "octree over photons");
+        need(octree_indices_, in_maps, "octree over photons");
     }
     room_ = room;
 }
@@ -83,7 +91,7 @@ StoredPhotonsView PhotonMaps::clear() {
     return {{stored_[0].data(), stored_[1].data(), stored_[2].data()}, keys_[0].data(), counts_.data()};
 }
 
-PhotonMapsView PhotonMaps::build(float global_radius, float caustic_radius, float largest) {
+const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radius, float largest) {
     queue_.copy_to_host(&found_, counts_.data(), sizeof found_);
     PERTEV_CHECK(found_.stored <= room_);
     const uint32_t all = found_.stored;
@@ -92,34 +100,34 @@ PhotonMapsView PhotonMaps::build(float global_radius, float caustic_radius, floa
     sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), all, 34);
     launch(queue_, "order photons", all, OrderPhotons{stored, ordered(), order_[1].data()});
 
-    PhotonMapsView maps;
-    const uint32_t global = all - found_.caustic;
-    maps.global.count = global;
+    const uint32_t other = all - found_.caustic; // these come first
+    PhotonMapsView& maps = view_;
+    maps = {};
+    maps.global_has_all = global_has_all_;
+    maps.global.count = global_has_all_ ? all : other;
     maps.global.radius = global_radius;
+    maps.global.photons = ordered();
     maps.caustic.count = found_.caustic;
     maps.caustic.radius = caustic_radius;
+    maps.caustic.photons = ordered().from(other);
     PhotonMapView* const both[] = {&maps.global, &maps.caustic};
     for (int k = 0; k < 2; ++k) {
-        PhotonMapView& map = *both[k];
-        const uint32_t first = k == 0 ? 0 : global;
-        map.photons = ordered().from(first);
-        if (map.count == 0) continue;
+        if (both[k]->count == 0) continue;
         if (search_ == PhotonSearch::Grid) {
-            fill_grid(map, first, starts_[k], largest);
+            fill_grid(*both[k], stored_[k].data(), starts_[k], largest);
         } else {
-            build_trees(map, first);
+            build_trees(*both[k], k == 0 ? 0 : maps.global.count);
         }
     }
     return maps;
 }
 
-void PhotonMaps::fill_grid(PhotonMapView& map, uint32_t first, Buffer<uint32_t>& starts, float largest) {
+void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest) {
     const PhotonCells cells = make_photon_cells(map.radius, largest, map.count);
     const Float4* places = map.photons.places;
     launch(queue_, "make buckets", map.count, MakeBuckets{places, cells, keys_[0].data(), order_[0].data()});
     sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), map.count,
                  std::max(static_cast<int>(std::bit_width(cells.buckets)) - 1, 1));
-    Float4* points = stored_[0].data() + first;
     launch(queue_, "fill buckets", map.count + 1,
            FillBuckets{places, keys_[1].data(), order_[1].data(), map.count, cells.buckets, points, starts.data()});
     map.grid = {cells, points, starts.data()};

@@ -25,19 +25,21 @@ public:
     /// A pass begins: no photons. Where they go.
     StoredPhotonsView clear();
     /// What was stored becomes maps. `largest`: |coordinate| of any place. Waits for the device.
-    PhotonMapsView build(float global_radius, float caustic_radius, float largest);
+    const PhotonMapsView& build(float global_radius, float caustic_radius, float largest);
     /// Of the last build().
     const PhotonCounts& counts() const { return found_; }
+    const PhotonMapsView& view() const { return view_; }
 
 private:
     PhotonsView ordered() const { return {ordered_[0].data(), ordered_[1].data(), ordered_[2].data()}; }
-    void fill_grid(PhotonMapView& map, uint32_t first, Buffer<uint32_t>& starts, float largest);
+    void fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest);
     void build_trees(PhotonMapView& map, uint32_t first);
 
     Queue& queue_;
     PhotonSearch search_ = PhotonSearch::Grid;
+    bool global_has_all_ = false;
     uint64_t room_ = 0;           // photons
-    Buffer<Float4> stored_[3];    // of stored photons; then [0] has those of the grids
+    Buffer<Float4> stored_[3];    // of stored photons; then those of the grids: [0] of the global one, [1] of the other
     Buffer<Float4> ordered_[3];   // in the order of their numbers
     Buffer<uint64_t> keys_[2];    // as they come; sorted
     Buffer<uint32_t> order_[2];   // likewise
@@ -50,6 +52,7 @@ private:
     Buffer<Sphere> octree_spheres_;
     Buffer<uint32_t> octree_indices_;
     PhotonCounts found_{};
+    PhotonMapsView view_;
 };
 
 } // namespace pertev

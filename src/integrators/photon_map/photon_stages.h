@@ -21,10 +21,10 @@ namespace pertev {
 /// What becomes of photons, for who asks: powers, the three colours together, W.
 struct PhotonEnergy {
     FixedSum emitted;
-    FixedSum escaped; // met nothing
-    FixedSum arrived; // at surfaces
-    FixedSum went_on; // from there: the rest is absorbed
-    FixedSum kept;    // in the maps, wherever photons arrive
+    FixedSum escaped;   // met nothing
+    FixedSum arrived;   // at surfaces
+    FixedSum left_none; // of that, where no photon was left: the other's powers are in the maps
+    FixedSum went_on;   // from there: the rest is absorbed
 };
 
 /// A pass's photons: paths [0, count) are global ones, [count, 2 count) caustic ones.
@@ -78,6 +78,7 @@ struct BeginPhotons {
         state.pixel = path;
         walks.states[i] = state;
         gather.marks[i] = 0;
+        gather.store_index(i, 1);
         pass.tell(&PhotonEnergy::emitted, state.throughput);
         walks.queue_ray(atomic_add(&walks.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
@@ -97,30 +98,34 @@ struct ShadePhotons {
         const uint32_t walk = walks.owners[round % 2][i];
         WalkState state = walks.states[walk];
         if (hit.instance == kNoHit) return pass.tell(&PhotonEnergy::escaped, state.throughput);
-        pass.tell(&PhotonEnergy::arrived, state.throughput);
+        const Rgb arrived = state.throughput;
+        pass.tell(&PhotonEnergy::arrived, arrived);
         const Ray ray = load_ray(walks.rays[round % 2] + i);
         const Surface surface = make_surface<kKnown>(scene.picture.scene, hit, ray.direction);
         if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
-        if (surface.is_unlit || is_black(state.throughput)) return;
         const bool is_caustic = pass.is_caustic(state.pixel);
-        const bool is_kept = state.depth() > 0 && (is_caustic || gather.marks[walk] != 0);
-        if (is_kept && surface.bsdf.has(LobeClass::Diffuse)) keep(surface, state, -ray.direction, is_caustic);
+        const bool is_kept = state.depth() > 0 && (is_caustic || gather.marks[walk] != 0) && !surface.is_unlit &&
+                             surface.bsdf.has(LobeClass::Diffuse);
+        if (!is_kept) pass.tell(&PhotonEnergy::left_none, arrived);
+        if (surface.is_unlit || is_black(state.throughput)) return;
+        if (is_kept) keep(surface, walk, state, -ray.direction, is_caustic);
         if (state.depth() + 1 < scene.settings.max_depth && !(is_caustic && !surface.bsdf.has_delta())) {
             go_on(surface, walk, state, -ray.direction, is_caustic);
         }
     }
 
 private:
-    HD void keep(const Surface& surface, const WalkState& state, Vec3 wi, bool is_caustic) const {
-        if (!(max_component(state.throughput) <= kMaxSampleValue)) {
+    HD void keep(const Surface& surface, uint32_t walk, const WalkState& state, Vec3 wi, bool is_caustic) const {
+        // Walks from the camera carry radiance over the square of the index (shading/bsdf_sample.h), photons power.
+        const Rgb power = (1.0f / gather.index_squared(walk)) * state.throughput;
+        if (!(max_component(power) <= kMaxSampleValue)) {
             atomic_add(pass.invalid, 1);
             return;
         }
         const Vec3 normal = surface.geometric_normal;
-        pass.stored.add({surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, state.throughput, state.pixel,
-                         state.depth()},
-                        is_caustic);
-        pass.tell(&PhotonEnergy::kept, state.throughput);
+        pass.stored.add(
+            {surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, power, state.pixel, state.depth()},
+            is_caustic);
     }
     HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, bool is_caustic) const {
         const SubpathSettings& settings = scene.settings;
@@ -139,6 +144,10 @@ private:
             sample.weight = (1.0f / chance) * sample.weight;
         }
         if (!sample.is_delta()) gather.marks[walk] = 1;
+        if (sample.is_transmission) {
+            const float squared = square(surface.bsdf.base.dielectric.ior), here = gather.index_squared(walk);
+            gather.store_index(walk, surface.frame.to_local(wi).z > 0 ? here * squared : here / squared);
+        }
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
         walks.states[walk] = state;

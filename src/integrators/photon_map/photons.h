@@ -17,7 +17,7 @@ struct Photon {
     Vec3 position; // moved world, metres
     Vec3 wi;       // unit, to where it came from
     Vec3 normal;   // unit, of the triangle, on the side where it came from
-    Rgb power;     // W, of all that the lights send in the pass
+    Rgb power;     // W, of all that the lights send in the pass, over the square of the refractive index there
     uint32_t path, scatterings;
 };
 
