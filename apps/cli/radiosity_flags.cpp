@@ -236,7 +236,11 @@ RadiosityLook radiosity_look(const RadiosityFlags& flags, const PreparedScene& p
     const auto look = [&](RadiositySolution&& solution) {
         return RadiosityLook{std::make_shared<const RadiositySolution>(std::move(solution)), flags.flat_patches};
     };
-    if (!flags.solution.empty()) return look(read_solution(flags.solution, *prepared.scene));
+    if (!flags.solution.empty()) {
+        RadiositySolution solution = read_solution(flags.solution, *prepared.scene, reporter.messages());
+        reporter.say_messages();
+        return look(std::move(solution));
+    }
     SolvedRadiosity solved = solve_and_report(prepared, flags, seed, reporter);
     if (solved.stats.was_interrupted) { // a picture of it could not be made again
         throw Error(ErrorCode::Interrupted, "interrupted while radiosity was solved, so that there is nothing to show "

@@ -145,8 +145,10 @@ RenderResult picture_of(const SequenceRun& run, uint32_t frame) {
     Session& session = run.session;
     const uint32_t samples = run.record.settings.samples;
     session.render(samples, [&](const RenderProgress& now) {
+        const bool is_made = now.made_share >= 1;
         show_progress(run, frame, static_cast<double>(now.samples_done) / now.samples,
-                      fmt::format("  {}/{} spp", now.samples_done, now.samples));
+                      is_made ? fmt::format("  {}/{} spp", now.samples_done, now.samples)
+                              : fmt::format("  {:.0f} % before the first sample", 100 * now.made_share));
         return !interrupted();
     });
     return session.result();

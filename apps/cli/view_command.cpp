@@ -109,8 +109,14 @@ CameraSource turned_camera(const ReadyScene& ready, double time_s) {
 void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart& start) {
     const MovingScene& moving = *ready.moving;
     const uint32_t turntable = flags.render.turntable;
-    start.is_animated = moving.is_animated();
-    start.clock = {.end_s = moving.end_s(), .time_s = moving.time_s(), .plays = !moving.time_s()};
+    const bool is_still = moving.is_animated() && ready.settings.radiosity.solution != nullptr;
+    start.is_animated = moving.is_animated() && !is_still;
+    start.clock = {.end_s = is_still ? 0 : moving.end_s(), .time_s = moving.time_s(), .plays = !moving.time_s()};
+    if (is_still) {
+        start.still_s = moving.time_s();
+        start.why_still = fmt::format("stands {}: radiosity is solved for one time",
+                                      start.still_s ? fmt::format("at {:g} s", *start.still_s) : "as at rest");
+    }
     if (!flags.render.camera_path.empty()) {
         start.camera.path = read_camera_path(flags.render.camera_path);
         start.clock.end_s = std::max(start.clock.end_s, start.camera.path.keys.back().time_s);
@@ -211,6 +217,11 @@ int view(const ViewFlags& flags) {
     start.speed = 0.12f * size;
     start.camera.pose = start_pose(start.record, source, size);
     let_time_move(flags, *ready, start);
+    if (!start.why_still.empty()) {
+        reporter.messages().note(fmt::format("{}: the scene {}; --time S shows it at another, --integrator path moving",
+                                             flags.render.scene.scene, start.why_still));
+        reporter.say_messages();
+    }
     const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
     reporter.set_work("waiting for somebody to look");
     end_soon();

@@ -171,11 +171,11 @@ void RenderLoop::let_time_pass() {
     if (time_runs()) clock_.advance(std::min(passed, kLongestStep));
 }
 
-/// Scene and camera to the clock's time. Throws as FrameSource::set_time.
+/// Scene and camera to the clock's time, as far as it moves them. Throws as FrameSource::set_time.
 void RenderLoop::follow_time() {
     if (!clock_.time_s || clock_.time_s == followed_s_) return;
     followed_s_.reset();
-    source_.set_time(*clock_.time_s);
+    if (start_.is_animated) source_.set_time(*clock_.time_s);
     camera_.go_to(clock_.time_s, view_.lens);
     followed_s_ = clock_.time_s;
 }
@@ -310,7 +310,8 @@ void RenderLoop::tell_state() {
     numbers.packed_bytes = packer_.bytes();
     numbers.encoder = packer_.encoder();
     numbers.phase = is_done_ ? "done" : (is_moving() ? "moving" : "gathering");
-    numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : std::nullopt);
+    numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : start_.still_s);
+    numbers.why_still = start_.why_still;
     numbers.input = input_;
     numbers.steerer = steerer_;
     numbers.clock = clock_;

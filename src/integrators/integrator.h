@@ -35,12 +35,14 @@ public:
     /// Said before begin(): it will be given the picture of the begin() before it, unchanged, and so are the settings.
     /// What was found out for that picture may be kept.
     virtual void expect_same_picture() {}
+    /// Whether something was found out for the picture begun that another picture's begin() would throw away.
+    virtual bool has_made() const { return false; }
 
     /// Makes what all samples of the picture begun need, where that is not there; render() does so where this was not
     /// called. Asks `goes_on` on the caller's thread, before it begins and every tenth of a second or so (on a GPU
-    /// between passes of kernels). Returns false, and there is nothing, once that is false. Throws Error(DeviceFault),
-    /// and what `goes_on` throws.
-    virtual bool make_ready(const std::function<bool()>& goes_on) {
+    /// between passes of kernels), with the share of it that is done, [0, 1], as far as that is known; it never falls.
+    /// Returns false, and there is nothing, once that is false. Throws Error(DeviceFault), and what `goes_on` throws.
+    virtual bool make_ready(const std::function<bool(double share)>& goes_on) {
         static_cast<void>(goes_on); // there is nothing to make
         return true;
     }

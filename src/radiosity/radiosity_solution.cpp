@@ -13,17 +13,24 @@
 namespace pertev {
 namespace {
 
-constexpr char kMagic[16] = {'p', 'e', 'r', 't', 'e', 'v', ' ', 'r', 'a', 'd', 'i', 'o', 's', 'i', 't', '1'};
+/// The last letter is the version. Files of version 1 have no SolvedLight.
+constexpr char kMagic[16] = {'p', 'e', 'r', 't', 'e', 'v', ' ', 'r', 'a', 'd', 'i', 'o', 's', 'i', 't', '2'};
+constexpr char kOldVersion = '1';
 
-/// What a file begins with; then its text, roots, quads and patches.
+/// What a file begins with; then its SolvedLight, text, roots, quads and patches.
 struct Header {
     char magic[16];
     uint64_t text, roots, quads, patches; // bytes; elements
-    Hash128 geometry, content;            // of all that follows, and of the ambient light
+    Hash128 geometry, content;            // of the text and all that follows it, and of the ambient light
     float ambient[3];
     uint32_t unused;
 };
-static_assert(sizeof(Header) == 96);
+static_assert(sizeof(Header) == 96 && sizeof(SolvedLight) == 32);
+
+bool has_version(const Header& header, char version) {
+    constexpr std::size_t kName = sizeof kMagic - 1;
+    return std::memcmp(header.magic, kMagic, kName) == 0 && header.magic[kName] == version;
+}
 
 Hash128 content_hash(const RadiositySolution& solution) {
     Hasher hasher;
@@ -93,6 +100,33 @@ Hash128 geometry_hash(const Scene& scene) {
     return hasher.result();
 }
 
+namespace {
+
+/// Throws Error(BadInput) where it is not of `scene` as it is.
+void check_scene(const std::filesystem::path& path, const RadiositySolution& solution, const Scene& scene) {
+    uint64_t triangles = 0;
+    for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
+    if (solution.geometry != geometry_hash(scene) || solution.roots.size() != 2 * triangles) {
+        refuse_file(path, "a radiosity solution of another scene, of this one before its surfaces were changed, or of "
+                          "another --time (pertev solve radiosity makes a new one)");
+    }
+    if (!solution.light) return;
+    const SolvedLight light = solved_light(scene);
+    if (solution.light->surfaces != light.surfaces) {
+        refuse_file(path, "a radiosity solution of this scene with other materials: what surfaces reflect, let through "
+                          "or emit has changed since, or by --lamp, --efficacy or --two-sided-lights (pertev solve "
+                          "radiosity, with the same flags, makes a new one)");
+    }
+    if (solution.light->lights != light.lights) {
+        refuse_file(path,
+                    "a radiosity solution of this scene under other lights: a point, spot or directional light or "
+                    "the environment has changed since, or by --lamp, --environment and the like, or --time "
+                    "(pertev solve radiosity, with the same flags, makes a new one)");
+    }
+}
+
+} // namespace
+
 void write_solution(const std::filesystem::path& path, const RadiositySolution& solution) {
     Header header = {};
     std::memcpy(header.magic, kMagic, sizeof kMagic);
@@ -105,9 +139,12 @@ void write_solution(const std::filesystem::path& path, const RadiositySolution& 
     header.ambient[0] = solution.ambient.r, header.ambient[1] = solution.ambient.g,
     header.ambient[2] = solution.ambient.b;
     std::vector<std::byte> bytes;
-    bytes.reserve(sizeof header + solution.made.size() + solution.bytes());
+    bytes.reserve(sizeof header + sizeof(SolvedLight) + solution.made.size() + solution.bytes());
     const auto append = [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
     append(std::as_bytes(std::span(&header, 1)));
+    PERTEV_CHECK(solution.light.has_value());
+    const SolvedLight light = *solution.light;
+    append(std::as_bytes(std::span(&light, 1)));
     append(std::as_bytes(std::span(solution.made)));
     append(std::as_bytes(std::span(solution.roots)));
     append(std::as_bytes(std::span(solution.quads)));
@@ -115,25 +152,28 @@ void write_solution(const std::filesystem::path& path, const RadiositySolution& 
     write_file_atomically(path, bytes);
 }
 
-RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene) {
+RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages) {
     const std::vector<std::byte> file = read_file(path);
     std::span<const std::byte> bytes = file;
     Header header;
     if (bytes.size() < sizeof header) refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
     take(bytes, std::span(&header, 1));
-    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
+    const bool is_old = has_version(header, kOldVersion);
+    if (!is_old && !has_version(header, kMagic[sizeof kMagic - 1])) {
         refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
     }
     constexpr uint64_t kMost = uint64_t(1) << 40; // so that no sum below passes 64 bits
     const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMost;
+    const uint64_t of_light = is_old ? 0 : sizeof(SolvedLight);
     const uint64_t size = !has_sizes ? 0
-                                     : header.text + header.roots * sizeof(PatchCode) +
+                                     : of_light + header.text + header.roots * sizeof(PatchCode) +
                                            header.quads * sizeof(PatchQuad) + header.patches * sizeof(PatchLight);
     if (!has_sizes || size != bytes.size()) {
         refuse_file(path, fmt::format("a radiosity solution that was cut short or damaged: {} bytes, it says {}",
                                       file.size(), sizeof header + size));
     }
     RadiositySolution solution;
+    if (!is_old) take(bytes, std::span(&solution.light.emplace(), 1));
     solution.geometry = header.geometry;
     solution.ambient = {header.ambient[0], header.ambient[1], header.ambient[2]};
     solution.made.resize(header.text);
@@ -147,12 +187,12 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     if (content_hash(solution) != header.content || !is_sound(solution) || !has_light_alone(solution)) {
         refuse_file(path, "a radiosity solution that was damaged: what it holds is not what was written");
     }
-    uint64_t triangles = 0;
-    for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
-    if (solution.geometry != geometry_hash(scene) || solution.roots.size() != 2 * triangles) {
-        refuse_file(path,
-                    "a radiosity solution of another scene, or of this one before its surfaces were changed (pertev "
-                    "solve radiosity makes a new one)");
+    check_scene(path, solution, scene);
+    if (is_old) {
+        messages.warn(fmt::format("{}: made by an earlier version, which did not write down what light it was solved "
+                                  "for: where lights or materials have changed since, it shows those of then (pertev "
+                                  "solve radiosity makes a new one)",
+                                  path.string()));
     }
     return solution;
 }

@@ -5,19 +5,23 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/hash.h"
+#include "base/messages.h"
 #include "radiosity/radiosity_view.h"
+#include "radiosity/solved_light.h"
 #include "scene/scene.h"
 
 namespace pertev {
 
 struct RadiositySolution {
-    Hash128 geometry;             // geometry_hash of its scene
-    std::string made;             // by which settings, a JSON object
-    std::vector<PatchCode> roots; // [faces]
+    Hash128 geometry;                 // geometry_hash of its scene
+    std::optional<SolvedLight> light; // of its scene; none: of a file that does not say
+    std::string made;                 // by which settings, a JSON object
+    std::vector<PatchCode> roots;     // [faces]
     std::vector<PatchQuad> quads;
     std::vector<PatchLight> patches;
     Rgb ambient; // RadiosityView's
@@ -38,7 +42,8 @@ Hash128 geometry_hash(const Scene& scene);
 void write_solution(const std::filesystem::path& path, const RadiositySolution& solution);
 
 /// Throws Error(BadInput) that says why where there is no such file, where it is none, damaged or cut short, or where
-/// it is of another scene: whatever it holds, what is returned is safe to look things up in.
-RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene);
+/// it is of another scene or of this one under other light: whatever it holds, what is returned is safe to look things
+/// up in. Of a file that does not say what light it was solved for that is a warning.
+RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages);
 
 } // namespace pertev

@@ -270,6 +270,7 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
     stats.was_interrupted = watch.is_over();
     RadiositySolution& solution = solved.solution;
     solution.geometry = geometry_hash(*prepared.scene);
+    solution.light = solved_light(*prepared.scene);
     solution.made = json_of(settings);
     solution.patches = light_corners(scene.view(), shown.tree, shown.irradiance);
     solution.roots = std::move(shown.tree.roots);

@@ -106,10 +106,10 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
 void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame) {
     settings.width = settings.path.frame_width = frame.width();
     settings.height = frame.height();
-    begin(camera, settings, 1);
+    Integrator& integrator = begin(camera, settings, 1);
     frame.begin();
-    integrator_->render(number, 1, frame.film_view());
-    frame_rays_ = frame_rays_ + integrator_->rays();
+    integrator.render(number, 1, frame.film_view());
+    frame_rays_ = frame_rays_ + integrator.rays();
 }
 
 /// How light has changed since the frame before, where that has left a small picture of the scene as it was.

@@ -234,9 +234,10 @@ MotionTrack Session::motion_of(const Camera& camera, Vec3 centre) {
             static_cast<uint32_t>(keys.size() - 1)};
 }
 
-/// Makes the integrator ready to add `samples` samples of the picture of `settings`, never to be abandoned. Pictures of
-/// one number, not 0, are the same.
-void Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples, uint64_t picture_number) {
+/// Returns an integrator that is ready to add `samples` samples of the picture of `settings`, never to be abandoned.
+/// Pictures of one number, not 0, are the same.
+Integrator& Session::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples,
+                           uint64_t picture_number) {
     const PictureView picture = view_of(camera, settings); // first: it checks that there is a scene
     check_camera(settings, camera);
     if (picture.camera.is_open) {
@@ -246,19 +247,26 @@ void Session::begin(const Camera& camera, const RenderSettings& settings, uint32
         }
     }
     const IntegratorSettings& wanted = settings;
-    const bool stays = integrator_ != nullptr && change_settings(*integrator_, integrator_settings_, wanted);
+    // A look aside leaves alone what the film's next samples need.
+    const bool is_aside =
+        picture_number == 0 && begun_number_ == picture_number_ && main_.integrator && main_.integrator->has_made();
+    HeldIntegrator& held = is_aside ? aside_ : main_;
+    if (!is_aside) aside_ = {};
+    const bool stays = held.integrator && change_settings(*held.integrator, held.settings, wanted);
     if (!stays) {
-        integrator_.reset(); // with its queues
-        integrator_ = make_integrator(queue_, wanted);
+        held.integrator.reset(); // with its queues
+        held.integrator = make_integrator(queue_, wanted);
     }
-    integrator_settings_ = wanted;
+    held.settings = wanted;
+    Integrator& integrator = *held.integrator;
     tracer_->time_kinds(settings.time_kinds);
-    integrator_->abandon_when(nullptr);
-    if (stays && picture_number != 0 && picture_number == begun_number_) integrator_->expect_same_picture();
-    begun_number_ = 0; // where the next line throws
-    integrator_->begin(picture, *tracer_, samples);
-    begun_number_ = picture_number;
+    integrator.abandon_when(nullptr);
+    if (stays && picture_number != 0 && picture_number == begun_number_) integrator.expect_same_picture();
+    if (!is_aside) begun_number_ = 0; // where the next line throws
+    integrator.begin(picture, *tracer_, samples);
+    if (!is_aside) begun_number_ = picture_number;
     queue_.wait();
+    return integrator;
 }
 
 uint32_t Session::render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going) {
@@ -268,24 +276,25 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     Film& film = current_film();
     const bool denoises = settings_.denoise != Denoise::None;
     if (denoises && first == 0) begin_signals();
-    begin(camera_, settings_, denoises ? 1 : count, picture_number_);
-    integrator_->abandon_when(abandon_);
+    Integrator& integrator = begin(camera_, settings_, denoises ? 1 : count, picture_number_);
+    integrator.abandon_when(abandon_);
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
-    const auto goes_on = [&] {
+    const auto goes_on = [&](double made_share) {
         const double seconds = watch.seconds();
         if (abandon_ != nullptr && *abandon_) return false;
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) return false;
-        return !keep_going || keep_going({first, first + count, seconds, integrator_->rays()});
+        return !keep_going || keep_going({first, first + count, seconds, integrator.rays(), made_share, seconds});
     };
-    if (!integrator_->make_ready(goes_on)) return 0;
+    if (!integrator.make_ready(goes_on)) return 0;
+    const double made_seconds = watch.seconds();
     for (uint32_t done = 0; done < count;) {
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
         if (denoises) {
-            render_signals(first + done, pass);
+            render_signals(integrator, first + done, pass);
         } else {
-            integrator_->render(first + done, pass, film.view());
+            integrator.render(first + done, pass, film.view());
         }
         if (abandon_ != nullptr && *abandon_) { // parts of a sample may be missing
             begin_film();
@@ -294,11 +303,12 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
         done += pass;
         const double seconds = watch.seconds();
         history_.samples = first + done;
-        stats_.rays = rays_before + integrator_->rays();
+        stats_.rays = rays_before + integrator.rays();
         stats_.kind_seconds = tracer_->seconds();
         stats_.render_seconds = seconds_before + seconds;
         if (first == 0 && done == pass) stats_.first_pixel_seconds = since_call.seconds();
-        if (keep_going && !keep_going({first + done, first + count, seconds, integrator_->rays()})) break;
+        const RenderProgress now = {first + done, first + count, seconds, integrator.rays(), 1, made_seconds};
+        if (keep_going && !keep_going(now)) break;
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
     }
     return history_.samples - first;
@@ -318,24 +328,24 @@ void Session::begin_signals() {
     of_centres.filter_radius = 0x1p-20f; // pixels
     Camera pinhole = camera_;
     pinhole.aperture_radius = 0;
-    begin(pinhole, of_centres, 1);
+    Integrator& of_pinhole = begin(pinhole, of_centres, 1);
     frame.begin();
-    integrator_->render(0, 1, frame.film_view());
+    of_pinhole.render(0, 1, frame.film_view());
     denoiser_->begin(frame, view_of(pinhole, of_centres).camera.view);
-    begin(camera_, of_features, 1);
+    Integrator& integrator = begin(camera_, of_features, 1);
     for (uint32_t sample = 0; sample < PictureDenoiser::kFeatures; ++sample) {
-        integrator_->render(sample, 1, frame.film_view());
+        integrator.render(sample, 1, frame.film_view());
         denoiser_->add_features(frame, scene_->view());
     }
 }
 
 /// Adds samples to the film and to the signals that are denoised.
-void Session::render_signals(uint32_t first, uint32_t count) {
+void Session::render_signals(Integrator& integrator, uint32_t first, uint32_t count) {
     const SceneView& scene = scene_.value().view();
     FilmView into = noisy_frame_->film_view();
     into.invalid = film_->view().invalid;
     for (uint32_t sample = first; sample < first + count; ++sample) {
-        integrator_->render(sample, 1, into);
+        integrator.render(sample, 1, into);
         if (abandon_ != nullptr && *abandon_) return;
         launch(queue_, "add_frame_to_film", settings_.width * settings_.height,
                AddFrameToFilm{noisy_frame_->view(), film_->view(), scene, sample == 0});
@@ -389,19 +399,18 @@ float Session::meter(ToneMap tone_map) {
     return meter_exposure(settings_, tone_map, [this](const RenderSettings& settings) {
         Film& film = fit(meter_film_, settings);
         film.clear();
-        begin(camera_, settings, settings.samples);
-        integrator_->render(0, settings.samples, film.view());
+        begin(camera_, settings, settings.samples).render(0, settings.samples, film.view());
         return film.picture(settings.samples, settings.transparent);
     });
 }
 
 RenderResult Session::look_aside(const Camera& camera, const RenderSettings& settings, uint32_t first) {
     Film film(queue_, settings.width, settings.height, settings.aovs, light_layers_of(settings));
-    begin(camera, settings, settings.samples);
-    integrator_->render(first, settings.samples, film.view());
+    Integrator& integrator = begin(camera, settings, settings.samples);
+    integrator.render(first, settings.samples, film.view());
     RenderResult result;
     result.samples = settings.samples;
-    result.rays = integrator_->rays();
+    result.rays = integrator.rays();
     result.picture = film.picture(settings.samples, settings.transparent);
     result.layers = layers_of(film, settings, settings.samples);
     result.ids = film.ids();

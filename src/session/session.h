@@ -71,10 +71,10 @@ public:
     /// `keep_going`, called after each pass, returns false, and at kMaxSamplesPerPixel in the film; always at a whole
     /// sample of all pixels. Returns how many were added: at least one where one was asked for and fits, but none where
     /// it was abandoned. Where an integrator makes something before samples (Integrator::make_ready), `keep_going` is
-    /// called during that too, with the samples that the film has; where that, the time or, on the CPU, the flag of
-    /// abandon_when ends it, nothing is added and the film stays as it is. Throws Error(OutOfMemory, DeviceFault), as
-    /// all that take samples what check_camera does, and what `keep_going` throws; the film then holds all passes done
-    /// before.
+    /// called during that too, with the samples that the film has and the share that is made; where that, the time or,
+    /// on the CPU, the flag of abandon_when ends it, nothing is added and the film stays as it is. Throws
+    /// Error(OutOfMemory, DeviceFault), as all that take samples what check_camera does, and what `keep_going` throws;
+    /// the film then holds all passes done before.
     uint32_t render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going = {});
 
     /// Of the present picture; without samples, all zero.
@@ -155,10 +155,11 @@ private:
     void upload(const PreparedScene& scene, uint32_t parts);
     NoisyFrame& fit(std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
     void begin_signals();
-    void render_signals(uint32_t first, uint32_t count);
+    void render_signals(Integrator& integrator, uint32_t first, uint32_t count);
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
     MotionTrack motion_of(const Camera& camera, Vec3 centre);
-    void begin(const Camera& camera, const RenderSettings& settings, uint32_t samples, uint64_t picture_number = 0);
+    Integrator& begin(const Camera& camera, const RenderSettings& settings, uint32_t samples,
+                      uint64_t picture_number = 0);
 
     Queue& queue_;
     Camera camera_;
@@ -196,10 +197,14 @@ private:
     uint32_t frame_number_ = 0;                          // of the last frame: its sample's
     SamplerKind frame_sampler_ = PathSettings{}.sampler; // of that sample
     bool film_is_old_ = false;                           // holds samples of a picture that is no more asked for
-    std::unique_ptr<Integrator> integrator_;
-    IntegratorSettings integrator_settings_; // that it has
-    uint64_t picture_number_ = 1;            // another one for each picture that samples go to the film of
-    uint64_t begun_number_ = 0;              // of the picture that the integrator has begun; 0: of some other
+    /// With the settings that it has.
+    struct HeldIntegrator {
+        std::unique_ptr<Integrator> integrator;
+        IntegratorSettings settings;
+    };
+    HeldIntegrator main_, aside_; // aside_: of other pictures, while main_ has made something for the film's
+    uint64_t picture_number_ = 1; // another one for each picture that samples go to the film of
+    uint64_t begun_number_ = 0;   // of the picture that main_ has begun; 0: of some other
     const std::atomic<bool>* abandon_ = nullptr;
 };
 

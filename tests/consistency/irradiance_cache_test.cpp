@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <vector>
 
 #include "integrators/irradiance_cache/record_store.h"
 #include "session/session.h"
@@ -72,12 +74,12 @@ TEST_CASE("irradiance caching tells the same of the first surface as path tracin
 }
 
 TEST_CASE("a session goes to irradiance caching and back, ends early and goes on, and each picture is whole") {
-    Queue queue = Queue::make_cpu();
+    Queue queue = test::queue_asked_for();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = cache_settings();
-    settings.samples = 2;
+    settings.samples = 3;
     settings.pass_samples = 1;
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         settings.body = body;
@@ -132,10 +134,19 @@ TEST_CASE("records are made once for a picture, and anew for another") {
         session.set_settings(settings);
         check_made(false);
         check_picture(settings, test::camera_with_lens());
-        session.meter(ToneMap::Aces); // looks at another picture in between
-        check_made(true);
+        session.meter(ToneMap::Aces); // looks at other pictures in between
+        check_made(false);
+        RenderSettings aside_settings = settings;
+        aside_settings.width = 9;
+        session.look_aside(test::mixed_scene_camera(), aside_settings); // has records of its own
+        check_made(false);
+        aside_settings.path.max_depth = 0;
+        session.look_aside(test::camera_with_lens(), aside_settings);
+        session.meter(ToneMap::Aces);
+        check_made(false);
         check_picture(settings, test::camera_with_lens());
         session.cut();
+        session.look_aside(test::camera_with_lens(), settings);
         check_made(true);
         session.update_scene(prepared, kPartInstances);
         check_made(true);
@@ -152,6 +163,69 @@ TEST_CASE("records are made once for a picture, and anew for another") {
         check_made(true);
         check_made(false);
         check_picture(other, aside);
+    }
+}
+
+TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and leave its bytes as they are") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = cache_settings();
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        Session undisturbed(queue, prepared, test::camera_with_lens(), settings);
+        Session session(queue, prepared, test::camera_with_lens(), settings);
+        const float stops = session.meter(ToneMap::Aces); // before there are records
+        for (int sample = 0; sample < 3; ++sample) {
+            CHECK(undisturbed.render(1) == 1);
+            CHECK(session.render(1) == 1);
+            CHECK(session.meter(ToneMap::Aces) == stops);
+            RenderSettings one_pixel = settings;
+            one_pixel.width = one_pixel.height = one_pixel.samples = 1;
+            one_pixel.path.max_depth = 0;
+            session.look_aside(test::mixed_scene_camera(), one_pixel);
+        }
+        const RenderResult wanted = undisturbed.result(), result = session.result();
+        CHECK(result.rays.total() == wanted.rays.total());
+        CHECK(test::render_hash(result) == test::render_hash(wanted));
+    }
+}
+
+TEST_CASE("an overture tells how far it is, from nothing to all, and never less than before") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = cache_settings();
+    settings.width = 160, settings.height = 90;
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        settings.batch = 2000; // many parts
+        Session session(queue, prepared, test::camera_with_lens(), settings);
+        std::vector<RenderProgress> told;
+        session.render(2, [&](const RenderProgress& now) {
+            told.push_back(now);
+            return true;
+        });
+        const auto is_of_samples = [](const RenderProgress& now) { return now.samples_done > 0; };
+        const auto samples = std::ranges::find_if(told, is_of_samples);
+        REQUIRE(samples - told.begin() > 12);
+        const auto all_rays = static_cast<double>(samples[-1].rays.total());
+        CHECK(told.front().made_share == 0);
+        CHECK(samples[-1].made_share == 1);
+        for (auto now = told.begin(); now < samples; ++now) {
+            const double share = now->made_share, done = static_cast<double>(now->rays.total()) / all_rays;
+            if (now > told.begin()) CHECK(share >= now[-1].made_share);
+            CHECK(abs(static_cast<float>(share - done)) < 0.35f);
+            CHECK(now->made_seconds == now->seconds);
+        }
+        for (auto now = samples; now < told.end(); ++now) {
+            CHECK(now->made_share == 1);
+            CHECK(now->made_seconds >= samples[-1].seconds);
+            CHECK(now->made_seconds <= now->seconds);
+        }
+        CHECK(session.render(1, [&](const RenderProgress& now) { return now.made_share == 1; }) == 1); // all is there
     }
 }
 

@@ -69,20 +69,23 @@ TEST_CASE("photon mapping tells the same of the first surface as path tracing, a
 }
 
 TEST_CASE("a session goes to photon mapping and back, ends early and goes on, and each picture is whole") {
-    Queue queue = Queue::make_cpu();
+    Queue queue = test::queue_asked_for();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = photon_settings();
-    settings.samples = 2;
+    settings.samples = 3;
     settings.pass_samples = 1;
-    Session session(queue, prepared, test::camera_with_lens(), settings);
-    for (const auto& [integrator, photons] :
-         {std::pair(IntegratorKind::PhotonMap, 2000u), std::pair(IntegratorKind::Path, 2000u),
-          std::pair(IntegratorKind::PhotonMap, 500u), std::pair(IntegratorKind::PhotonMap, 4000u)}) {
-        settings.integrator = integrator;
-        settings.photon_map.photons = photons; // less memory, and more
-        test::check_goes_on(session, queue, scene, settings);
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        Session session(queue, prepared, test::camera_with_lens(), settings);
+        for (const auto& [integrator, photons] :
+             {std::pair(IntegratorKind::PhotonMap, 2000u), std::pair(IntegratorKind::Path, 2000u),
+              std::pair(IntegratorKind::PhotonMap, 500u), std::pair(IntegratorKind::PhotonMap, 4000u)}) {
+            settings.integrator = integrator;
+            settings.photon_map.photons = photons; // less memory, and more
+            test::check_goes_on(session, queue, scene, settings);
+        }
     }
 }
 

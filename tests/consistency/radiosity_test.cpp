@@ -65,24 +65,26 @@ TEST_CASE("a picture of radiosity tells the same of the first surface as path tr
     CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
 }
 
-TEST_CASE("a session goes to radiosity, another solution and back, and each picture is whole") {
+TEST_CASE("a session goes to radiosity, another solution and back, ends early and goes on, and each picture is whole") {
     Queue queue = test::queue_asked_for();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const RadiosityLook looks[] = {look_at_mixed_scene(2), look_at_mixed_scene(1)};
     RenderSettings settings = shown(looks[0]);
-    Session session(queue, prepared, test::camera_with_lens(), settings);
-    for (const auto& [integrator, number] :
-         {std::pair(IntegratorKind::Radiosity, 0), std::pair(IntegratorKind::Path, 0),
-          std::pair(IntegratorKind::Radiosity, 1), std::pair(IntegratorKind::Radiosity, 0)}) {
-        settings.integrator = integrator;
-        settings.radiosity = looks[number];
-        session.set_settings(settings);
-        CHECK(session.render(settings.samples) == settings.samples);
-        CHECK(test::render_hash(session.result()) ==
-              test::render_hash(test::render(queue, scene, test::camera_with_lens(), settings)));
+    settings.pass_samples = 1;
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        settings.body = body;
+        Session session(queue, prepared, test::camera_with_lens(), settings);
+        for (const auto& [integrator, number] :
+             {std::pair(IntegratorKind::Radiosity, 0), std::pair(IntegratorKind::Path, 0),
+              std::pair(IntegratorKind::Radiosity, 1), std::pair(IntegratorKind::Radiosity, 0)}) {
+            settings.integrator = integrator;
+            settings.radiosity = looks[number];
+            test::check_goes_on(session, queue, scene, settings);
+        }
     }
+    Session session(queue, prepared, test::camera_with_lens(), settings);
     settings.radiosity.solution.reset();
     session.set_settings(settings);
     CHECK(test::bad_input_message([&] { session.render(1); }) ==

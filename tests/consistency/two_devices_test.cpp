@@ -37,11 +37,13 @@ const Subject& subject(int which) {
 /// A render that is taken further sample by sample.
 class Render {
 public:
-    Render(Queue& queue, const Subject& subject)
+    Render(Queue& queue, const Subject& subject, IntegratorSettings settings = {})
         : prepared_(prepare_scene(subject.scene, {}, messages_)), scene_(queue, prepared_),
           film_(queue, subject.width, subject.height, kAovNormal | kAovDepth),
-          tracer_(queue, *prepared_.structures, default_tracers(queue.is_cuda())), filter_(queue),
-          integrator_(make_integrator(queue, {.path = {}, .body = PathBody::Wavefront, .batch = 1000})) {
+          tracer_(queue, *prepared_.structures, default_tracers(queue.is_cuda())), filter_(queue) {
+        settings.body = PathBody::Wavefront;
+        settings.batch = 1000;
+        integrator_ = make_integrator(queue, settings);
         tracer_.set_surfaces(scene_.view());
         const PixelFilter kind = PixelFilter::BlackmanHarris;
         const CameraRays rays =
@@ -74,9 +76,9 @@ private:
     std::unique_ptr<Integrator> integrator_;
 };
 
-Hash128 hash_alone(int which) {
+Hash128 hash_alone(int which, const IntegratorSettings& settings = {}) {
     Queue queue = Queue::make_cpu();
-    Render render(queue, subject(which));
+    Render render(queue, subject(which), settings);
     render.add_all();
     return render.hash();
 }
@@ -96,12 +98,26 @@ TEST_CASE("two queues used in turns from one thread give the pictures of renders
 }
 
 TEST_CASE("a picture whose samples are shared out between two queues is the one of a queue alone") {
-    Queue first_queue = make_queue(0), second_queue = make_queue(1);
-    Render first(first_queue, subject(0)), second(second_queue, subject(0));
-    for (uint32_t sample = 0; sample < kSamples; ++sample) (sample % 2 == 0 ? first : second).add_sample(sample);
-    CHECK(first.hash() != hash_alone(0));
-    first.add(second);
-    CHECK(first.hash() == hash_alone(0));
+    IntegratorSettings settings;
+    settings.photon_map = {.photons = 3000, .radius = 0.3f};
+    settings.irradiance_cache = {.accuracy = 0.4f, .hemisphere_rays = 48};
+    for (const IntegratorKind kind :
+         {IntegratorKind::Path, IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache}) {
+        CAPTURE(static_cast<int>(kind));
+        settings.integrator = kind;
+        const Hash128 alone = hash_alone(0, settings);
+        Queue first_queue = make_queue(0), second_queue = make_queue(1);
+        Render first(first_queue, subject(0), settings), second(second_queue, subject(0), settings);
+        for (uint32_t sample = 0; sample < kSamples; ++sample) (sample % 2 == 0 ? first : second).add_sample(sample);
+        CHECK(first.hash() != alone);
+        first.add(second);
+        CHECK(first.hash() == alone);
+        // And the other way round: photons' radius, and what is told of records, go by the sample's number alone.
+        Render odd(first_queue, subject(0), settings), even(second_queue, subject(0), settings);
+        for (uint32_t sample = kSamples; sample-- > 0;) (sample % 2 == 1 ? odd : even).add_sample(sample);
+        odd.add(even);
+        CHECK(odd.hash() == alone);
+    }
 }
 
 TEST_CASE("two queues used from two threads at once give the pictures of renders done alone") {

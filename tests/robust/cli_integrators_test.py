@@ -75,6 +75,25 @@ class Integrators(CliTest):
                 self.assertEqual((last["text"], stderr), ("interrupted before there was anything to keep", b""))
                 self.assertEqual(self.files(), [])
 
+    def test_the_time_before_the_first_sample_of_irradiance_caching_has_a_share_and_an_end(self):
+        flags = ["render", "cornell-box", "-o", "x.exr", "--size", "96x96", "--spp", "2", "--device", "cpu", "--integrator",
+                 "irradiance_cache", "--hemisphere-rays", "64"]
+        told = self.succeed(*flags, "--json").events("progress")
+        before = [event for event in told if event["step"] == "before_samples"]
+        self.assertGreater(len(before), 10)
+        self.assertEqual(told[:len(before)], before)
+        self.assertEqual({event["samples"] for event in before}, {0})
+        shares = [event["share"] for event in before]
+        self.assertEqual((shares[0], shares), (0, sorted(shares)))
+        self.assertGreater(shares[-1], 0.9)
+        self.assertGreater(len(set(shares)), 5)
+        for event in before:
+            if event["share"] != 0.01:
+                self.assertEqual(event["seconds_left"] is None, event["share"] < 0.01, event)
+        self.assertEqual([(event["samples"], event["share"], event["seconds_left"]) for event in told[-1:]], [(2, 1, 0)])
+        self.assertRegex(self.stderr_on_a_terminal(flags),
+                         r"\r\[=* *\] +\d+ %  irradiance_cache, before the first sample  [\d.]+ Mrays/s  \d+ s left\x1b\[K")
+
     def test_where_light_is_evaluated_changes_the_hash(self):
         write(self.path("lit.gltf"), lit_triangle())
         hashes = [self.render(*VIEW, "--ambient", "0", "--integrator", *flags, scene="lit.gltf")["hash"]

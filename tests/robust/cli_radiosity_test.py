@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 
+from cli_frames_test import moving_gltf
 from cli_run import FLOOR, PATIENCE_S, PROGRAM, UNMETERED, CliTest, main, write
 
 COARSE = ["--patch-size", "0.3", "--patch-rays", "16", "--subdivisions", "0"]
@@ -22,6 +23,13 @@ class Radiosity(CliTest):
     def picture(self, *arguments, scene="cornell-box"):
         return self.succeed("render", scene, *SMALL, "-o", "x.png", "--json", *arguments).events("done")[0]["hash"]
 
+    def hash_of(self, *flags):
+        """Of a picture whose size and samples flags may say."""
+        given = ["--integrator", "radiosity", "--device", "cpu", *UNMETERED, *flags]
+        for flag, value in [("--size", "16x16"), ("--spp", "1")]:
+            given += [] if flag in flags else [flag, value]
+        return self.succeed("render", "cornell-box", *given, "-o", "x.png", "--json").events("done")[0]["hash"]
+
     def test_a_solution_serves_every_picture_as_if_the_scene_were_solved_for_it(self):
         told, before = self.solve(*COARSE)
         self.assertLessEqual(told["patches"], before["most_patches"])
@@ -35,6 +43,42 @@ class Radiosity(CliTest):
                                 ["--environment", "1,1,1"], ["--lamp", "light=100lm"]]}
         self.assertEqual(len(hashes), 8)
         self.assertEqual(self.solve(*COARSE, "--threads", "1")[0]["hash"], told["hash"])
+
+    def test_a_solution_is_taken_for_any_view_and_refused_under_any_other_light(self):
+        self.solve(*COARSE)
+        solved = self.hash_of(*COARSE)
+        for view in [["--eye", "0.3,0.2,2", "--fov", "50"], ["--size", "9x7"], ["--spp", "2"], ["--max-depth", "2"]]:
+            taken = self.hash_of("--solution", "box.rad", *view)
+            self.assertEqual(taken, self.hash_of(*COARSE, *view), view)
+            if view[0] != "--max-depth":
+                self.assertNotEqual(taken, solved, view)
+        show = ["render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "box.rad"]
+        for light, says in [(["--lamp", "light=100lm"], "with other materials"),
+                            (["--environment", "1,1,1"], "under other lights")]:
+            self.refuse(2, *show, *light, says=["box.rad: ", says, "pertev solve radiosity, with the same flags"])
+            self.solve(*COARSE, *light, output="other.rad")
+            self.assertEqual(self.picture("--solution", "other.rad", *light), self.picture(*COARSE, *light), light)
+            self.refuse(2, *show[:-1], "other.rad", says=["other.rad: ", says])
+        # A scene without light is given some, which its view has no say in.
+        write(self.path("floor.mtl"), "newmtl a\nKd 0.5 0.5 0.5\n")
+        write(self.path("floor.obj"), "mtllib floor.mtl\nusemtl a\n" + FLOOR)
+        self.solve(*COARSE, scene="floor.obj", output="floor.rad")
+        self.picture("--solution", "floor.rad", "--eye", "0,2,4", "--target", "0,0,0", scene="floor.obj")
+        self.picture("--solution", "floor.rad", "--eye", "1,5,0", scene="floor.obj")
+        write(self.path("floor.mtl"), "newmtl a\nKd 0.5 0.5 0.6\n")
+        self.refuse(2, "render", "floor.obj", *SMALL, "-o", "x.png", "--solution", "floor.rad", says=["with other materials"])
+
+    def test_a_solution_is_of_one_time(self):
+        scene = json.loads(moving_gltf())
+        scene["materials"] = [{"pbrMetallicRoughness": {"metallicFactor": 0}}]
+        scene["meshes"][0]["primitives"][0]["material"] = 0
+        write(self.path("m.gltf"), json.dumps(scene))
+        self.solve(*COARSE, "--time", "1", scene="m.gltf")
+        self.assertEqual(self.picture("--solution", "box.rad", "--time", "1", scene="m.gltf"),
+                         self.picture(*COARSE, "--time", "1", scene="m.gltf"))
+        for time_s in [["--time", "1.5"], []]:
+            self.refuse(2, "render", "m.gltf", *SMALL, "-o", "x.png", "--solution", "box.rad", *time_s,
+                        says=["box.rad: a radiosity solution of another scene", "of another --time"])
 
     def start(self, *arguments):
         program = subprocess.Popen([PROGRAM, *arguments, "--json"], cwd=self.folder, env=self.environment,

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pty
 import re
 import resource
 import signal
@@ -102,6 +103,16 @@ class CliTest(unittest.TestCase):
             self.assertEqual(outcome.stderr, "", outcome)
         self.assertEqual(self.files(), before, outcome)
         return outcome
+
+    def stderr_on_a_terminal(self, arguments):
+        """What the program says where stderr is a terminal; it succeeds."""
+        leader, follower = pty.openpty()
+        listener, said = listen_to(leader)
+        outcome = self.run_pertev(*arguments, stderr=follower)
+        os.close(follower)
+        listener.join()
+        self.assertEqual(outcome.status, 0, outcome)
+        return b"".join(said).decode()
 
     def wait_while(self, program, is_listening):
         """Until the running program begins to hear Ctrl-C, at once after its start, or has heard one, or has ended."""

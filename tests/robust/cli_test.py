@@ -4,7 +4,6 @@
 import json
 import math
 import os
-import pty
 import re
 import resource
 import signal
@@ -12,7 +11,7 @@ import statistics
 import subprocess
 import time
 
-from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, listen_to, main, read_exr, write
+from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, main, read_exr, write
 
 FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
@@ -224,15 +223,6 @@ class WhatIsSaid(CliTest):
                          r"\r\[=+\] 100 %  8/8 spp  [\d.]+ Mrays/s  0 s left\x1b\[K\r\n8 spp in ")
         self.assertEqual(self.stderr_on_a_terminal([*arguments, "-q"]), "")
         self.assertEqual(self.stderr_on_a_terminal([*arguments, "--json"]), "")
-
-    def stderr_on_a_terminal(self, arguments):
-        leader, follower = pty.openpty()
-        listener, said = listen_to(leader)
-        outcome = self.run_pertev(*arguments, stderr=follower)
-        os.close(follower)
-        listener.join()
-        self.assertEqual(outcome.status, 0, outcome)
-        return b"".join(said).decode()
 
 
 class WhenItEnds(CliTest):

@@ -70,6 +70,38 @@ class Times(CliTest):
             info = self.info("saved.exr")
             self.assertEqual((info["pertev.time"], info["hash"]), (2, state["hash"]))
 
+    def test_with_radiosity_the_scene_stands_and_time_moves_the_camera_alone(self):
+        scene = json.loads(moving_gltf())
+        scene["materials"] = [{"pbrMetallicRoughness": {"metallicFactor": 0}}]
+        scene["meshes"][0]["primitives"][0]["material"] = 0
+        write(self.path("m.gltf"), json.dumps(scene))
+        solved = ["--integrator", "radiosity", "--patch-size", "0.5", "--patch-rays", "16", "--subdivisions", "0"]
+        for given, said in [(["--time", "0.75"], "stands at 0.75 s"), ([], "stands as at rest")]:
+            with self.view(*solved, *given) as viewer, Client(viewer) as client:
+                begins = client.done()
+                self.assertEqual(begins["clock"]["end"], 0)
+                self.assertEqual(begins["hash"], self.rendered(*solved, *given))
+                self.assertIn(said, dict(row[1:] for row in begins["rows"])["scene"])
+                self.assertEqual(words_of(begins)[-len(given):], given or words_of(begins))
+                played = self.still(client, self.play(client, True))
+                self.assertEqual(played["hash"], begins["hash"])
+                gone = self.still(client, client.steer(type="time", at=1.5))
+                self.assertEqual((gone["hash"], gone["flags"]), (begins["hash"], begins["flags"]))
+                # A path that is recorded has times, and they are the camera's.
+                client.steer(type="key", at=0)
+                client.steer(type="move", right=0.3, up=0, forward=0.5, ms=200, pace="normal")
+                client.steer(type="key", at=2)
+                client.steer(type="follow")
+                self.play(client, False)
+                shown = self.still(client, client.steer(type="time", at=1.25))
+                self.assertNotEqual(shown["hash"], begins["hash"])
+                self.assertEqual(words_of(shown)[-len(given):], given or words_of(shown))
+                self.assertEqual(shown["hash"], self.rendered(*solved, *words_of(shown)))
+                path = self.still(client, client.set("integrator", "path"))
+                self.assertEqual(path["hash"], self.rendered(*words_of(path)))
+                viewer.end()
+                self.assertIn(f"the scene {said}", viewer.process.stderr.read().decode())
+
     def test_at_its_end_time_begins_anew_or_stops_there(self):
         with self.view("--time", "1.5") as viewer, Client(viewer) as client:
             client.done()

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/parallel_for.h"
@@ -14,6 +15,7 @@
 #include "integrators/irradiance_cache/hemisphere.h"
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
 #include "integrators/irradiance_cache/overture_grid.h"
+#include "integrators/irradiance_cache/overture_progress.h"
 #include "integrators/irradiance_cache/space_records.h"
 #include "render/film.h"
 #include "render/filter_table.h"
@@ -409,4 +411,52 @@ TEST_CASE("marks are drawn where records are seen, and nowhere else") {
     CHECK(with_record > 20);
     CHECK(changed > with_record * 9 / 10); // others are at an edge
     CHECK(far > 200);
+}
+
+TEST_CASE(
+    "the overture's share is of all its rays where records are wanted ever more rarely, or until there is no room") {
+    constexpr uint32_t kWidth = 640, kHeight = 360, kWalk = 2, kRecord = 500;
+    struct Case {
+        double falls_by;
+        uint32_t room;
+    };
+    for (const Case& set : {Case{0.9, 100000}, Case{0.7, 100000}, Case{0.9, 3000}, Case{0, 100000}}) {
+        CAPTURE(set.falls_by);
+        CAPTURE(set.room);
+        uint32_t wanted[kOvertureRounds], counts[kOvertureRounds], records = 0;
+        uint64_t all = 0;
+        double share = 0.9, fall = set.falls_by;
+        for (uint32_t round = 0; round < kOvertureRounds; ++round) {
+            counts[round] = make_overture_grid(round, kWidth, kHeight).count();
+            if (round > 1) share *= std::exchange(fall, std::pow(fall, 1.75));
+            wanted[round] = std::min(static_cast<uint32_t>(share * counts[round]), set.room - records);
+            records += wanted[round];
+            all += uint64_t(kWalk) * counts[round] + uint64_t(kRecord) * wanted[round];
+        }
+        OvertureProgress progress(kWidth, kHeight, 100, set.room);
+        uint64_t rays = 0;
+        double before = 0;
+        const auto check = [&](bool is_known) {
+            const double told = progress.share(rays), done = static_cast<double>(rays) / static_cast<double>(all);
+            CHECK(told >= before);
+            before = told;
+            if (is_known) CHECK(told == doctest::Approx(done).epsilon(0.1));
+        };
+        for (uint32_t round = 0; round < kOvertureRounds; ++round) {
+            const bool is_known = round > 2; // how it falls is
+            progress.begin_walks(rays);
+            for (uint32_t i = 0; i < counts[round]; ++i) {
+                if (i % 100 == 0) check(is_known);
+                rays += kWalk;
+            }
+            progress.begin_records(wanted[round], rays);
+            for (uint32_t i = 0; i < wanted[round]; ++i) {
+                if (i % 10 == 0) check(is_known);
+                rays += kRecord;
+            }
+        }
+        CHECK(rays == all);
+        check(true);
+        CHECK(before == 1);
+    }
 }

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "base/read_file.h"
 #include "integrators/make_integrator.h"
@@ -43,6 +44,12 @@ RadiositySolution solution_of(const Scene& scene, const RadiositySettings& setti
 void write_bytes(const std::filesystem::path& path, const std::vector<std::byte>& bytes) {
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+/// Why the file is not taken for `scene`.
+std::string why_refused(const std::filesystem::path& path, const Scene& scene) {
+    Messages messages;
+    return test::bad_input_message([&] { read_solution(path, scene, messages); });
 }
 
 } // namespace
@@ -117,32 +124,31 @@ TEST_CASE("a solution comes back from its file, and another scene's or a damaged
     const Scene scene = lit_box();
     const RadiositySolution solution = solution_of(scene);
     write_solution(path, solution);
-    const RadiositySolution back = read_solution(path, scene);
+    Messages messages;
+    const RadiositySolution back = read_solution(path, scene, messages);
     CHECK(back.hash() == solution.hash());
     CHECK(back.geometry == solution.geometry);
+    CHECK(back.light == solution.light);
     CHECK(back.made == solution.made);
 
-    const auto why = [&](const Scene& of) { return test::bad_input_message([&] { read_solution(path, of); }); };
+    const auto why = [&](const Scene& of) { return why_refused(path, of); };
     Scene moved = scene;
     moved.instances[6].world_from_local = make_translation({0, 0, 0.01f});
     CHECK(why(moved).find("of another scene") != std::string::npos);
     Scene dented = scene;
     dented.meshes[0].positions[1].x += 0x1p-20f;
     CHECK(why(dented).find("of another scene") != std::string::npos);
-    Scene brighter = scene; // the same surfaces
-    brighter.materials[6].emission = grey(50);
-    CHECK(why(brighter) == "no error");
-
     const std::vector<std::byte> whole = read_file(path);
     for (const std::size_t length :
-         {std::size_t(0), std::size_t(15), std::size_t(95), whole.size() / 2, whole.size() - 1}) {
+         {std::size_t(0), std::size_t(15), std::size_t(95), std::size_t(127), whole.size() / 2, whole.size() - 1}) {
         write_bytes(path, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)});
         CHECK(why(scene) != "no error");
     }
     test::Random random(5);
     for (int i = 0; i < 300; ++i) { // a bit somewhere
         std::vector<std::byte> damaged = whole;
-        const std::size_t at = i < 96 ? static_cast<std::size_t>(i) : random.below(static_cast<uint32_t>(whole.size()));
+        const auto most = static_cast<uint32_t>(whole.size());
+        const std::size_t at = i < 128 ? static_cast<std::size_t>(i) : random.below(most);
         if (at >= 92 && at < 96) continue; // no part of it
         damaged[at] ^= std::byte(1u << random.below(8));
         write_bytes(path, damaged);
@@ -151,6 +157,98 @@ TEST_CASE("a solution comes back from its file, and another scene's or a damaged
     }
     std::filesystem::remove(path);
     CHECK(why(scene) != "no error");
+    CHECK(messages.all().empty());
+}
+
+namespace {
+
+/// With lights and surfaces of every kind that a solution knows, and of those that it does not.
+Scene scene_of_all_light() {
+    Scene scene = lit_box();
+    test::add(scene, test::sheet({0.4f, -0.5f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::mirror());
+    test::add(scene, test::sheet({-0.4f, -0.5f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::white(0.3f));
+    Material& textured = scene.materials.back();
+    textured.base_color_texture.image = 0;
+    textured.alpha_mode = AlphaMode::Mask;
+    scene.meshes.back().uv[0].assign(scene.meshes.back().positions.size(), {0.5f, 0.5f});
+    scene.images.push_back({.name = "grey", .rgba8 = {1, 1, {128, 128, 128, 255}}, .rgba_float = {}});
+    scene.lights.push_back(test::point_light({0, 0.5f, 0}, {1, 1, 1}));
+    scene.lights.push_back({.kind = LightKind::Spot});
+    scene.environment = Environment{{2, 1, 3, {1, 1, 1, 2, 2, 2}}, {1, 1, 1}, 0};
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("a solution is shown under the light alone that it was solved for") {
+    const std::filesystem::path path = test::scratch_folder() / "light";
+    const Scene scene = scene_of_all_light();
+    write_solution(path, solution_of(scene));
+    const auto check_refused = [&](const char* says, const std::function<void(Scene&)>& change) {
+        Scene changed = scene;
+        change(changed);
+        CHECK(why_refused(path, changed).find(says) != std::string::npos);
+    };
+    const char* const surfaces = "with other materials";
+    check_refused(surfaces, [](Scene& s) { s.materials[6].emission = grey(6); });
+    check_refused(surfaces, [](Scene& s) { s.materials[6].two_sided_emission ^= true; });
+    check_refused(surfaces, [](Scene& s) { s.materials[0].base_color.g += 0x1p-20f; });
+    check_refused(surfaces, [](Scene& s) { s.materials[0].kind = MaterialKind::Unlit; });
+    check_refused(surfaces, [](Scene& s) { s.materials[8].alpha_cutoff = 0.9f; });
+    check_refused(surfaces, [](Scene& s) { s.materials[8].base_color_texture.m02 = 0.25f; });
+    check_refused(surfaces, [](Scene& s) { s.images[0].rgba8.pixels[1] = 127; });
+    check_refused(surfaces, [](Scene& s) { s.meshes.back().uv[0][1].x = 0; });
+    check_refused(surfaces, [](Scene& s) { s.meshes[0].colors.assign(s.meshes[0].positions.size(), {1, 0, 1, 1}); });
+    check_refused(surfaces, [](Scene& s) {
+        s.materials[0].kind = MaterialKind::MetallicRoughness; // which may be diffuse in part
+        s.materials[0].metallic = 0.5f;
+    });
+    const char* const lights = "under other lights";
+    check_refused(lights, [](Scene& s) { s.lights[0].intensity = 2.0f * s.lights[0].intensity; });
+    check_refused(lights, [](Scene& s) { s.lights[0].position.y -= 0.1f; });
+    check_refused(lights, [](Scene& s) { s.lights[0].range = 4; });
+    check_refused(lights, [](Scene& s) { s.lights[1].direction = {1, 0, 0}; });
+    check_refused(lights, [](Scene& s) { s.lights[1].cos_inner = 0.9f; });
+    check_refused(lights, [](Scene& s) { s.lights.pop_back(); });
+    check_refused(lights, [](Scene& s) { s.environment->scale.b = 2; });
+    check_refused(lights, [](Scene& s) { s.environment->rotation = 1; });
+    check_refused(lights, [](Scene& s) { s.environment->image.pixels[4] = 3; });
+    check_refused(lights, [](Scene& s) { s.environment.reset(); });
+
+    Scene seen = scene; // what a solution knows nothing of
+    seen.cameras.emplace_back();
+    seen.materials[0].name = seen.lights[0].name = seen.instances[0].name = "of another name";
+    seen.materials[0].double_sided = false;
+    seen.materials[0].normal_scale = 2;
+    seen.materials[7].roughness = 0.7f; // the mirror
+    seen.materials[7].eta = {1, 1, 1};
+    seen.materials.push_back(test::white(0.9f)); // nobody's
+    seen.lights[0].direction = {1, 0, 0};        // of a point
+    CHECK(why_refused(path, seen) == "no error");
+}
+
+TEST_CASE("a solution's file of the version before is read, with a warning that its light is not known") {
+    const std::filesystem::path path = test::scratch_folder() / "old";
+    Scene scene = lit_box();
+    const RadiositySolution solution = solution_of(scene);
+    write_solution(path, solution);
+    std::vector<std::byte> bytes = read_file(path);
+    bytes[15] = std::byte('1');
+    bytes.erase(bytes.begin() + 96, bytes.begin() + 128); // had no hashes of light
+    write_bytes(path, bytes);
+    scene.materials[6].emission = grey(50);
+    Messages messages;
+    const RadiositySolution back = read_solution(path, scene, messages);
+    CHECK(back.hash() == solution.hash());
+    CHECK_FALSE(back.light.has_value());
+    REQUIRE(messages.all().size() == 1);
+    CHECK(messages.all()[0].is_warning);
+    CHECK(messages.all()[0].text.find("by an earlier version") != std::string::npos);
+    scene.meshes[0].positions[1].x += 1;
+    CHECK(why_refused(path, scene).find("of another scene") != std::string::npos);
+    bytes[15] = std::byte('3');
+    write_bytes(path, bytes);
+    CHECK(why_refused(path, scene).find("no radiosity solution") != std::string::npos);
 }
 
 TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {

@@ -71,6 +71,29 @@ TEST_CASE("frames of the movement share light and find it as coarsely as is set;
     }
 }
 
+TEST_CASE("a picture at rest is metered, and places are picked in it, and what irradiance caching has made stays") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    RenderSettings& picture = request.view.picture;
+    picture.integrator = IntegratorKind::IrradianceCache;
+    picture.irradiance_cache = {.accuracy = 0.4f, .hemisphere_rays = 48};
+    picture.samples = 4;
+    Session plain = watched.session();
+    plain.render(picture.samples);
+    request.view.finds_exposure = true;
+    request.budget_s = 1e-9; // a pass at a time
+    Session session = watched.session();
+    SessionFrames frames(session, watched.scene, 0.1);
+    std::optional<ShownFrame> rests;
+    while (!rests || !rests->is_final) {
+        rests = frames.next(request);
+        CHECK(frames.pick(request.camera, 0.5f, 0.5f).has_value());
+        frames.meter(request);
+    }
+    CHECK(rests->hash == picture_hash(plain.picture()).hex());
+    CHECK(session.stats().rays.total() == plain.stats().rays.total());
+}
+
 TEST_CASE("another way to share light, or another resolution of it, begins to gather anew") {
     Watched watched;
     FrameRequest& request = watched.request;

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "integrators/irradiance_cache/do_in_parts.h"
+#include "integrators/irradiance_cache/overture_progress.h"
 #include "integrators/irradiance_cache/run_irradiance_cache.h"
 
 namespace pertev {
@@ -129,7 +130,7 @@ CacheJob IrradianceCacheIntegrator::make_job(uint32_t seed) const {
 void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
     PERTEV_CHECK(!film.frame.is_there());
     if (count == 0) return;
-    if (!make_ready([this] { return !is_abandoned(); })) return;
+    if (!make_ready([this](double) { return !is_abandoned(); })) return;
     if (first == 0) tell_invalid(film.invalid);
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
     CacheJob job = make_job(0);
@@ -154,20 +155,25 @@ void IrradianceCacheIntegrator::tell_invalid(uint64_t* invalid) {
     queue_.copy_to_device(invalid, &so_far, sizeof so_far);
 }
 
-bool IrradianceCacheIntegrator::make_ready(const std::function<bool()>& goes_on) {
+bool IrradianceCacheIntegrator::make_ready(const std::function<bool(double share)>& goes_on) {
     if (has_records_) return true;
     store_.clear();
     queue_.zero(counts_.data() + kInvalid, sizeof(uint64_t));
     // Light that is scattered once is found by shadow rays alone.
     const uint32_t rounds = picture_settings_.max_depth < 2 ? 0 : kOvertureRounds;
+    const uint32_t width = picture_.camera.width, height = picture_.camera.height;
+    OvertureProgress progress(width, height, cells_of(picture_cache_), most_records(uint64_t(width) * height));
+    const auto goes_on_here = [&] { return goes_on(progress.share(rays_.total())); };
     for (uint32_t round = 0; round < rounds; ++round) {
-        if (!make_round(round, goes_on)) return false;
+        if (!make_round(round, progress, goes_on_here)) return false;
     }
     has_records_ = true;
     return true;
 }
 
-bool IrradianceCacheIntegrator::make_round(uint32_t round, const std::function<bool()>& goes_on) {
+bool IrradianceCacheIntegrator::make_round(uint32_t round, OvertureProgress& progress,
+                                           const std::function<bool()>& goes_on) {
+    progress.begin_walks(rays_.total());
     CacheJob job = make_job(kOvertureSeed);
     job.grid = make_overture_grid(round, picture_.camera.width, picture_.camera.height);
     job.round = round;
@@ -181,6 +187,7 @@ bool IrradianceCacheIntegrator::make_round(uint32_t round, const std::function<b
     });
     if (!went_on) return false;
     const uint32_t wanted = store_.gather_sites(job.grid.count());
+    progress.begin_records(wanted, rays_.total());
     if (wanted == 0) return true; // of a picture smaller than a step, too
     if (!make_hemispheres(make_job(kHemisphereSeed), wanted, goes_on)) return false;
     store_.take(wanted, picture_cache_.accuracy);

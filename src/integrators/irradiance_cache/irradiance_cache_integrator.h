@@ -26,6 +26,7 @@
 namespace pertev {
 
 struct CacheJob;
+class OvertureProgress;
 
 class IrradianceCacheIntegrator final : public Integrator {
 public:
@@ -41,9 +42,10 @@ public:
                                        bool in_loop, bool on_cuda);
 
     void expect_same_picture() override { is_same_picture_ = true; }
+    bool has_made() const override { return has_records_ && store_.count() > 0; }
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     /// Makes the records. On the CPU one record a thread is not broken off.
-    bool make_ready(const std::function<bool()>& goes_on) override;
+    bool make_ready(const std::function<bool(double share)>& goes_on) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
     void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
     RayCounts rays() const override { return rays_; }
@@ -68,7 +70,7 @@ private:
     /// A session throws the film away on the CPU alone.
     bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
     CacheJob make_job(uint32_t seed) const;
-    bool make_round(uint32_t round, const std::function<bool()>& goes_on);
+    bool make_round(uint32_t round, OvertureProgress& progress, const std::function<bool()>& goes_on);
     bool make_hemispheres(CacheJob job, uint32_t records, const std::function<bool()>& goes_on);
     void make_hemispheres_in_loop(const HostTrees& trees, const CacheJob& job, uint64_t begin, uint64_t end);
     template <class Run>

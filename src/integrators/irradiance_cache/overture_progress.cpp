@@ -1,0 +1,66 @@
+#include "integrators/irradiance_cache/overture_progress.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/irradiance_cache/overture_grid.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kFewWalks = 256; // of which a share says little
+
+double next_fall(double fall) { return fall * std::sqrt(fall) * std::sqrt(std::sqrt(fall)); }
+
+} // namespace
+
+uint32_t OvertureProgress::grid_count(uint32_t round) const {
+    return make_overture_grid(round, width_, height_).count();
+}
+
+/// Rays to be expected of the rounds from `round` on, if `wanting` is the share of the grid before that wanted records.
+double OvertureProgress::rays_from(uint32_t round, double wanting) const {
+    double rays = 0, room = static_cast<double>(room_) - records_ - wanted_, falls_by = falls_by_;
+    for (; round < kOvertureRounds; ++round) {
+        const double walks = grid_count(round);
+        falls_by = next_fall(falls_by);
+        wanting *= falls_by;
+        const double records = std::min(wanting * walks, std::max(room, 0.0));
+        room -= records;
+        rays += walks * rays_a_walk_ + records * rays_a_record_;
+    }
+    return rays;
+}
+
+void OvertureProgress::begin_walks(uint64_t rays) {
+    if (wanted_ > 0) rays_a_record_ = static_cast<double>(rays - began_at_) / wanted_;
+    records_ += wanted_;
+    wanted_ = 0;
+    if (has_begun_) ++round_;
+    has_begun_ = true;
+    began_at_ = rays;
+    expected_ = grid_count(round_) * rays_a_walk_;
+    later_ = rays_from(round_, wanting_) - expected_;
+}
+
+void OvertureProgress::begin_records(uint32_t wanted, uint64_t rays) {
+    if (const uint32_t walks = grid_count(round_); walks > 0) {
+        rays_a_walk_ = static_cast<double>(rays - began_at_) / walks;
+        const double wanting = static_cast<double>(wanted) / walks;
+        falls_by_ = walks < kFewWalks ? 1 : wanting_ > 0 ? std::min(wanting / wanting_, 1.0) : 0;
+        wanting_ = wanting;
+    }
+    wanted_ = wanted;
+    began_at_ = rays;
+    expected_ = wanted * rays_a_record_;
+    later_ = rays_from(round_ + 1, wanting_);
+}
+
+double OvertureProgress::share(uint64_t rays) {
+    const double left = std::max(expected_ - static_cast<double>(rays - began_at_), 0.0) + later_;
+    const auto done = static_cast<double>(rays);
+    if (done + left > 0) share_ = std::max(share_, done / (done + left));
+    return share_;
+}
+
+} // namespace pertev

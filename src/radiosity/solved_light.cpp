@@ -1,0 +1,140 @@
+#include "radiosity/solved_light.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace pertev {
+namespace {
+
+template <class T>
+void add_bytes(Hasher& hasher, const T& value) {
+    hasher.add(std::as_bytes(std::span(&value, 1)));
+}
+
+template <class T>
+void add_list(Hasher& hasher, const std::vector<T>& values) {
+    hasher.add_value(static_cast<uint64_t>(values.size()));
+    hasher.add(std::as_bytes(std::span(values)));
+}
+
+void add_size(Hasher& hasher, uint32_t width, uint32_t height) {
+    hasher.add_value(width);
+    hasher.add_value(height);
+}
+
+class SurfaceHasher {
+public:
+    explicit SurfaceHasher(const Scene& scene) : scene_(scene), images_(scene.images.size()) {}
+
+    void add(const Mesh& mesh) {
+        add_list(hasher_, mesh.normals); // they may say which side is the front
+        for (const std::vector<Vec2>& uv : mesh.uv) add_list(hasher_, uv);
+        add_list(hasher_, mesh.colors);
+    }
+
+    void add(const Material& material) {
+        const bool is_unlit = material.kind == MaterialKind::Unlit; // seen by the camera alone
+        const bool is_diffuse = material.kind == MaterialKind::Diffuse;
+        const bool is_layered = material.kind == MaterialKind::MetallicRoughness;
+        hasher_.add_value(static_cast<uint32_t>(is_unlit ? 1 : is_diffuse ? 2 : is_layered ? 3 : 0));
+        if (is_diffuse || is_layered) {
+            add_bytes(hasher_, material.base_color);
+            add(material.base_color_texture);
+        }
+        if (is_layered) {
+            hasher_.add_value(material.metallic);
+            add(material.metallic_texture);
+        }
+        hasher_.add_value(static_cast<uint32_t>(material.is_lamp()));
+        if (material.is_lamp()) {
+            add_bytes(hasher_, material.emission);
+            add(material.emission_texture);
+            hasher_.add_value(static_cast<uint32_t>(material.two_sided_emission));
+        }
+        hasher_.add_value(static_cast<uint32_t>(material.alpha_mode));
+        if (material.alpha_mode == AlphaMode::Opaque) return;
+        hasher_.add_value(material.alpha);
+        hasher_.add_value(material.alpha_cutoff);
+        add(material.alpha_texture);
+        add(material.base_color_texture);
+    }
+
+    Hash128 result() const { return hasher_.result(); }
+
+private:
+    void add(const TextureRef& ref) {
+        hasher_.add_value(static_cast<uint32_t>(ref.has_image()));
+        if (!ref.has_image()) return;
+        add_bytes(hasher_, of_image(static_cast<std::size_t>(ref.image)));
+        const uint32_t how[] = {static_cast<uint32_t>(ref.wrap_s),
+                                static_cast<uint32_t>(ref.wrap_t),
+                                static_cast<uint32_t>(ref.filter),
+                                ref.uv_set,
+                                ref.is_srgb,
+                                ref.channel};
+        hasher_.add_values(std::span<const uint32_t>(how));
+        const float matrix[] = {ref.m00, ref.m01, ref.m02, ref.m10, ref.m11, ref.m12};
+        hasher_.add_values(std::span<const float>(matrix));
+    }
+
+    const Hash128& of_image(std::size_t number) {
+        std::optional<Hash128>& known = images_[number];
+        if (!known) {
+            const TextureImage& image = scene_.images[number];
+            Hasher hasher;
+            add_size(hasher, image.rgba8.width, image.rgba8.height);
+            add_list(hasher, image.rgba8.pixels);
+            add_size(hasher, image.rgba_float.width, image.rgba_float.height);
+            add_list(hasher, image.rgba_float.pixels);
+            known = hasher.result();
+        }
+        return *known;
+    }
+
+    const Scene& scene_;
+    Hasher hasher_;
+    std::vector<std::optional<Hash128>> images_; // of those that were asked for
+};
+
+Hash128 surfaces_hash(const Scene& scene) {
+    std::vector<bool> is_used(scene.materials.size());
+    for (const Instance& instance : scene.instances) is_used[instance.material] = true;
+    SurfaceHasher hasher(scene);
+    for (const Mesh& mesh : scene.meshes) hasher.add(mesh);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        if (is_used[i]) hasher.add(scene.materials[i]);
+    }
+    return hasher.result();
+}
+
+Hash128 lights_hash(const Scene& scene) {
+    Hasher hasher;
+    for (const Light& light : scene.lights) {
+        hasher.add_value(static_cast<uint32_t>(light.kind));
+        add_bytes(hasher, light.intensity);
+        if (light.kind != LightKind::Directional) {
+            add_bytes(hasher, light.position);
+            hasher.add_value(light.range);
+        }
+        if (light.kind != LightKind::Point) add_bytes(hasher, light.direction);
+        if (light.kind == LightKind::Spot) {
+            hasher.add_value(light.cos_inner);
+            hasher.add_value(light.cos_outer);
+        }
+    }
+    hasher.add_value(static_cast<uint64_t>(scene.lights.size()));
+    if (!scene.environment) return hasher.result();
+    const Environment& environment = *scene.environment;
+    add_bytes(hasher, environment.scale);
+    add_size(hasher, environment.image.width, environment.image.height);
+    add_list(hasher, environment.image.pixels);
+    if (!environment.image.pixels.empty()) hasher.add_value(environment.rotation); // else it is the same all round
+    return hasher.result();
+}
+
+} // namespace
+
+SolvedLight solved_light(const Scene& scene) { return {surfaces_hash(scene), lights_hash(scene)}; }
+
+} // namespace pertev
