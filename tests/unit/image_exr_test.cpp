@@ -252,6 +252,20 @@ TEST_CASE("an EXR holds rows of any length: where sixteen are over 256 MiB, each
     }
 }
 
+TEST_CASE("an EXR of thousands of layers is read again") {
+    std::vector<ExrLayer> layers;
+    for (int i = 0; i < 1500; ++i) {
+        layers.push_back({"n" + std::to_string(i), {"R", "G", "B"}, std::vector<float>(3, static_cast<float>(i))});
+    }
+    const ExrFile file = read_exr(encode_exr({1, 1, 3, {1, 2, 3}}, layers), "many.exr");
+    REQUIRE(file.channels.size() == 4503);
+    for (const int i : {0, 700, 1499}) {
+        const ExrChannel* const channel = file.find("n" + std::to_string(i) + ".G");
+        REQUIRE(channel != nullptr);
+        CHECK(std::get<0>(channel->values) == std::vector<float>{static_cast<float>(i)});
+    }
+}
+
 TEST_CASE("an EXR whose rows would be over 1 GiB is refused before it is made") {
     check_exr_row(kMaxImageSide, 4096);
     check_exr_row(1u << 14, 16384);
