@@ -401,7 +401,7 @@ MUTATIONS = [
              ["unit/irradiance_cache", "statistical/irradiance_cache"]),
     Mutation("photons in glass that count as those in air",
              [edit("src/integrators/photon_map/photon_stages.h", "(1.0f / gather.index_squared(walk)) * state.throughput",
-                   "1.0f * state.throughput")],
+                   "(1.0f + 0.0f * gather.index_squared(walk)) * state.throughput")],
              ["unit/photon_map"]),
     Mutation("a global map without the caustic's photons, which nothing else shows to gathering rays",
              [edit("src/integrators/photon_map/photon_maps.cpp", "global_has_all_ ? all : other", "other")],
