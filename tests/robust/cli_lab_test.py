@@ -135,11 +135,6 @@ class WhatIsRefused(LabTest):
             with self.subTest(flag=flag):
                 self.refuse_unmeasured(2, "--thesis", "box.obj", *flag.split(), says=["--thesis", flag.split()[0]])
 
-    def test_the_thesis_without_its_second_scene_ends_with_2_before_anything_is_measured(self):
-        for folder in [None, self.path("nowhere")]:
-            environment = dict(self.environment, **({"PERTEV_SCENES": folder} if folder else {}))
-            self.refuse_unmeasured(2, "--thesis", env=environment, says=["SCENE", "PERTEV_SCENES", "sibenik"])
-
 
 class WhatIsMeasured(LabTest):
     def test_a_plain_run_prints_a_table_with_every_structure_and_walk(self):
