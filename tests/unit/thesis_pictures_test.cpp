@@ -159,7 +159,8 @@ TEST_CASE("patches are as many pixels high in small pictures as in full ones, wh
     const auto has = [&](const char* name, const char* flags) {
         return command(name).find(flags) != std::string::npos;
     };
-    CHECK(has("figure-3.7b", " --patch-size 0.32 --subdivisions 0 --solver southwell --steps 12 --flat-patches --size"));
+    CHECK(
+        has("figure-3.7b", " --patch-size 0.32 --subdivisions 0 --solver southwell --steps 12 --flat-patches --size"));
     CHECK(has("figure-3.7c", " --patch-size 0.32 --subdivisions 0 --flat-patches --size"));
     CHECK(has("figure-3.7d", " --patch-size 0.32 --subdivisions 1 --size"));
     CHECK(has("figure-3.9b", " --gather direct --photons 16384 --size"));
