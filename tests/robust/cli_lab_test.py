@@ -111,7 +111,7 @@ class WhatIsRefused(LabTest):
     def test_the_output_folder_is_not_made_for_a_scene_that_cannot_be_read(self):
         write(self.path("points.obj"), "v 0 0 0\n")
         for k, scene in enumerate([["nowhere.obj"], ["points.obj"], ["sponza"], [], ["--thesis", "nowhere.obj"],
-                                   ["--thesis", "points.obj"], ["--thesis"]]):
+                                   ["--thesis", "points.obj"]]):
             with self.subTest(scene=scene):
                 self.refuse(2, *self.lab(*scene, "-o", f"out{k}"))
 
