@@ -12,7 +12,7 @@ import statistics
 import subprocess
 import time
 
-from cli_run import FLOOR, PROGRAM, SANITIZED, CliTest, gltf_with_cameras, listen_to, main, read_exr, write
+from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, gltf_with_cameras, listen_to, main, read_exr, write
 
 FLAGS = {
     "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
