@@ -3,7 +3,7 @@
 set(PERTEV_GENERATED_DIR ${PROJECT_BINARY_DIR}/generated)
 set(PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/cornell-box/cornell-box.gltf
     ${PROJECT_SOURCE_DIR}/scenes/many-lights/many-lights.gltf)
-foreach(name blind caustic door uplight)
+foreach(name blind caustic cove door uplight)
   list(APPEND PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/transport/${name}.obj)
   list(APPEND PERTEV_BUILTIN_MATERIALS ${PROJECT_SOURCE_DIR}/scenes/transport/${name}.mtl)
 endforeach()

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes scenes/transport/: four small scenes in which light comes to what the camera sees by narrow ways.
+"""Writes scenes/transport/: small scenes in which light comes to what the camera sees by narrow ways, and one of soft light.
 
 blind: a lamp in a housing under the ceiling, behind slanted slats, so that most of the light has met these first.
 caustic: a small lamp over a ball of clear glass, whose light gathers on the floor.
 uplight: a lamp in a bowl that sends its light to the ceiling alone.
 door: a room lit through a door that is ajar, from the room next to it.
+cove: a diffuse room lit by way of its ceiling alone, from lamps behind a ledge.
 
 OBJ and MTL in metres, +y up; all faces are flat, so that no normal is interpolated. tools/compare_transport.sh has the cameras.
 
@@ -143,12 +144,30 @@ def door():
     return obj.write("door")
 
 
+def cove():
+    obj = Obj()
+    obj.sheet("white", (0, 0, 0), (0, 0, 2), (2, 0, 0))
+    obj.sheet("white", (0, 3, 0), (2, 0, 0), (0, 0, 2))
+    obj.sheet("white", (0, 1.19, -2), (2, 0, 0), (0, 1.19, 0))  # in two: no patch is lit above the ledge and dark below it
+    obj.sheet("white", (0, 2.69, -2), (2, 0, 0), (0, 0.31, 0))
+    obj.sheet("white", (0, 1.5, 2), (0, 1.5, 0), (2, 0, 0))
+    obj.sheet("red", (-2, 1.5, 0), (0, 1.5, 0), (0, 0, 2))
+    obj.sheet("blue", (2, 1.5, 0), (0, 0, 2), (0, 1.5, 0))
+    obj.box("white", (-0.8, 0.5, -0.7), (0.4, 0.5, 0.4))
+    obj.box("white", (0.8, 0.3, -0.2), (0.35, 0.3, 0.35))
+    obj.box("white", (0, 2.38, -1.8), (2.01, 0.02, 0.21))  # the ledge goes into the walls
+    obj.box("white", (0, 2.46, -1.6), (2.01, 0.1, 0.01))
+    for i in range(4):
+        obj.sheet("lamp", (-1.5 + i, 2.42, -1.8), (0, 0, 0.04), (0.2, 0, 0))
+    return obj.write("cove")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true")
     check = parser.parse_args().check
     stale = []
-    for scene in (blind, caustic, uplight, door):
+    for scene in (blind, caustic, uplight, door, cove):
         for name, text in scene().items():
             path = TARGET / name
             if not check:

@@ -1,9 +1,10 @@
 #include "apps/cli/thesis_command.h"
 
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <new>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -13,6 +14,7 @@
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/stopwatch.h"
 #include "image/auto_exposure.h"
 #include "image/tone_map_image.h"
@@ -29,15 +31,16 @@ namespace {
 constexpr std::size_t kThesisScenes = 2;
 constexpr uint32_t kPictureSamples = 32, kPictureSamplesCuda = 512;
 
-std::string sibenik() {
+/// Null where it is not there.
+std::optional<std::string> find_sibenik() {
     const char* root = std::getenv("PERTEV_SCENES");
     const std::filesystem::path path = std::filesystem::path(root != nullptr ? root : "") / "sibenik/sibenik.obj";
-    if (root == nullptr || !std::filesystem::exists(path)) {
-        throw Error(ErrorCode::BadInput, "lab --thesis: name sibenik.obj as SCENE, or set PERTEV_SCENES to the folder "
-                                         "that holds sibenik/sibenik.obj (docs/scenes.md)");
-    }
-    return path.string();
+    std::error_code none;
+    return root != nullptr && std::filesystem::exists(path, none) ? std::optional(path.string()) : std::nullopt;
 }
+constexpr const char* kLacksSibenik =
+    "tables 6.4 and 6.5, figure 6.8, and Sibenik in table 6.6 and figures 6.9 to 6.11: sibenik.obj is not there; name "
+    "it as SCENE, or set PERTEV_SCENES to the folder that holds sibenik/sibenik.obj (docs/scenes.md)";
 
 struct MeasuredScene {
     std::string name;
@@ -66,7 +69,7 @@ RenderResult render(Session& session, PathLight light) {
 
 /// Local and global illumination, at one exposure: they are compared.
 void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& settings, Messages& messages,
-                  ThesisReport& thesis) {
+                  Picture& shows_local, Picture& shows_global) {
     const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
     RenderSettings picture;
     picture.width = settings.width, picture.height = settings.height;
@@ -80,12 +83,56 @@ void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& s
         return fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result.samples,
                            interrupted() ? " (interrupted)" : "");
     };
-    thesis.local.push_back({caption("local", local), tone_map_image(local.picture, ToneMap::Srgb, stops)});
-    thesis.global.push_back({caption("global", global), tone_map_image(global.picture, ToneMap::Srgb, stops)});
+    shows_local = {caption("local", local), tone_map_image(local.picture, ToneMap::Srgb, stops)};
+    shows_global = {caption("global", global), tone_map_image(global.picture, ToneMap::Srgb, stops)};
 }
 
-/// Those of chapters 2 to 4, as far as nothing interrupts.
-void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, Reporter& reporter, ThesisReport& thesis) {
+/// Makes parts of the report. What keeps one from being made is told in the report and thrown in the end: the others
+/// are there then.
+class Attempts {
+public:
+    explicit Attempts(ThesisReport& thesis) : thesis_(thesis) {}
+
+    template <class Make>
+    void attempt(const std::string& what, const Make& make) {
+        try {
+            make();
+        } catch (const std::bad_alloc&) {
+            lack(what, Error(ErrorCode::OutOfMemory, "out of memory"));
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Interrupted) lack(what, error);
+        }
+    }
+
+    /// False once Ctrl-C was pressed or the device is dead.
+    bool may_go_on() const { return !interrupted() && !is_dead_; }
+    void throw_first() const {
+        if (first_) throw Error(*first_);
+    }
+
+private:
+    void lack(const std::string& what, const Error& error) {
+        thesis_.lacking.push_back(fmt::format("{}: {}", what, error.what()));
+        is_dead_ = is_dead_ || error.code() == ErrorCode::DeviceFault;
+        if (!first_) first_ = error;
+    }
+
+    ThesisReport& thesis_;
+    std::optional<Error> first_;
+    bool is_dead_ = false;
+};
+
+void write_file(const std::filesystem::path& folder, const ThesisPicture& picture) {
+    if (picture.svg.empty()) {
+        write_png(folder / picture.file(), picture.image);
+    } else {
+        write_text(folder / picture.file(), picture.svg);
+    }
+}
+
+/// Those of chapters 2 to 4. Each is written once it is made.
+void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const std::filesystem::path& folder,
+                             Reporter& reporter, Attempts& attempts, ThesisReport& thesis) {
     RenderSettings picture;
     picture.width = settings.width, picture.height = settings.height;
     picture.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
@@ -93,20 +140,19 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, Reporter
     const std::vector<std::string> names = thesis_picture_names();
     const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter, {});
     const Stopwatch watch;
-    try {
-        for (std::size_t i = 0; i < names.size() && !interrupted(); ++i) {
+    for (std::size_t i = 0; i < names.size() && attempts.may_go_on(); ++i) {
+        attempts.attempt(names[i], [&] {
             thesis.pictures.push_back(pictures.make(names[i], [&](const char* doing, double share) {
                 const double all = (static_cast<double>(i) + share) / static_cast<double>(names.size());
                 return show({all, fmt::format("{}: {}", names[i], doing), share, watch.seconds(), nullptr, nullptr});
             }));
-        }
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::Interrupted) throw;
+            write_file(folder, thesis.pictures.back());
+        });
     }
     reporter.end_progress();
 }
 
-/// Files of an earlier run that this one does not have are removed.
+/// All but the pictures by chapter, which are written. Files of an earlier run that this one does not have are removed.
 void write_files(const std::filesystem::path& folder, const ThesisReport& thesis) {
     std::set<std::string> stale;
     const auto text_file = [&](const std::string& name, const std::string& text) {
@@ -117,7 +163,7 @@ void write_files(const std::filesystem::path& folder, const ThesisReport& thesis
         }
     };
     const auto picture_file = [&](const std::string& name, const std::vector<Picture>& pictures, std::size_t i) {
-        if (i < pictures.size()) {
+        if (i < pictures.size() && !pictures[i].image.pixels.empty()) {
             write_png(folder / name, pictures[i].image);
         } else {
             stale.insert(name);
@@ -128,14 +174,7 @@ void write_files(const std::filesystem::path& folder, const ThesisReport& thesis
         text_file(fmt::format("figure-{}.svg", figure.number), figure.svg);
     }
     for (const std::string& file : thesis_picture_files()) stale.insert(file);
-    for (const ThesisPicture& picture : thesis.pictures) {
-        stale.erase(picture.file());
-        if (picture.svg.empty()) {
-            write_png(folder / picture.file(), picture.image);
-        } else {
-            write_text(folder / picture.file(), picture.svg);
-        }
-    }
+    for (const ThesisPicture& picture : thesis.pictures) stale.erase(picture.file());
     text_file("thesis-pictures.csv", thesis.pictures.empty() ? "" : csv_of(std::span(thesis.pictures)));
     text_file("thesis-pictures.json", thesis.pictures.empty() ? "" : json_of(std::span(thesis.pictures)) + '\n');
     for (std::size_t i = 0; i < kThesisScenes; ++i) {
@@ -156,48 +195,62 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     for (const ThesisVariant& v : thesis_variants(queue.is_cuda())) settings.only.push_back(v.combination);
     settings.primary = settings.diffuse = true;
     settings.shadow = settings.heat_maps = false;
-    // Both are read before the first is measured. The camera's flags are the second's.
-    const std::array<MeasuredScene, kThesisScenes> scenes = {
-        load({}, "cornell-box", settings, !output.empty(), reporter.messages()),
-        load(options, options.scene.empty() ? sibenik() : options.scene, settings, !output.empty(),
-             reporter.messages())};
-    if (!output.empty()) check_lab_folder(output);
-    reporter.say_messages();
+    const bool has_pictures = !output.empty();
     ThesisReport thesis;
+    Attempts attempts(thesis);
+    // All are read before the first is measured. The camera's flags are the second's.
+    std::vector<MeasuredScene> scenes = {load({}, "cornell-box", settings, has_pictures, reporter.messages())};
+    if (const auto second = options.scene.empty() ? find_sibenik() : std::optional(options.scene)) {
+        scenes.push_back(load(options, *second, settings, has_pictures, reporter.messages()));
+    } else {
+        thesis.lacking.emplace_back(kLacksSibenik);
+        reporter.messages().warn(fmt::format("left out: {}", kLacksSibenik));
+    }
+    if (has_pictures) check_lab_folder(output);
+    reporter.say_messages();
     listen_for_interrupt();
     for (const MeasuredScene& scene : scenes) {
+        if (!attempts.may_go_on()) break;
         settings.scene = scene.name;
         reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                  settings.first_depth, settings.depth));
-        LabReport report = run_lab(queue, scene.scene, scene.camera, settings, show_lab_progress(reporter, {}));
+        attempts.attempt(scene.name, [&] {
+            LabReport report = run_lab(queue, scene.scene, scene.camera, settings, show_lab_progress(reporter, {}));
+            reporter.end_progress();
+            reporter.event(json_of(report));
+            if (has_findings(report)) thesis.scenes.push_back(std::move(report));
+        });
         reporter.end_progress();
-        reporter.event(json_of(report));
-        if (has_findings(report)) {
-            thesis.scenes.push_back(std::move(report));
-            if (!output.empty()) {
-                reporter.set_work(fmt::format("{}: rendering pictures", scene.name));
-                if (!interrupted()) add_pictures(queue, scene, settings, reporter.messages(), thesis);
-                write_files(output, thesis);
-            }
+        if (thesis.scenes.empty()) attempts.throw_first();
+        if (thesis.scenes.empty() || !has_pictures) continue;
+        reporter.set_work(fmt::format("{}: rendering pictures", scene.name));
+        if (attempts.may_go_on()) {
+            Picture &local = thesis.local.emplace_back(), &global = thesis.global.emplace_back();
+            attempts.attempt("pictures of " + scene.name,
+                             [&] { add_pictures(queue, scene, settings, reporter.messages(), local, global); });
         }
-        if (interrupted()) break;
+        attempts.attempt("files of " + scene.name, [&] { write_files(output, thesis); });
     }
-    if (!interrupted() && !output.empty()) {
-        add_pictures_by_chapter(queue, settings, reporter, thesis);
-        write_files(output, thesis);
+    if (has_pictures && attempts.may_go_on()) {
+        add_pictures_by_chapter(queue, settings, output, reporter, attempts, thesis);
+        attempts.attempt("files of the report", [&] { write_files(output, thesis); });
     }
     const bool cut_short = interrupted();
-    reporter.event(fmt::format(R"({{"event":"thesis","scenes":{},"pictures":{},"interrupted":{}}})",
-                               thesis.scenes.size(), json_of(std::span(thesis.pictures)), cut_short));
+    std::vector<std::string> lacking;
+    for (const std::string& line : thesis.lacking) lacking.push_back(json_string(line));
+    reporter.event(fmt::format(R"({{"event":"thesis","scenes":{},"pictures":{},"lacking":[{}],"interrupted":{}}})",
+                               thesis.scenes.size(), json_of(std::span(thesis.pictures)), fmt::join(lacking, ","),
+                               cut_short));
     if (thesis.scenes.empty()) { // only an interrupt comes so early
         reporter.say("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));
-    if (!output.empty()) {
+    if (has_pictures) {
         reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
     }
     for (const LabReport& report : thesis.scenes) fail_if_wrong(report);
+    attempts.throw_first();
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 

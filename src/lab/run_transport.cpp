@@ -12,6 +12,7 @@
 #include "image/flip.h"
 #include "image/metrics.h"
 #include "image/tone_map_image.h"
+#include "integrators/make_integrator.h"
 #include "lab/describe_camera.h"
 #include "lab/transport_light.h"
 #include "lab/transport_solutions.h"
@@ -32,6 +33,14 @@ RenderSettings settings_of(const TransportSettings& settings, const std::string&
     }
     picture.path.seed = seed;
     return picture;
+}
+
+/// Room on the host beside what is on the device, at most: the records of irradiance caching alone have some, and what
+/// is predicted for a CPU has it, for a GPU not.
+std::size_t host_bytes_of(const RenderSettings& picture) {
+    if (picture.integrator != IntegratorKind::IrradianceCache) return 0;
+    const uint64_t pixels = uint64_t(picture.width) * picture.height;
+    return predicted_bytes(picture, pixels, 1, false, true) - predicted_bytes(picture, pixels, 1, true, true);
 }
 
 /// Mean of two, which a picture of as many samples of each is.
@@ -241,6 +250,7 @@ private:
             stopped = true;
         }
         row.bytes = std::max(row.bytes, queue_.allocated_bytes() - before);
+        row.host_bytes = std::max(row.host_bytes, host_bytes_of(session.settings()));
         row.invalid_samples += session.stats().invalid_samples;
         return !stopped;
     }

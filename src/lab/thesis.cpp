@@ -16,6 +16,8 @@ namespace {
 
 constexpr const char* kTree = "Every column walks the same tree: binned, top down by the surface area heuristic.";
 
+const std::string kNotMade = "Not made: ";
+
 constexpr WalkOptions kWithRta = {.rta = true, .near_first = true};
 constexpr WalkOptions kWithoutRta = {.rta = false, .near_first = true};
 constexpr WalkOptions kWoop = {.rta = true, .near_first = true, .tests = TestKind::Woop};
@@ -155,6 +157,7 @@ std::string missing(const LabReport& report, const ThesisVariant& v) {
 /// What stands below the tables, a line each: interruptions, what is missing, what tests that leak lose.
 std::vector<std::string> notes_of(const ThesisReport& thesis) {
     std::vector<std::string> notes;
+    for (const std::string& line : thesis.lacking) notes.push_back(kNotMade + line);
     for (const LabReport& report : thesis.scenes) {
         if (report.interrupted) {
             notes.push_back(fmt::format("{}: interrupted; this is what had been measured.", report.scene));
@@ -172,7 +175,7 @@ std::vector<std::string> notes_of(const ThesisReport& thesis) {
         }
     }
     if (thesis.scenes.empty()) notes.emplace_back("Nothing was measured.");
-    if (thesis.scenes.size() == 1) notes.emplace_back("The second scene was not measured.");
+    if (thesis.scenes.size() == 1 && thesis.lacking.empty()) notes.emplace_back("The second scene was not measured.");
     return notes;
 }
 
@@ -209,10 +212,13 @@ std::string html_of(const Table& table) {
 std::string pictures_of(const ThesisReport& thesis) {
     std::string html;
     for (std::size_t i = 0; i < std::max(thesis.local.size(), thesis.global.size()); ++i) {
-        html += fmt::format("<h3>Figure 6.{}: local and global illumination</h3>\n", 7 + i);
+        std::string images;
         for (const auto* pictures : {&thesis.local, &thesis.global}) {
-            if (i < pictures->size()) html += html_image((*pictures)[i].image, (*pictures)[i].caption, 512);
+            const bool is_there = i < pictures->size() && !(*pictures)[i].image.pixels.empty();
+            if (is_there) images += html_image((*pictures)[i].image, (*pictures)[i].caption, 512);
         }
+        if (images.empty()) continue;
+        html += fmt::format("<h3>Figure 6.{}: local and global illumination</h3>\n{}", 7 + i, images);
     }
     return html;
 }
@@ -280,8 +286,8 @@ std::string html_of(const ThesisReport& thesis) {
     if (!notes.empty()) {
         body += "<h2>Notes</h2>\n<ul>\n";
         for (const std::string& note : notes) {
-            const bool is_alarm =
-                note.find("WRONG") != std::string::npos || note.find("interrupted") != std::string::npos;
+            const bool is_alarm = note.find("WRONG") != std::string::npos ||
+                                  note.find("interrupted") != std::string::npos || note.starts_with(kNotMade);
             body += fmt::format("<li{}>{}</li>\n", is_alarm ? " class=\"wrong\"" : "", html_text(note));
         }
         body += "</ul>\n";

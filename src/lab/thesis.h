@@ -27,12 +27,13 @@ struct ThesisVariant {
 std::vector<ThesisVariant> thesis_variants(bool is_cuda);
 
 /// Reports of Cornell box and Sibenik, in this order, of exactly the variants' combinations; `local` and `global` are
-/// pictures of the two scenes. Captions are the caller's, notes on pictures that were cut short included. The device
-/// is a GPU where a report's is not "CPU".
+/// pictures of the two scenes, empty where one could not be made. Captions are the caller's, notes on pictures that
+/// were cut short included. The device is a GPU where a report's is not "CPU".
 struct ThesisReport {
     std::vector<LabReport> scenes;
     std::vector<Picture> local, global;
     std::vector<ThesisPicture> pictures; // of chapters 2 to 4, in their order
+    std::vector<std::string> lacking;    // what could not be made, and why: a line each
 };
 
 struct ThesisFigure {

@@ -44,15 +44,41 @@ void normalise(Image& picture) {
     for (float& value : picture.pixels) value *= scale;
 }
 
+/// How a panel's light is solved in a picture of these settings.
+RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings& settings) {
+    const ThesisDetail detail = thesis_detail(settings.height);
+    RadiositySettings asked;
+    asked.seed = settings.path.seed;
+    asked.patch_size = detail.patch_size;
+    asked.subdivisions = panel.is_flat ? 0 : 1;
+    if (panel.is_early) {
+        asked.solver = RadiositySolver::Southwell;
+        asked.steps = detail.early_steps;
+    }
+    return asked;
+}
+
+/// The flags that say so.
+std::string flags_of(const RadiosityPanel& panel, const RadiositySettings& asked) {
+    return fmt::format(" --patch-size {} --subdivisions {}{}{}", asked.patch_size, asked.subdivisions,
+                       panel.is_early ? fmt::format(" --solver southwell --steps {}", asked.steps) : "",
+                       panel.is_flat ? " --flat-patches" : "");
+}
+
 std::string command_text(const ThesisRecipe& recipe, const RenderSettings& settings) {
     const std::string scene = command_of(recipe.scene);
     const bool is_whole =
         recipe.way == ThesisWay::Render || (recipe.way == ThesisWay::Radiosity && recipe.panel.has_ambient);
     if (scene.empty() || !is_whole) return {};
+    std::string flags = *recipe.flags != 0 ? fmt::format(" {}", recipe.flags) : "";
+    if (recipe.way == ThesisWay::Radiosity) flags += flags_of(recipe.panel, solution_of(recipe.panel, settings));
+    if (settings.photon_map.photons != RenderSettings().photon_map.photons) {
+        flags += fmt::format(" --photons {}", settings.photon_map.photons);
+    }
     return fmt::format(
-        "pertev render {} --integrator {}{}{} --size {}x{} --spp {} --max-depth {} --exposure {:g} -o {}.png", scene,
-        recipe.integrator, *recipe.flags != 0 ? " " : "", recipe.flags, settings.width, settings.height,
-        settings.samples, settings.path.max_depth, recipe.stops, recipe.name);
+        "pertev render {} --integrator {}{} --size {}x{} --spp {} --max-depth {} --exposure {:g} -o {}.png", scene,
+        recipe.integrator, flags, settings.width, settings.height, settings.samples, settings.path.max_depth,
+        recipe.stops, recipe.name);
 }
 
 } // namespace
@@ -185,20 +211,14 @@ void ThesisPictures::count_work(const Job& job, ThesisPicture& picture) {
 
 void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     const RadiosityPanel& panel = job.recipe.panel;
-    RadiositySettings asked;
-    asked.seed = job.settings.path.seed;
-    asked.patch_size = kPanelPatch;
-    asked.subdivisions = panel.is_flat ? 0 : 1;
-    if (panel.is_early) {
-        asked.solver = RadiositySolver::Southwell;
-        asked.steps = kEarlySteps;
-    }
+    const RadiositySettings asked = solution_of(panel, job.settings);
     const SolvedRadiosity solved = solve_radiosity(
         job.prepared, asked, [&](const char* what, double share) { return job.tell(what, 0.5 * share); });
     if (solved.stats.was_interrupted) throw Error(ErrorCode::Interrupted, "interrupted");
     const SolveStats& stats = solved.stats;
     picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;
-    picture.shows += fmt::format(" {} patches send, {} are shown.", stats.patches, stats.shown);
+    const std::string steps = panel.is_early ? fmt::format(" {} steps;", asked.steps) : "";
+    picture.shows += fmt::format("{} {} patches send, {} are shown.", steps, stats.patches, stats.shown);
     RenderSettings settings = job.settings;
     auto solution = std::make_shared<RadiositySolution>(solved.solution);
     if (!panel.has_ambient) solution->ambient = {};

@@ -1,5 +1,7 @@
 #include "lab/thesis_recipes.h"
 
+#include <algorithm>
+
 namespace pertev {
 namespace {
 
@@ -15,6 +17,10 @@ void draw_edges(RenderSettings& settings) { settings.look.is_wireframe = true; }
 void take_few_photons(RenderSettings& settings) { settings.photon_map.photons = kThesisPhotons; }
 void gather_directly(RenderSettings& settings) {
     take_few_photons(settings);
+    settings.photon_map.gather = PhotonGather::Direct;
+}
+void gather_caustic(RenderSettings& settings) {
+    settings.photon_map.photons = thesis_detail(settings.height).photons;
     settings.photon_map.gather = PhotonGather::Direct;
 }
 
@@ -95,7 +101,7 @@ constexpr ThesisRecipe kRecipes[] = {
      .place = "Figure 3.7",
      .title = "radiosity",
      .shows =
-         "Progressive refinement after 200 steps, in each of which the patch with the most unsent light has sent it. "
+         "Progressive refinement after few steps, in each of which the patch with the most unsent light has sent it. "
          "What none of these sees is dark.",
      .way = ThesisWay::Radiosity,
      .integrator = "radiosity",
@@ -108,7 +114,6 @@ constexpr ThesisRecipe kRecipes[] = {
      .way = ThesisWay::Radiosity,
      .integrator = "radiosity",
      .is_panel = true,
-     .flags = "--patch-size 0.08 --subdivisions 0 --solver southwell --steps 200 --flat-patches",
      .panel = {.is_early = true, .is_flat = true}},
     {.name = "figure-3.7c",
      .place = "Figure 3.7",
@@ -117,7 +122,6 @@ constexpr ThesisRecipe kRecipes[] = {
      .way = ThesisWay::Radiosity,
      .integrator = "radiosity",
      .is_panel = true,
-     .flags = "--patch-size 0.08 --subdivisions 0 --flat-patches",
      .panel = {.is_flat = true}},
     {.name = "figure-3.7d",
      .place = "Figure 3.7",
@@ -125,8 +129,7 @@ constexpr ThesisRecipe kRecipes[] = {
      .shows = "The same light, found anew in smaller patches where it changes, and interpolated between their corners.",
      .way = ThesisWay::Radiosity,
      .integrator = "radiosity",
-     .is_panel = true,
-     .flags = "--patch-size 0.08 --subdivisions 1"},
+     .is_panel = true},
     {.name = "figure-3.8",
      .place = "Figure 3.8",
      .title = "the Cornell box with a mirror sphere",
@@ -149,7 +152,7 @@ constexpr ThesisRecipe kRecipes[] = {
      .shows = "The map looked up at the first surface: light is as blurred as the photons are sparse.",
      .integrator = "photon_map",
      .is_panel = true,
-     .flags = "--photons 16384 --gather direct",
+     .flags = "--gather direct",
      .set = gather_directly},
     {.name = "figure-3.9c",
      .place = "Figure 3.9",
@@ -157,7 +160,6 @@ constexpr ThesisRecipe kRecipes[] = {
      .shows = "Final gathering: one ray goes on from the first surface, and the map is looked up where it arrives.",
      .integrator = "photon_map",
      .is_panel = true,
-     .flags = "--photons 16384",
      .set = take_few_photons},
     {.name = "figure-3.10a",
      .place = "Figure 3.10",
@@ -178,7 +180,7 @@ constexpr ThesisRecipe kRecipes[] = {
      .integrator = "photon_map",
      .is_panel = true,
      .flags = "--gather direct",
-     .set = [](RenderSettings& settings) { settings.photon_map.gather = PhotonGather::Direct; },
+     .set = gather_caustic,
      .stops = 3.5f},
     {.name = "chapter-3-bidirectional",
      .place = "Chapter 3",
@@ -236,5 +238,13 @@ constexpr ThesisRecipe kRecipes[] = {
 } // namespace
 
 std::span<const ThesisRecipe> thesis_recipes() { return kRecipes; }
+
+ThesisDetail thesis_detail(uint32_t panel_height) {
+    constexpr uint32_t kFullHeight = 384; // of a panel of 1024x768
+    constexpr uint32_t kFinestMm = 80, kEarlySteps = 200, kFullPhotons = 1u << 16;
+    const uint32_t mm = std::clamp(kFinestMm * kFullHeight / std::max(1u, panel_height), kFinestMm, 4 * kFinestMm);
+    const uint32_t area = mm * mm, finest = kFinestMm * kFinestMm;
+    return {static_cast<float>(mm) / 1000, kEarlySteps * finest / area, kFullPhotons * finest / area};
+}
 
 } // namespace pertev

@@ -22,14 +22,21 @@ enum class ThesisWay : uint8_t {
 
 /// Of Radiosity.
 struct RadiosityPanel {
-    bool is_early = false;   // after kEarlySteps patches have sent
+    bool is_early = false;   // after a few patches have sent
     bool has_ambient = true; // light that is unsent is shown too
     bool is_flat = false;    // patches as they are solved, not divided where light changes
 };
-inline constexpr uint32_t kEarlySteps = 200; // `flags` say it too
-inline constexpr float kPanelPatch = 0.08f;  // metres; likewise
 
-inline constexpr uint32_t kThesisPhotons = 16384; // of a pass, for each map; likewise
+/// How finely light is found for a panel. One of the full size, half of 1024x768, has patches of 8 cm; in a smaller one
+/// a patch is as many pixels high, up to four times as large, and photons are as many a pixel.
+struct ThesisDetail {
+    float patch_size;     // metres
+    uint32_t early_steps; // of an early panel: 200, or as many as send from the same area
+    uint32_t photons;     // of a pass, for each map: 65536 or fewer
+};
+ThesisDetail thesis_detail(uint32_t panel_height);
+
+inline constexpr uint32_t kThesisPhotons = 16384; // of a pass, for each map, where they are to be seen one by one
 
 struct ThesisRecipe {
     const char *name, *place, *title, *shows; // ThesisPicture's
@@ -37,8 +44,8 @@ struct ThesisRecipe {
     ThesisScene scene = ThesisScene::Box;
     const char* integrator = "";
     bool is_panel = false;                  // one of several: half the width and height
-    const char* flags = "";                 // of the command, beside scene and integrator
-    void (*set)(RenderSettings&) = nullptr; // does what `flags` say; null: nothing
+    const char* flags = "";                 // of the command, beside scene, integrator, patches and photons
+    void (*set)(RenderSettings&) = nullptr; // does what `flags` say, and chooses photons; null: nothing
     RadiosityPanel panel = {};              // of Radiosity
     StructureKind structure = {};           // of Work
     WalkKind walk = {};                     // likewise

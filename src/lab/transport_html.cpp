@@ -98,7 +98,9 @@ std::string html_of(const TransportReport& report) {
         "over relMSE times seconds is the efficiency: of noise alone it does not depend on the time. The dashed "
         "line is what the reference's own noise adds to each relMSE. Radiosity is solved, and each of its points is "
         "a solution of its own, with patches half as large as the one before: its time is that of solving and of "
-        "rendering, its memory the host's too. At equal time stands the last solution that was there by then; "
+        "rendering. Memory is the device's; behind a + stands what solving took of the host's, or "
+        "what the records of irradiance caching may take of it at most. At equal time stands the last solution that "
+        "was there by then; "
         "samples make none of them better.</p>\n";
     for (const TransportScene& scene : report.scenes) body += html_of(scene);
     return html_page("Pertev laboratory of light transport", body);

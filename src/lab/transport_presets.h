@@ -19,7 +19,7 @@ struct TransportPreset {
     float fov_deg;                    // full vertical angle of view
 };
 
-/// cornell, caustic, blind, door, many-lights.
+/// cornell, caustic, blind, door, cove, many-lights.
 std::span<const TransportPreset> transport_presets();
 /// Null where there is none of this name.
 const TransportPreset* find_transport_preset(std::string_view name);

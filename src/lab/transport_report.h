@@ -39,7 +39,7 @@ struct TransportRow {
     /// time.
     bool is_solved = false;
     std::size_t bytes = 0;      // the most of the device's memory that it was seen to hold, the scene's included
-    std::size_t host_bytes = 0; // the most of the host's memory that solving took
+    std::size_t host_bytes = 0; // of the host's memory: the most that solving took, or that records may take
     uint64_t invalid_samples = 0;
     std::vector<Repetition> repetitions; // none is empty
 };

@@ -51,6 +51,12 @@ std::vector<std::string> efficiency_cells(const TableLine& line, const std::opti
     return {fmt::format("{:.3g}", *own), of_path ? fmt::format("{:.3g}", *own / *of_path) : ""};
 }
 
+/// Of the device's memory, and where there is any the host's beside.
+std::string memory_text(const TransportRow& row) {
+    const std::string device = fmt::format("{:.1f}", mebibytes(row.bytes));
+    return row.host_bytes > 0 ? fmt::format("{} + {:.1f}", device, mebibytes(row.host_bytes)) : device;
+}
+
 void add_cells(std::vector<std::string>& to, const std::vector<std::string>& cells) {
     to.insert(to.end(), cells.begin(), cells.end());
 }
@@ -62,8 +68,8 @@ TransportTable equal_time_table(const TransportScene& scene) {
     const std::vector<TableLine> lines =
         lines_of(scene, [&](const TransportRow& row) { return at_time(row, seconds); });
     const std::optional<double> of_path = efficiency_of_path(lines);
-    TransportTable table = {
-        {"integrator", "relMSE", "HDR-FLIP", "samples", "1/(relMSE s)", "of path's", "MiB", "light that it finds"}};
+    TransportTable table = {{"integrator", "relMSE", "HDR-FLIP", "samples", "1/(relMSE s)", "of path's", "MiB + host's",
+                             "light that it finds"}};
     for (const TableLine& line : lines) {
         std::vector<std::string> cells = {line.row->name};
         if (line.point) {
@@ -78,7 +84,7 @@ TransportTable equal_time_table(const TransportScene& scene) {
                 fmt::format("its first {} takes {:.3g} s", what, points_of(*line.row).front().seconds.mean);
             add_cells(cells, {first, "", "", "", ""});
         }
-        add_cells(cells, {fmt::format("{:.1f}", mebibytes(line.row->bytes + line.row->host_bytes)), line.row->light});
+        add_cells(cells, {memory_text(*line.row), line.row->light});
         table.push_back(cells);
     }
     return table;

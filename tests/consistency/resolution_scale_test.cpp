@@ -130,12 +130,12 @@ TEST_CASE("at edges a frame at half the resolution is nearer to the picture than
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = queue_asked_for();
-    Session session(queue, prepared, mixed_scene_camera(), settings_of(192, 128));
+    Session session(queue, prepared, mixed_scene_camera(), settings_of(96, 64));
     session.render(256);
     const Image reference = session.picture();
     const double led = error_at_edges(mean_of_still(session, scaled(0.5f)), reference);
     const double whole = error_at_edges(mean_of_still(session, {}), reference);
-    Session small(queue, prepared, mixed_scene_camera(), settings_of(96, 64));
+    Session small(queue, prepared, mixed_scene_camera(), settings_of(48, 32));
     const double plain = error_at_edges(doubled(mean_of_still(small, {})), reference);
     MESSAGE("mean error at edges at half the resolution ", led, ", enlarged by straight lines ", plain,
             ", at the whole ", whole);

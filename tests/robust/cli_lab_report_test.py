@@ -111,13 +111,6 @@ class WhatIsWritten(LabTest):
                          sorted([*mine, "nodes-sbvh-if-if-rta-near.png", "nodes-binned-wide8-rta-near.png",
                                  "triangles-binned-wide8-rta-near.png", "report.csv", "report.html", "report.json"]))
 
-    def test_a_thesis_of_fewer_figures_removes_those_of_the_one_before_it(self):
-        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1-2", "-o", "out"))
-        self.assertTrue(os.path.exists(self.path("out/figure-6.10.svg")))
-        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
-        self.assertFalse(os.path.exists(self.path("out/figure-6.10.svg")))
-        self.assertTrue(os.path.exists(self.path("out/thesis-2.csv")))
-
     def test_a_name_as_long_as_names_may_be_or_of_any_bytes_is_no_trouble(self):
         long, odd = "x" * 246, b"odd\xff\xc3"
         write(self.path(long + ".obj"), BOX)
@@ -137,9 +130,14 @@ class WhatIsWritten(LabTest):
         outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1"))
         self.assertNotIn("light", outcome.stderr)
         self.assertIn("the same tree: binned", outcome.stdout)
-        outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1-2", "-o", "out"))
         self.assertIn("no light in the scene", outcome.stderr)
         self.assertIn("the same tree: binned", self.check_html(self.path("out/thesis.html")))
+        # A thesis of fewer figures removes those of the one before it.
+        self.assertTrue(os.path.exists(self.path("out/figure-6.10.svg")))
+        self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
+        self.assertFalse(os.path.exists(self.path("out/figure-6.10.svg")))
+        self.assertTrue(os.path.exists(self.path("out/thesis-2.csv")))
 
     def test_a_scenes_name_is_text_in_every_file(self):
         name = 'a,"b" <i>&amp;'
@@ -175,6 +173,35 @@ class WhatIsWritten(LabTest):
                 self.assertCountEqual(counts, [{"38"}, {"12"}])
                 for file in glob.glob(self.path("out/*")):
                     os.remove(file)
+
+    def test_the_thesis_without_its_second_scene_makes_what_it_can_and_names_the_rest(self):
+        line = self.lab("--thesis", "--depths", "1-2", "-o", "out", "--json")
+        outcome = self.succeed(*line, env=dict(self.environment, PERTEV_SCENES=self.path("nowhere")))
+        (lacking,) = outcome.events("thesis")[-1]["lacking"]
+        for text in ["6.4", "6.8", "sibenik/sibenik.obj", "PERTEV_SCENES", "SCENE"]:
+            self.assertIn(text, lacking)
+        self.assertEqual([event["scene"] for event in outcome.events("lab")], ["cornell-box"])
+        self.assertIn(lacking, "".join(event["text"] for event in outcome.events("warning")))
+        html = self.check_html(self.path("out/thesis.html"))
+        self.assertIn("Not made: " + lacking, html)
+        self.check_thesis_pictures(outcome, html)
+        self.assertTrue(os.path.exists(self.path("out/figure-6.7-local.png")))
+        self.assertFalse(os.path.exists(self.path("out/figure-6.8-local.png")))
+        self.assertFalse(os.path.exists(self.path("out/thesis-2.csv")))
+        # Without pictures likewise; a name that is given must be there.
+        self.assertIn("Not made: " + lacking, self.succeed(*self.lab("--thesis", "--depths", "1")).stdout)
+        self.refuse(2, *self.lab("--thesis", "nowhere.obj", "--json"), says=["nowhere.obj"])
+
+    def test_a_picture_of_the_thesis_that_cannot_be_written_leaves_all_others(self):
+        os.makedirs(self.path("out/figure-3.6.png"))
+        outcome = self.refuse(6, *self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out", "--json"),
+                              says=["figure-3.6.png"])
+        thesis = outcome.events("thesis")[-1]
+        self.assertTrue(thesis["lacking"][0].startswith("figure-3.6: "), thesis["lacking"])
+        for picture in thesis["pictures"]:
+            self.assertTrue(os.path.exists(self.path("out/" + picture["file"])), picture["file"])
+        self.assertIn("chapter-4-octree.png", [picture["file"] for picture in thesis["pictures"]])
+        self.assertIn("Not made: figure-3.6: ", self.check_html(self.path("out/thesis.html")))
 
     def check_thesis_pictures(self, outcome, html):
         """That page, files, CSV, JSON and the last event have the same pictures of chapters 2 to 4; their files."""

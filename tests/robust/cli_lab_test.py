@@ -111,7 +111,7 @@ class WhatIsRefused(LabTest):
     def test_the_output_folder_is_not_made_for_a_scene_that_cannot_be_read(self):
         write(self.path("points.obj"), "v 0 0 0\n")
         for k, scene in enumerate([["nowhere.obj"], ["points.obj"], ["sponza"], [], ["--thesis", "nowhere.obj"],
-                                   ["--thesis", "points.obj"], ["--thesis"]]):
+                                   ["--thesis", "points.obj"]]):
             with self.subTest(scene=scene):
                 self.refuse(2, *self.lab(*scene, "-o", f"out{k}"))
 
@@ -134,11 +134,6 @@ class WhatIsRefused(LabTest):
                      "--rays primary", "--rta both", "--no-heat-maps"]:
             with self.subTest(flag=flag):
                 self.refuse_unmeasured(2, "--thesis", "box.obj", *flag.split(), says=["--thesis", flag.split()[0]])
-
-    def test_the_thesis_without_its_second_scene_ends_with_2_before_anything_is_measured(self):
-        for folder in [None, self.path("nowhere")]:
-            environment = dict(self.environment, **({"PERTEV_SCENES": folder} if folder else {}))
-            self.refuse_unmeasured(2, "--thesis", env=environment, says=["SCENE", "PERTEV_SCENES", "sibenik"])
 
 
 class WhatIsMeasured(LabTest):

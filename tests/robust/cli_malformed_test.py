@@ -95,7 +95,8 @@ class FilesDamagedHere(MalformedTest):
         super().setUp()
         self.pictures = [f"whole{extension}" for extension in IMAGES]
         outputs = [argument for name in self.pictures for argument in ("-o", name)]
-        self.succeed("render", "cornell-box", *outputs, "--size", "24x24", "--spp", "1", "--device", "cpu")
+        self.succeed("render", "cornell-box", *outputs, "--size", "24x24", "--spp", "1", "--device", "cpu",
+                     *UNMETERED)
         shutil.move(self.folder, self.folder + "-whole")
         os.mkdir(self.folder)
 

@@ -107,7 +107,7 @@ class Transport(CliTest):
         report = self.succeed(*self.transport("--preset", "all", "--integrators", "path", "--spp", "1", "--repetitions",
                                               "2", "--reference-spp", "2", "--json")).events("transport")[-1]
         self.assertEqual([scene["scene"] for scene in report["scenes"]],
-                         ["cornell", "caustic", "blind", "door", "many-lights"])
+                         ["cornell", "caustic", "blind", "door", "cove", "many-lights"])
         for scene in report["scenes"]:
             self.assertGreater(scene["integrators"][0]["repetitions"][0][0]["rel_mse"], 0)
 

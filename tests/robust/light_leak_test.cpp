@@ -100,7 +100,13 @@ struct View {
     float fov_y;
 };
 
-uint64_t lit_pixels(const Scene& scene, const Place& place, const View& view, uint32_t side, uint32_t samples,
+/// `scene` outlives it.
+PreparedScene prepared_of(const Scene& scene) {
+    Messages messages;
+    return prepare_scene(scene, {}, messages);
+}
+
+uint64_t lit_pixels(const PreparedScene& scene, const Place& place, const View& view, uint32_t side, uint32_t samples,
                     uint32_t max_depth) {
     const Transform m = transform_of(place);
     Camera camera;
@@ -112,7 +118,7 @@ uint64_t lit_pixels(const Scene& scene, const Place& place, const View& view, ui
     settings.samples = samples;
     settings.path.max_depth = max_depth;
     Queue queue = queue_asked_for();
-    const Image picture = render(queue, scene, camera, settings).picture;
+    const Image picture = render_picture(queue, scene, camera, settings).picture;
     uint64_t lit = 0;
     for (std::size_t i = 0; i < picture.pixels.size(); i += 3) lit += picture.pixels[i] > 0 ? 1 : 0;
     return lit;
@@ -124,9 +130,10 @@ float narrow(const Place& place) { return min(0.3f, max(2e-4f, 2e-6f * max_compo
 
 /// The whole box, two edges and a corner.
 uint64_t lit_pixels_of_box(const Place& place) {
-    const Scene scene = scene_of(cube(), place);
+    const Scene box = scene_of(cube(), place);
+    const PreparedScene scene = prepared_of(box);
     const Vec3 eye = {0.11f, -0.07f, 0.13f};
-    const auto samples = static_cast<uint32_t>(effort(32, 256));
+    const auto samples = static_cast<uint32_t>(effort(8, 256));
     uint64_t lit = lit_pixels(scene, place, {eye, {0.5f, 0.5f, -0.5f}, 1.5f}, 32, samples, 16);
     for (const Vec3 target : {Vec3{0.5f, 0.5f, -0.03f}, {-0.5f, 0.2f, 0.5f}, {0.5f, -0.5f, -0.5f}}) {
         lit += lit_pixels(scene, place, {eye, target, narrow(place)}, 32, samples, 4);
@@ -151,7 +158,8 @@ void check_black(Place place, const LitPixels& lit_pixels_there) {
 
 } // namespace
 
-// Of the 4096 pixels of a box's four pictures 30 to 1000 were lit when origins were moved along the normal alone.
+// Where origins are moved along the normal alone, 72 of the 96 placings below have lit pixels, up to 401 of a box's
+// 4096.
 
 TEST_CASE("no light leaks into a closed box, wherever it stands, however small") {
     for (const auto& [size_m, at] : {std::pair{2.0f, Vec3{0, 0, 0}},
@@ -177,8 +185,8 @@ TEST_CASE("pictures of whole boxes, small or far away, have no lit pixel") {
         for (const Transform& turn : kTurns) {
             const Place place = {size_m, at, turn};
             const View view = {{0.11f, -0.07f, 0.13f}, {0.5f, 0.5f, -0.5f}, 1.5f};
-            CHECK(lit_pixels(scene_of(cube(), place), place, view, 128, static_cast<uint32_t>(effort(2, 256)), 16) ==
-                  0);
+            CHECK(lit_pixels(prepared_of(scene_of(cube(), place)), place, view, 128,
+                             static_cast<uint32_t>(effort(2, 256)), 16) == 0);
         }
     }
 }
@@ -189,7 +197,8 @@ TEST_CASE("no light leaks in at the sharp edge of a wedge") {
         const Shape shape = wedge(slope);
         check_black({2, {3, 4, 5}, {}}, [&](const Place& place) {
             const Vec3 eye = {0.2f, 0.3f * slope - 0.5f, 0.13f};
-            const Scene scene = scene_of(shape, place);
+            const Scene closed = scene_of(shape, place);
+            const PreparedScene scene = prepared_of(closed);
             return lit_pixels(scene, place, {eye, {-0.5f, -0.5f, 0.03f}, 1e-4f}, 32, 32, 4) +
                    lit_pixels(scene, place, {eye, {-0.5f, -0.5f, 0.03f}, 1e-2f}, 32, 32, 4);
         });
@@ -200,7 +209,7 @@ TEST_CASE("no light leaks into a bumpy tube of very uneven triangles") {
     const TriangleMesh torus = make_torus(400, 200);
     const Shape shape = {torus.positions, torus.indices};
     check_black({1, {1300, 0, 0}, {}}, [&](const Place& place) {
-        return lit_pixels(scene_of(shape, place), place, {{1, 0, 0}, {1.3f, 0.2f, 0.5f}, 1.5f}, 64,
+        return lit_pixels(prepared_of(scene_of(shape, place)), place, {{1, 0, 0}, {1.3f, 0.2f, 0.5f}, 1.5f}, 64,
                           static_cast<uint32_t>(effort(4, 64)), 6);
     });
 }

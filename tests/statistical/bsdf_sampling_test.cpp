@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "base/parallel_for.h"
@@ -24,6 +25,16 @@ struct SamplingReport {
     double pdf_error = 0;       // largest |sample's pdf - pdf()| / pdf()
     double mean_deviations = 0; // |mean weight - integral of eval| in standard errors, the worst channel
 };
+
+/// Of a BSDF both at once. One with a flaw has its own eval() and pdf().
+template <class AnyBsdf>
+BsdfValue value_of(const AnyBsdf& bsdf, Vec3 wo, Vec3 wi) {
+    if constexpr (std::is_same_v<AnyBsdf, Bsdf>) {
+        return bsdf.evaluate(wo, wi);
+    } else {
+        return {bsdf.eval(wo, wi), bsdf.pdf(wo, wi)};
+    }
+}
 
 template <class AnyBsdf>
 SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart& chart, std::span<const double> jumps,
@@ -51,8 +62,9 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
             squares[c] += weight[c] * weight[c];
         }
         if (i % 4 != 0) continue; // what holds for each sample is looked at for some: that takes as long as drawing
-        const double pdf = static_cast<double>(bsdf.pdf(wo, s.wi)), drawn = static_cast<double>(s.pdf);
-        const Rgb f = bsdf.eval(wo, s.wi);
+        const BsdfValue value = value_of(bsdf, wo, s.wi);
+        const double pdf = static_cast<double>(value.pdf), drawn = static_cast<double>(s.pdf);
+        const Rgb f = value.f;
         report.pdf_error = std::max(report.pdf_error, std::fabs(drawn - pdf) / pdf);
         report.weight_error = std::max(report.weight_error, std::fabs(weight[1] * drawn - static_cast<double>(f.g)) /
                                                                 static_cast<double>(f.g));
@@ -63,20 +75,14 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
         const int x = k % kAcross, y = k / kAcross;
         const ChartRectangle cell = {double(x) / kAcross, double(x + 1) / kAcross, double(y) / kAround,
                                      double(y + 1) / kAround};
-        const auto density = [&](Vec3 wi) {
-            ChartIntegral v;
-            v.value[0] = static_cast<double>(bsdf.pdf(wo, wi));
-            return v;
+        const auto value_and_density = [&](Vec3 wi) {
+            const BsdfValue v = value_of(bsdf, wo, wi);
+            return ChartIntegral{{static_cast<double>(v.f.r), static_cast<double>(v.f.g), static_cast<double>(v.f.b),
+                                  static_cast<double>(v.pdf)}};
         };
-        const auto value = [&](Vec3 wi) {
-            const Rgb f = bsdf.eval(wo, wi);
-            return ChartIntegral{{static_cast<double>(f.r), static_cast<double>(f.g), static_cast<double>(f.b)}};
-        };
-        const double part = integrate_over(chart, cell, 3e-7, density, jumps).value[0];
-        expected[static_cast<size_t>(k)] = samples * part;
-        total[3] += part;
-        const ChartIntegral eval = integrate_over(chart, cell, 3e-7, value, jumps);
-        for (int c = 0; c < 3; c++) total[c] += eval.value[c];
+        const ChartIntegral part = integrate_over(chart, cell, 3e-7, value_and_density, jumps);
+        expected[static_cast<size_t>(k)] = samples * part.value[3];
+        for (int c = 0; c < 4; c++) total[c] += part.value[c];
     }
     // What is not drawn is one more cell.
     expected[kCells] = samples * (1 - total[3]);

@@ -71,7 +71,7 @@ std::vector<BsdfCase> cases_with_deltas() {
 TEST_CASE("particles carry the power that paths carry, by every BSDF, flat and about a bent normal") {
     const std::vector<BsdfCase> cases = cases_with_deltas();
     constexpr float tilts[] = {0, 0.1f, 0.3f};
-    const auto count = static_cast<uint32_t>(effort(200'000, 10'000'000));
+    const auto count = static_cast<uint32_t>(effort(100'000, 10'000'000));
     std::vector<Estimate> by_path(cases.size() * std::size(tilts)), by_particle(by_path.size());
     parallel_for(by_path.size(), 1, [&](uint64_t i) {
         const Surface surface = tilted_surface(cases[i / std::size(tilts)].bsdf, tilts[i % std::size(tilts)]);
@@ -90,15 +90,15 @@ TEST_CASE("particles carry the power that paths carry, by every BSDF, flat and a
 
 TEST_CASE("without the cosines of the two normals particles carry other power, and the comparison shows it") {
     const Surface surface = tilted_surface(make_diffuse(grey(1)), 0.3f);
-    const Estimate by_path = transported(surface, false, 200'000);
+    const Estimate by_path = transported(surface, false, 100'000);
     double bare = 0; // the BSDF's own adjoint about the shading normal
-    for (uint32_t i = 0; i < 200'000; ++i) {
+    for (uint32_t i = 0; i < 100'000; ++i) {
         const SamplePoint p = random_point(i, 35), q = random_point(i, 36);
         const Vec3 wi = sample_uniform_sphere(q.u);
         const BsdfSample s = surface.bsdf.sample(wi, p.lobe, p.u);
         if (!(s.pdf > 0)) continue;
         bare += light_at(surface, wi) * camera_at(surface, s.wi) * etendue(surface, wi) *
-                static_cast<double>(s.weight.g) / 200'000;
+                static_cast<double>(s.weight.g) / 100'000;
     }
     CHECK(std::fabs(bare - by_path.mean) > 10 * by_path.error);
 }

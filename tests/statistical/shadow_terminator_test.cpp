@@ -251,7 +251,7 @@ TEST_CASE("coarse smooth spheres cannot be seen in a white furnace, nor their ri
             Scene scene = sphere_scene(subdivisions, material);
             scene.environment = Environment{};
             for (const LightStrategy strategy : {LightStrategy::BsdfOnly, LightStrategy::Mis}) {
-                const Brightness seen = furnace(scene, strategy, material.roughness == 0.5f ? 512 : 32);
+                const Brightness seen = furnace(scene, strategy, material.roughness == 0.5f ? 256 : 32);
                 // Not lost at the surface: total reflection keeps some of the light within the coarsest smooth glass
                 // for thousands of bounces, for with interpolated normals its sides do not let out what they let in.
                 const bool traps = material.roughness == 0 && subdivisions == 1;

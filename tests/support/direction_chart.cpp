@@ -102,7 +102,7 @@ ChartIntegral gauss(const Piece& piece, const ChartRectangle& r, const Integrand
             const auto place = piece.chart.place_of({x0 + s * (x1 - x0), y});
             const ChartIntegral value = f(place.direction);
             const double weight = kWeight[i] * kWeight[j] * half_s * half_y * (x1 - x0) * place.area;
-            for (int c = 0; c < 3; c++) sum.value[c] += weight * value.value[c];
+            for (int c = 0; c < 4; c++) sum.value[c] += weight * value.value[c];
         }
     }
     return sum;
@@ -116,15 +116,15 @@ ChartIntegral refine(const Piece& piece, const ChartRectangle& r, double toleran
     ChartIntegral parts[4], sum;
     for (int k = 0; k < 4; k++) {
         parts[k] = gauss(piece, quarters[k], f);
-        for (int c = 0; c < 3; c++) sum.value[c] += parts[k].value[c];
+        for (int c = 0; c < 4; c++) sum.value[c] += parts[k].value[c];
     }
     double error = 0;
-    for (int c = 0; c < 3; c++) error = std::max(error, std::fabs(sum.value[c] - whole.value[c]));
+    for (int c = 0; c < 4; c++) error = std::max(error, std::fabs(sum.value[c] - whole.value[c]));
     if (depth == 0 || error <= tolerance) return sum;
     sum = {};
     for (int k = 0; k < 4; k++) {
         const ChartIntegral part = refine(piece, quarters[k], 0.5 * tolerance, f, parts[k], depth - 1);
-        for (int c = 0; c < 3; c++) sum.value[c] += part.value[c];
+        for (int c = 0; c < 4; c++) sum.value[c] += part.value[c];
     }
     return sum;
 }
@@ -175,7 +175,7 @@ ChartIntegral integrate_over(const DirectionChart& chart, const ChartRectangle& 
             const auto [x0, x1] = piece.sides_at(0.5 * (whole.y0 + whole.y1));
             if (x1 <= x0) continue;
             const ChartIntegral part = refine(piece, whole, tolerance, f, gauss(piece, whole, f), kMostQuarterings);
-            for (int c = 0; c < 3; c++) sum.value[c] += part.value[c];
+            for (int c = 0; c < 4; c++) sum.value[c] += part.value[c];
         }
     }
     return sum;

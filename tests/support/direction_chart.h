@@ -32,9 +32,9 @@ struct ChartRectangle {
 };
 
 struct ChartIntegral {
-    double value[3] = {0, 0, 0};
+    double value[4] = {0, 0, 0, 0};
 };
-/// Integral over the rectangle by solid angle, in up to three channels at once; quartered until two rules agree to
+/// Integral over the rectangle by solid angle, in up to four channels at once; quartered until two rules agree to
 /// `tolerance` (half of it for each further quartering) or down to 1/256 of the side. `jumps` are the heights
 /// direction.z at which f may jump: the rectangle is first cut along these circles, for two rules also agree when both
 /// step over a sliver.

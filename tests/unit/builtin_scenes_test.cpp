@@ -69,7 +69,7 @@ TEST_CASE("in the Cornell box the red wall is on the camera's left and the green
 }
 
 TEST_CASE("scenes of narrow light are part of the program with their materials") {
-    for (const char* name : {"blind", "caustic", "door", "uplight"}) {
+    for (const char* name : {"blind", "caustic", "cove", "door", "uplight"}) {
         CAPTURE(name);
         REQUIRE(builtin_materials(name));
         Messages messages;

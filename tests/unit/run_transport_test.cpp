@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "base/stopwatch.h"
+#include "integrators/irradiance_cache/record_store.h"
 #include "lab/run_transport.h"
 #include "lab/transport_solutions.h"
 #include "radiosity/radiosity_view.h"
@@ -117,6 +118,20 @@ TEST_CASE("radiosity takes part with solutions of growing detail, whose time is 
     CHECK(row.repetitions[0][0].rel_mse != row.repetitions[1][0].rel_mse);
     CHECK(std::ranges::any_of(scene.notes, [](const std::string& note) { return note.starts_with("radiosity: "); }));
     CHECK(scene.pictures.size() == 3);
+}
+
+TEST_CASE("what irradiance caching may take of the host's memory stands beside the device's, and others take none") {
+    SmallRun small;
+    small.settings.integrators = {"path", "irradiance_cache"};
+    small.settings.reference_samples = 2;
+    small.settings.repetitions = 2;
+    small.settings.max_samples = 2;
+    const TransportScene scene = small.run();
+    const TransportRow cache = row_named(scene, "irradiance_cache");
+    CHECK(cache.refused == "");
+    CHECK(cache.host_bytes == RecordStore::predicted_host_bytes(16 * 16));
+    CHECK(cache.host_bytes > 1000); // records have places
+    CHECK(row_named(scene, "path").host_bytes == 0);
 }
 
 TEST_CASE("the time of a solution's picture is that of solving and rendering, and its patches halve") {

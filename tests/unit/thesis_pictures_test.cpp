@@ -8,10 +8,9 @@
 #include <set>
 #include <utility>
 
-#include "accel/nearest_points.h"
 #include "image/tone_map.h"
-#include "lab/found_points.h"
 #include "lab/thesis_pictures.h"
+#include "lab/thesis_recipes.h"
 #include "lab/thesis_scenes.h"
 #include "lab/write_thesis_pictures.h"
 #include "tests/support/options.h"
@@ -59,11 +58,29 @@ TEST_CASE("the ball of figure 3.8 is a mirror that stands on the floor") {
 
 namespace {
 
+RenderSettings small_picture(uint32_t width, uint32_t height, uint32_t samples) {
+    RenderSettings settings;
+    settings.width = width, settings.height = height, settings.samples = samples;
+    return settings;
+}
+
 /// Every picture there is, small.
-std::vector<ThesisPicture> all_pictures(Queue& queue, const RenderSettings& settings) {
+std::vector<ThesisPicture> all_pictures(Queue& queue, PathBody body) {
+    RenderSettings settings = small_picture(64, 48, 2);
+    settings.body = body;
+    if (body == PathBody::Wavefront) settings.batch = 500;
     ThesisPictures pictures(queue, settings);
     std::vector<ThesisPicture> made;
     for (const std::string& name : thesis_picture_names()) made.push_back(pictures.make(name, {}));
+    return made;
+}
+
+/// By the CPU's loop, made once.
+const std::vector<ThesisPicture>& pictures_in_loop() {
+    static const std::vector<ThesisPicture> made = [] {
+        Queue cpu = Queue::make_cpu();
+        return all_pictures(cpu, PathBody::Loop);
+    }();
     return made;
 }
 
@@ -88,17 +105,10 @@ double distance_of(const Rgba8Image& a, const Rgba8Image& b) {
     return sum / static_cast<double>(a.pixels.size());
 }
 
-RenderSettings small_picture(uint32_t width, uint32_t height, uint32_t samples) {
-    RenderSettings settings;
-    settings.width = width, settings.height = height, settings.samples = samples;
-    return settings;
-}
-
 } // namespace
 
 TEST_CASE("no two pictures of the thesis are alike, none is black, and each says what it shows") {
-    Queue queue = test::queue_asked_for();
-    const std::vector<ThesisPicture> pictures = all_pictures(queue, small_picture(64, 48, 2));
+    const std::vector<ThesisPicture>& pictures = pictures_in_loop();
     const std::vector<std::string> files = thesis_picture_files();
     REQUIRE(pictures.size() == files.size());
     std::set<std::vector<uint8_t>> seen;
@@ -123,17 +133,38 @@ TEST_CASE("no two pictures of the thesis are alike, none is black, and each says
 }
 
 TEST_CASE("pictures of the thesis have the same bytes by all stages at once, and on a GPU") {
-    Queue cpu = Queue::make_cpu(), queue = test::queue_asked_for();
-    RenderSettings settings = small_picture(48, 36, 2);
-    const std::vector<ThesisPicture> in_loop = all_pictures(cpu, settings);
-    settings.body = PathBody::Wavefront;
-    settings.batch = 500;
-    const std::vector<ThesisPicture> at_once = all_pictures(queue, settings);
+    Queue queue = test::queue_asked_for();
+    const std::vector<ThesisPicture>& in_loop = pictures_in_loop();
+    const std::vector<ThesisPicture> at_once = all_pictures(queue, PathBody::Wavefront);
     for (std::size_t i = 0; i < in_loop.size(); ++i) {
         CAPTURE(in_loop[i].name);
         CHECK(in_loop[i].image.pixels == at_once[i].image.pixels);
         CHECK(in_loop[i].svg == at_once[i].svg);
     }
+}
+
+TEST_CASE("patches are as many pixels high in small pictures as in full ones, where they have 8 cm") {
+    const auto is = [](uint32_t panel_height, float patch_size, uint32_t steps, uint32_t photons) {
+        const ThesisDetail detail = thesis_detail(panel_height);
+        return detail.patch_size == patch_size && detail.early_steps == steps && detail.photons == photons;
+    };
+    CHECK(is(384, 0.08f, 200, 65536)); // of 1024x768
+    CHECK(is(1080, 0.08f, 200, 65536));
+    CHECK(is(192, 0.16f, 50, 16384));
+    for (const uint32_t height : {96u, 6u, 1u}) CHECK(is(height, 0.32f, 12, 4096));
+    const auto command = [](const char* name) {
+        const auto& all = pictures_in_loop();
+        return std::ranges::find(all, name, &ThesisPicture::name)->command;
+    };
+    const auto has = [&](const char* name, const char* flags) {
+        return command(name).find(flags) != std::string::npos;
+    };
+    CHECK(
+        has("figure-3.7b", " --patch-size 0.32 --subdivisions 0 --solver southwell --steps 12 --flat-patches --size"));
+    CHECK(has("figure-3.7c", " --patch-size 0.32 --subdivisions 0 --flat-patches --size"));
+    CHECK(has("figure-3.7d", " --patch-size 0.32 --subdivisions 1 --size"));
+    CHECK(has("figure-3.9b", " --gather direct --photons 16384 --size"));
+    CHECK(has("figure-3.10b", " --gather direct --photons 4096 --size"));
 }
 
 TEST_CASE("figure 3.7's panels come ever nearer to the solution that is smooth") {
@@ -192,51 +223,6 @@ TEST_CASE("figure 3.10's caustic is brighter than thrice its surroundings") {
     }
     // And photons lie close together there.
     CHECK(mean_green(dots.image, 0.42, 0.64, 0.49, 0.70) > 2 * mean_green(dots.image, 0.05, 0.75, 0.35, 0.95));
-}
-
-TEST_CASE("points found in a tree are those that are nearest, and few nodes are visited") {
-    const FoundPoints kd = found_in_kd_tree(), octree = found_in_octree();
-    CHECK(kd.points == octree.points);
-    std::vector<std::pair<float, uint32_t>> by_distance;
-    for (uint32_t i = 0; i < kd.points.size(); ++i) {
-        by_distance.emplace_back(squared_distance(kd.points[i], kd.at), i);
-    }
-    std::ranges::sort(by_distance);
-    std::vector<uint32_t> nearest;
-    for (uint32_t i = 0; i < kPointsAsked; ++i) nearest.push_back(by_distance[i].second);
-    std::ranges::sort(nearest);
-    CHECK(kd.found == nearest);
-    CHECK(octree.found == nearest);
-    CHECK(kd.radius_squared == by_distance[kPointsAsked - 1].first);
-    for (const FoundPoints* found : {&kd, &octree}) {
-        CAPTURE(found->tree);
-        CHECK(std::ranges::includes(found->looked_at, found->found));
-        CHECK(found->looked_at.size() < found->points.size() / 3);
-        CHECK(found->visited < found->nodes / 2);
-        const std::string svg = svg_of(*found);
-        // A circle a point, and the one about them.
-        std::size_t circles = 0;
-        for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++circles;
-        CHECK(circles == found->points.size() + 1);
-    }
-    CHECK(kd.nodes == kd.points.size());
-    CHECK(kd.visited == kd.looked_at.size());
-    // Each plane of a kd-tree lies within the square and has its node's point on it.
-    CHECK(kd.lines.size() == kd.points.size() / 2);
-    for (const FoundPoints::Line& line : kd.lines) {
-        const bool is_upright = line.from.x == line.to.x;
-        CHECK((is_upright || line.from.y == line.to.y));
-        CHECK(std::ranges::any_of(kd.points, [&](const Vec3& p) {
-            return is_upright ? p.x == line.from.x && p.y >= line.from.y && p.y <= line.to.y
-                              : p.y == line.from.y && p.x >= line.from.x && p.x <= line.to.x;
-        }));
-    }
-    // Each point lies in one box of an octree.
-    for (const Vec3& p : octree.points) {
-        CHECK(std::ranges::count_if(octree.boxes, [&](const FoundPoints::Box& box) {
-                  return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y;
-              }) == 1);
-    }
 }
 
 TEST_CASE(

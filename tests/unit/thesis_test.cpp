@@ -126,6 +126,20 @@ TEST_CASE("the thesis's tables say what a CPU has not got, and have every varian
     check_page(html);
 }
 
+TEST_CASE("what the thesis lacks is named on the page and in the terminal, with its reason") {
+    ThesisReport thesis = full_thesis("CPU");
+    thesis.scenes.pop_back();
+    thesis.local.back().image = {}, thesis.global.back().image = {}; // which could not be made
+    thesis.lacking = {"figure 6.8: <no file>", "figure-3.6: out of memory"};
+    const std::string text = text_of(thesis), html = html_of(thesis);
+    CHECK(test::has(text, "Not made: figure 6.8: <no file>\n"));
+    CHECK(test::has(html, "<li class=\"wrong\">Not made: figure 6.8: &lt;no file&gt;</li>"));
+    CHECK(test::has(html, "<li class=\"wrong\">Not made: figure-3.6: out of memory</li>"));
+    CHECK_FALSE(test::has(text, "second scene was not measured")); // the reason says more
+    CHECK(test::count(html, "<img") == 2);
+    test::check_tags(html);
+}
+
 TEST_CASE("the thesis's figures of walks that a CPU has not got say so") {
     const std::string cpu = html_of(full_thesis("CPU")), cuda = html_of(full_thesis("NVIDIA H200"));
     CHECK(has(cpu, "Figure 6.9: RTA with persistent speculative while-while: needs a GPU."));
