@@ -33,6 +33,18 @@ HD inline float factor(const Surface& surface, Vec3 wo, Vec3 wi, Vec3 wo_local, 
 
 } // namespace particle
 
+/// Through a surface, a particle that came from `wi` comes to where the square of the refractive index is this; it was
+/// `here`. Power is the same on both sides, radiance over n^2 (bsdf_sample.h) is power that arrives, over that square.
+HD inline float squared_index_beyond(const Surface& surface, Vec3 wi, float here) {
+    const float squared = square(surface.bsdf.base.dielectric.ior);
+    return surface.frame.to_local(wi).z > 0 ? here * squared : here / squared;
+}
+/// The same, where it goes on along `wo`: `here` but where that is through glass.
+HD inline float squared_index_along(const Surface& surface, Vec3 wi, Vec3 wo, float here) {
+    const bool goes_through = surface.bsdf.base.kind == LobeKind::Dielectric && !surface.same_side(wo, wi);
+    return goes_through ? squared_index_beyond(surface, wi, here) : here;
+}
+
 /// Power sent on per solid angle of `wo`, of 1 that came from `wi`, by the lobes of `classes`; and the density of
 /// sample_adjoint() at wo. Both directions unit, world space. Delta lobes give nothing.
 HD inline BsdfValue evaluate_adjoint(const Surface& surface, Vec3 wi, Vec3 wo, LobeClasses classes = kAllLobeClasses) {

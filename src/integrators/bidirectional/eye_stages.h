@@ -142,7 +142,7 @@ HD inline JoinedEnd join_end(const SceneView& scene, const WalkVertex& vertex, V
     const Vec3 from = -vertex.direction;
     const BothWays scattered = scatter_both_ways<kKnown>(surface, is_eye ? from : along, is_eye ? along : from);
     JoinedEnd end;
-    end.f = is_eye ? scattered.eye.f : scattered.particle.f;
+    end.f = is_eye ? scattered.eye.f : (1.0f / squared_index_along(surface, from, along, 1)) * scattered.particle.f;
     end.onwards_density = is_eye ? scattered.eye.pdf : scattered.particle.pdf;
     end.backwards_density = is_eye ? scattered.particle.pdf : scattered.eye.pdf;
     end.cosine = cosine_at(surface, along);

@@ -145,8 +145,7 @@ private:
         }
         if (!sample.is_delta()) gather.marks[walk] = 1;
         if (sample.is_transmission) {
-            const float squared = square(surface.bsdf.base.dielectric.ior), here = gather.index_squared(walk);
-            gather.store_index(walk, surface.frame.to_local(wi).z > 0 ? here * squared : here / squared);
+            gather.store_index(walk, squared_index_beyond(surface, wi, gather.index_squared(walk)));
         }
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;

@@ -59,6 +59,7 @@ struct BeginParticles {
         state.mis = particle.mis;
         state.is_from_far = particle.is_from_far ? 1 : 0;
         walks.states[i] = state;
+        walks.squared_indices[i] = 1;
         walks.queue_ray(atomic_add(&walks.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
 };
@@ -87,19 +88,20 @@ struct ShadeParticles {
         if (state.depth() < walks.room.kept) {
             const std::size_t at = walks.kept_place(walk, state.depth());
             if (can_be_joined) {
-                walks.kept.store(at, {hit, ray.direction, state.throughput, state.mis});
+                walks.kept.store(
+                    at, {hit, ray.direction, (1.0f / walks.squared_indices[walk]) * state.throughput, state.mis});
             } else {
                 walks.kept.store_none(at);
             }
             walks.kept_counts[walk] = state.depth() + 1;
         }
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
-        if (can_be_joined) ask_camera(surface, hit, state, -ray.direction, key);
+        if (can_be_joined) ask_camera(surface, hit, walk, state, -ray.direction, key);
         if (state.depth() + 1 < settings.max_depth) go_on(surface, walk, state, -ray.direction, key);
     }
 
 private:
-    HD_FUSED void ask_camera(const Surface& surface, const Hit& hit, const WalkState& state, Vec3 wi,
+    HD_FUSED void ask_camera(const Surface& surface, const Hit& hit, uint32_t walk, const WalkState& state, Vec3 wi,
                              SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const CameraRays& camera = scene.picture.camera;
@@ -129,6 +131,8 @@ private:
         connection.target = surface.triangle;
         connection.key = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, state.depth(), true);
         connection.light = (weight * seen.density / seen.distance_squared) * (scattered.particle.f * state.throughput);
+        connection.light =
+            (1.0f / squared_index_along(surface, wi, wo, walks.squared_indices[walk])) * connection.light;
         const uint32_t place = atomic_add(&walks.counts->asked, 1u);
         walks.ask(place, connection, state.pixel);
         walks.asked_rasters[place] = seen.raster;
@@ -148,6 +152,9 @@ private:
                 state.mis.scatter(cosine_at(surface, wo), sample.pdf,
                                   scatter_both_ways<kKnown>(surface, wo, wi).eye.pdf);
             }
+        }
+        if (sample.is_transmission) {
+            walks.squared_indices[walk] = squared_index_beyond(surface, wi, walks.squared_indices[walk]);
         }
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;

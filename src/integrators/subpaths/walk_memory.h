@@ -31,7 +31,7 @@ static_assert(sizeof(WalkState) == 32);
 struct WalkVertex {
     Hit hit;        // no instance: delta lobes alone, nothing can be joined
     Vec3 direction; // of the walk, unit
-    Rgb throughput; // on arrival
+    Rgb throughput; // on arrival; of a walk from a light over the square of the index where it arrives
     MisWalk mis;
 };
 
@@ -84,7 +84,8 @@ struct WalkRoom {
 
 struct WalksView {
     WalkRoom room;
-    WalkState* states; // [walks]
+    WalkState* states;      // [walks]
+    float* squared_indices; // [walks] of walks from lights: where they are, over where their light stands
 
     // Rays under way, side by side. Rounds read and write these and their owners, the walks, in two arrays in turns.
     Ray* rays[2];
@@ -148,6 +149,7 @@ inline std::size_t lay_out(WalksView& view, std::byte* memory, WalkRoom room) {
     const std::size_t walks = room.walks, joins = room.kept > 0 ? walks : 0, asked = walks * room.connections;
     view.room = room;
     place(view.states, walks);
+    place(view.squared_indices, walks);
     place(view.rays[0], walks);
     place(view.rays[1], walks);
     place(view.starts, walks);
