@@ -93,8 +93,8 @@ void add_solving_flags(CLI::App& verb, RadiosityFlags& flags, const char* group)
         ->check(number_above_zero())
         ->group(group);
     verb.add_option("--max-memory", flags.max_memory,
-                    "refuse at once what takes more: radiosity of this machine's\nmemory, pertev render of the "
-                    "device's (all there is)")
+                    "refuse what takes more: radiosity of this machine's memory\n(all there is), pertev render of the "
+                    "device's too")
         ->type_name("MIB")
         ->check(number_above_zero())
         ->group(group);

@@ -10,7 +10,9 @@
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "formats/read_camera_path.h"
+#include "render/film.h"
 #include "session/check_integrator.h"
+#include "session/render_memory.h"
 
 namespace pertev {
 namespace {
@@ -81,6 +83,12 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
                                              "shows it at one (--camera-path and --turntable take it as it is)");
         }
         reporter.say_messages();
+        if (flags.limits_memory) { // a picture for which there is no room is refused before its scene is solved
+            const std::size_t film =
+                Film::predicted_bytes(settings.width, settings.height, settings.aovs, light_layers_of(settings));
+            check_render_memory(film, settings,
+                                memory_to_render_in(*ready->queue, settings, max_memory_bytes(flags.radiosity)));
+        }
         settings.radiosity = radiosity_look(flags.radiosity, ready->prepared(), flags.seed, reporter);
     }
     return ready;

@@ -409,7 +409,9 @@ RenderSettings render_settings(const RenderFlags& flags, const Scene& scene) {
     } else {
         set_default_size(settings, scene_camera(flags.scene, scene));
     }
-    check_exr_row(settings.width, film_channel_count(settings.aovs) + std::size_t(3) * light_layers_of(settings));
+    const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
+    check_exr_row(settings.width,
+                  film_channel_count(settings.aovs) + of_ids + std::size_t(3) * light_layers_of(settings));
     return settings;
 }
 

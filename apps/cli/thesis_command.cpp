@@ -31,7 +31,7 @@ namespace {
 constexpr std::size_t kThesisScenes = 2;
 constexpr uint32_t kPictureSamples = 32, kPictureSamplesCuda = 512;
 
-/// Null where it is not there.
+/// None where it is not there.
 std::optional<std::string> find_sibenik() {
     const char* root = std::getenv("PERTEV_SCENES");
     const std::filesystem::path path = std::filesystem::path(root != nullptr ? root : "") / "sibenik/sibenik.obj";
@@ -142,11 +142,12 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
     const Stopwatch watch;
     for (std::size_t i = 0; i < names.size() && attempts.may_go_on(); ++i) {
         attempts.attempt(names[i], [&] {
-            thesis.pictures.push_back(pictures.make(names[i], [&](const char* doing, double share) {
+            ThesisPicture made = pictures.make(names[i], [&](const char* doing, double share) {
                 const double all = (static_cast<double>(i) + share) / static_cast<double>(names.size());
                 return show({all, fmt::format("{}: {}", names[i], doing), share, watch.seconds(), nullptr, nullptr});
-            }));
-            write_file(folder, thesis.pictures.back());
+            });
+            write_file(folder, made);
+            thesis.pictures.push_back(std::move(made));
         });
     }
     reporter.end_progress();

@@ -21,13 +21,14 @@ void check_render_memory(std::size_t bytes, const RenderSettings& settings, std:
     if (bytes <= limit) return;
     const uint32_t layers = light_layers_of(settings);
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layers);
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("the render takes {:.1f} MiB of the device's memory, of which {:.1f} MiB are to be used "
-                            "(--max-memory); its film of {}x{} pixels{} has {:.1f} MiB of that: {} smaller --size{} "
-                            "takes less",
-                            mebibytes(bytes), mebibytes(limit), settings.width, settings.height,
-                            layers > 0 ? fmt::format(" and {} layers of --lpe", layers) : "", mebibytes(film),
-                            layers > 0 ? "fewer of them or a" : "a", settings.aovs != 0 ? ", or fewer --aov," : ""));
+    throw Error(
+        ErrorCode::OutOfMemory,
+        fmt::format("the render takes {:.1f} MiB of the device's memory; {:.1f} MiB are what --max-memory allows, or "
+                    "without it what this machine has beside the finished picture. {}x{} pixels{} take {:.1f} MiB in "
+                    "a film: {} smaller --size{} takes less",
+                    mebibytes(bytes), mebibytes(limit), settings.width, settings.height,
+                    layers > 0 ? fmt::format(" and {} layers of --lpe", layers) : "", mebibytes(film),
+                    layers > 0 ? "fewer of them or a" : "a", settings.aovs != 0 ? ", or fewer --aov," : ""));
 }
 
 } // namespace pertev

@@ -77,7 +77,7 @@ struct RenderProgress {
     uint32_t samples_done = 0, samples = 0; // in the film now, and when the call is done
     double seconds = 0;                     // since the call began to render
     RayCounts rays;                         // of the call
-    double made_share = 1;                  // of what the integrator makes before the first sample, [0, 1]
+    double made_share = 1;                  // of what the integrator makes before the first sample; 1: all is made
     double made_seconds = 0;                // of `seconds`, that this took
 };
 

@@ -213,11 +213,12 @@ TEST_CASE("an overture tells how far it is, from nothing to all, and never less 
         REQUIRE(samples - told.begin() > 12);
         const auto all_rays = static_cast<double>(samples[-1].rays.total());
         CHECK(told.front().made_share == 0);
-        CHECK(samples[-1].made_share == 1);
+        CHECK(samples[-1].made_share > 0.9);
         for (auto now = told.begin(); now < samples; ++now) {
             const double share = now->made_share, done = static_cast<double>(now->rays.total()) / all_rays;
             if (now > told.begin()) CHECK(share >= now[-1].made_share);
             CHECK(abs(static_cast<float>(share - done)) < 0.35f);
+            CHECK(share < 1);
             CHECK(now->made_seconds == now->seconds);
         }
         for (auto now = samples; now < told.end(); ++now) {

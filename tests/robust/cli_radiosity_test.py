@@ -143,6 +143,11 @@ class Radiosity(CliTest):
             self.refuse(4, "solve", "radiosity", "cornell-box", "-o", "m.rad", *flags, "--max-memory",
                         predicted / 2**20 - 0.01, says=["radiosity: may take", "--max-memory", "largest parts"])
 
+    def test_a_picture_for_which_there_is_no_room_is_refused_before_its_scene_is_solved(self):
+        outcome = self.refuse(4, "render", "cornell-box", "-o", "x.png", "--integrator", "radiosity", "--size", "4096x4096",
+                              "--max-memory", "200", "--json", says=["the render takes", "--max-memory"])
+        self.assertEqual(outcome.events("radiosity"), [])
+
     def test_light_without_end_is_refused(self):
         box = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1))
         for a, b, c, d in [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]:

@@ -8,6 +8,8 @@
 namespace pertev {
 namespace {
 
+constexpr double kNearlyAll = 0.999;
+
 constexpr uint32_t kFewWalks = 256; // of which a share says little
 
 double next_fall(double fall) { return fall * std::sqrt(fall) * std::sqrt(std::sqrt(fall)); }
@@ -59,7 +61,7 @@ void OvertureProgress::begin_records(uint32_t wanted, uint64_t rays) {
 double OvertureProgress::share(uint64_t rays) {
     const double left = std::max(expected_ - static_cast<double>(rays - began_at_), 0.0) + later_;
     const auto done = static_cast<double>(rays);
-    if (done + left > 0) share_ = std::max(share_, done / (done + left));
+    if (done + left > 0) share_ = std::max(share_, std::min(done / (done + left), kNearlyAll));
     return share_;
 }
 

@@ -20,7 +20,7 @@ public:
     void begin_walks(uint64_t rays);
     /// They have ended, and want so many records.
     void begin_records(uint32_t wanted, uint64_t rays);
-    /// [0, 1], never less than before.
+    /// [0, 1), never less than before: more rays than were expected are no end.
     double share(uint64_t rays);
 
 private:

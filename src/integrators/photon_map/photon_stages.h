@@ -23,7 +23,7 @@ struct PhotonEnergy {
     FixedSum emitted;
     FixedSum escaped;   // met nothing
     FixedSum arrived;   // at surfaces
-    FixedSum left_none; // of that, where no photon was left: the other's powers are in the maps
+    FixedSum left_none; // of what arrived, what left no photon: the rest lies in the maps
     FixedSum went_on;   // from there: the rest is absorbed
 };
 
