@@ -232,7 +232,7 @@ TEST_CASE("what layers take is said beforehand, by either body") {
         check_render_memory(said, settings, said);
         const auto error = test::thrown_error([&] { check_render_memory(said, settings, said - 1); });
         REQUIRE((error && error->code() == ErrorCode::OutOfMemory));
-        CHECK(std::string(error->what()).find(fmt::format(" and {} layers of --lpe has ", layers_asked->count())) !=
+        CHECK(std::string(error->what()).find(fmt::format(" and {} layers of --lpe take ", layers_asked->count())) !=
               std::string::npos);
         CHECK(memory_to_render_in(queue, settings, said) == said);
         const std::size_t of_machine = memory_to_render_in(queue, settings, {});
