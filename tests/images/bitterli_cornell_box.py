@@ -41,11 +41,7 @@ def main():
                        "--filter", "tent", "--filter-radius", 1, "--max-depth", 64, "--device", job.device,
                        "--no-bvh-cache")
         job.check("samples that were not finite", done["invalid_samples"], 0, 0)
-        for side, error in bounds.items():
-            far = job.run("compare", "compare", picture, reference, "--blocks", side)
-            job.check(f"relMSE of blocks of {side} x {side}", far["rel_mse_98"], 0, error)
-            for channel, mean, wanted in zip("RGB", far["mean_98"], far["reference_mean_98"]):
-                job.check(f"mean of {channel}", mean, wanted * (1 - MEAN_ERROR), wanted * (1 + MEAN_ERROR))
+        job.check_blocks(picture, reference, bounds, MEAN_ERROR)
     job.end()
 
 

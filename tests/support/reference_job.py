@@ -54,5 +54,13 @@ class ReferenceJob:
         print(f"{'ok    ' if good else 'FAILED'} {what}: {value} in [{low:.6g}, {high:.6g}]")
         self.failures += not good
 
+    def check_blocks(self, picture, reference, bounds, mean_error):
+        """Compares over blocks of pixels. `bounds`: relMSE at most, by side of a block; `mean_error`: of a channel."""
+        for side, error in bounds.items():
+            far = self.run("compare", "compare", picture, reference, "--blocks", side)
+            self.check(f"relMSE of blocks of {side} x {side}", far["rel_mse_98"], 0, error)
+            for channel, mean, wanted in zip("RGB", far["mean_98"], far["reference_mean_98"]):
+                self.check(f"mean of {channel}", mean, wanted * (1 - mean_error), wanted * (1 + mean_error))
+
     def end(self):
         sys.exit(1 if self.failures else 0)
