@@ -30,11 +30,12 @@ function(pertev_unity target batch)
 endfunction()
 
 # The same for .cu files, which CMake's own gathers in newer versions only: most of such a file's time goes into headers.
-# Those of shading and of walks stay alone: optimised, each takes a minute.
+# Those of shading and of walks stay alone: optimised, each takes a minute. So do those that every picture needs: a GPU
+# is given all kernels of a file with the first of them.
 function(pertev_gather_cuda name list)
   set(files ${${list}})
   list(FILTER files INCLUDE REGEX "\\.cu$")
-  list(FILTER files EXCLUDE REGEX "/shade_|/kernels/|/hploc/|/cuda/")
+  list(FILTER files EXCLUDE REGEX "/shade_|/kernels/|/hploc/|/cuda/|/(path|film)_stages")
   list(LENGTH files count)
   if(NOT PERTEV_UNITY OR NOT PERTEV_HAS_CUDA OR count LESS 2)
     return()

@@ -61,15 +61,18 @@ struct LightPathView {
     /// Light of `light` that a path in `state` found goes to its layers. `light` is light_of's.
     HD void add(const FilmView& film, uint32_t pixel, LightPathState state, uint32_t light, Rgb radiance) const {
         if (!(is_valid_sample(radiance.r) && is_valid_sample(radiance.g) && is_valid_sample(radiance.b))) return;
-        const float colours[] = {radiance.r, radiance.g, radiance.b};
+#if PERTEV_ON_DEVICE
+#pragma unroll 1 // three times the code takes registers that shading wants
+#endif
         for (int colour = 0; colour < 3; ++colour) {
-            if (!(colours[colour] != 0)) continue;
+            const float value = colour == 0 ? radiance.r : colour == 1 ? radiance.g : radiance.b;
+            if (!(value != 0)) continue;
             const uint32_t* const set = layers + (state.of(colour) * light_count + light) * words;
             uint32_t channel = first_channel + static_cast<uint32_t>(colour); // of the word's first layer
             for (uint32_t word = 0; word < words; ++word, channel += 3 * 32) {
                 uint32_t bits = set[word];
                 for (uint32_t c = channel; bits != 0; c += 3, bits >>= 1) {
-                    if ((bits & 1u) != 0) add_channel(film, pixel, c, colours[colour]);
+                    if ((bits & 1u) != 0) add_channel(film, pixel, c, value);
                 }
             }
         }
