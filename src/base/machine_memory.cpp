@@ -2,13 +2,51 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <fstream>
+#include <string>
 
 namespace pertev {
+namespace {
+
+/// The number that a file begins with; SIZE_MAX where it does not.
+std::size_t number_in(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::size_t bytes = 0;
+    return in >> bytes ? bytes : SIZE_MAX;
+}
+
+/// Of a group and of all that it lies in, down to the root.
+std::size_t least_of(const std::filesystem::path& root, std::filesystem::path group, const char* file) {
+    std::size_t least = SIZE_MAX;
+    for (; !group.empty(); group = group.parent_path()) least = std::min(least, number_in(root / group / file));
+    return std::min(least, number_in(root / file));
+}
+
+} // namespace
+
+std::size_t group_memory_bytes(const std::filesystem::path& groups, const std::filesystem::path& folder) {
+    std::size_t least = std::min(number_in(folder / "memory.max"), number_in(folder / "memory/memory.limit_in_bytes"));
+    std::ifstream in(groups);
+    for (std::string line; std::getline(in, line);) { // number:controllers:/group
+        const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+        if (first == std::string::npos || second == std::string::npos) continue;
+        const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+        const std::filesystem::path group = std::filesystem::path(line.substr(second + 1)).relative_path();
+        if (controllers == ",,") least = std::min(least, least_of(folder, group, "memory.max"));
+        if (controllers.find(",memory,") != std::string::npos) {
+            least = std::min(least, least_of(folder / "memory", group, "memory.limit_in_bytes"));
+        }
+    }
+    return least;
+}
 
 std::size_t machine_memory_bytes() {
     const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGESIZE);
-    return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
+    const std::size_t all =
+        pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
+    return std::min(all, group_memory_bytes("/proc/self/cgroup", "/sys/fs/cgroup"));
 }
 
 } // namespace pertev
