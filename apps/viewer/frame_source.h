@@ -4,6 +4,7 @@
 // picture that can be shown, and its numbers, out. Called by one thread, the one that the device's queue belongs to.
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,6 +22,8 @@ struct FrameRequest {
     ViewState view;
     bool is_moving = false; // camera or time changes now: a frame that comes soon, at a resolution that can
     double budget_s = 0.1;  // roughly how long next() may take; a sample of all pixels is the least
+    /// Called by next() now and then while something is made before samples: the share of it that is done, [0, 1).
+    std::function<void(double share)> tell_made;
 };
 
 /// Milliseconds by name, in the order of the stages.
@@ -37,7 +40,8 @@ struct ShownFrame {
     float exposure_stops = 0;                 // that it is shown with
     float found_stops = 0;                    // of these, what was found where the exposure is found by itself
     RayCounts rays;                           // traced for it
-    double render_s = 0;                      // of these rays
+    double render_s = 0;                      // of these rays, and of shading
+    SceneTracer::Seconds kind_seconds;        // of these rays, where they were timed by kind
     float scale = 1;                          // of the full size
     double kept_rate = 0;                     // frames a second that this scale was chosen for; 0: it was asked for
     bool keeps_rate = true;                   // by frames before; false: no scale is small enough

@@ -52,8 +52,9 @@ struct NumberRow {
     std::string (*tell)(const ViewState&, const ViewNumbers&);
 };
 
-std::string rays_per_second(uint64_t rays, const ViewNumbers& numbers) {
-    const double seconds = numbers.frame->render_s;
+/// `kind_s`: what the rays of this kind took; 0 where they were not timed: then by the time of shading, too.
+std::string rays_per_second(uint64_t rays, double kind_s, const ViewNumbers& numbers) {
+    const double seconds = kind_s > 0 ? kind_s : numbers.frame->render_s;
     return rays > 0 && seconds > 0 ? fmt::format("{:.1f} M/s", static_cast<double>(rays) / seconds * 1e-6) : "";
 }
 
@@ -85,9 +86,18 @@ constexpr NumberRow kRows[] = {
          return fmt::format("{:.0f} a second{}", n.frame->kept_rate,
                             n.frame->keeps_rate ? "" : ", not reached: the smallest size");
      }},
-    {"Rays", "camera", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.camera, n); }},
-    {"Rays", "bounce", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.bounce, n); }},
-    {"Rays", "shadow", [](const ViewState&, const ViewNumbers& n) { return rays_per_second(n.frame->rays.shadow, n); }},
+    {"Rays", "camera",
+     [](const ViewState&, const ViewNumbers& n) {
+         return rays_per_second(n.frame->rays.camera, n.frame->kind_seconds.camera, n);
+     }},
+    {"Rays", "bounce",
+     [](const ViewState&, const ViewNumbers& n) {
+         return rays_per_second(n.frame->rays.bounce, n.frame->kind_seconds.bounce, n);
+     }},
+    {"Rays", "shadow",
+     [](const ViewState&, const ViewNumbers& n) {
+         return rays_per_second(n.frame->rays.shadow, n.frame->kind_seconds.shadow, n);
+     }},
 };
 
 std::string row_json(const char* group, const std::string& label, const std::string& value) {
@@ -96,6 +106,9 @@ std::string row_json(const char* group, const std::string& label, const std::str
 
 std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     std::string rows;
+    if (numbers.made_share < 1) {
+        append(rows, row_json("Now", "made, before samples", fmt::format("{:.0f} %", 100 * numbers.made_share)));
+    }
     if (numbers.frame == nullptr) return rows;
     for (const NumberRow& row : kRows) {
         const std::string value = row.tell(view, numbers);

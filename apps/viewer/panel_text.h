@@ -16,6 +16,7 @@ std::string welcome_text(const ViewerStart& start);
 struct ViewNumbers {
     const ShownFrame* frame = nullptr; // its image may be gone
     double frames_per_second = 0;
+    double made_share = 1; // of what is made before the next picture's samples
     double pack_ms = 0;
     std::size_t packed_bytes = 0;
     const char* encoder = "";         // that packed them

@@ -239,13 +239,18 @@ void RenderLoop::show_next() {
         clock_.time_s = back_s;
         return tell_state();
     }
-    const FrameRequest wanted = request();
+    FrameRequest wanted = request();
+    wanted.tell_made = [this](double share) {
+        made_share_ = share;
+        if (now_s_() - told_at_s_ > kTellEvery) tell_state();
+    };
     if (wanted.is_moving && !is_new_ && !time_runs() && last_ &&
         last_->samples >= view_.picture.samples) { // nothing new to be seen
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return;
     }
     std::optional<ShownFrame> frame = next_frame(wanted);
+    made_share_ = 1;
     if (!frame) { // a picture gathers that is not shown yet
         if (now_s_() - told_at_s_ > kTellEvery) tell_state();
         return;
@@ -305,6 +310,7 @@ void RenderLoop::tell_state() {
     told_at_s_ = now_s_();
     ViewNumbers numbers;
     numbers.frame = last_ ? &*last_ : nullptr;
+    numbers.made_share = made_share_;
     numbers.frames_per_second = is_done_ ? 0 : frames_per_second_;
     numbers.pack_ms = packer_.milliseconds();
     numbers.packed_bytes = packer_.bytes();

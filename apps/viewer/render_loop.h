@@ -58,6 +58,7 @@ private:
     uint32_t input_ = 0, steerer_ = 0; // number of the last input, and the client that it came from
     double moved_at_s_ = -1e9, told_at_s_ = -1e9, framed_at_s_ = -1e9;
     double frames_per_second_ = 0;
+    double made_share_ = 1;          // of what the picture under way needs before its samples
     double budget_s_ = 0.1;          // of the next picture at rest
     bool is_new_ = true;             // something was asked for since the last picture
     bool is_done_ = false;           // nothing is left to be rendered for this state

@@ -65,6 +65,16 @@ Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stop
     return picture.displayed();
 }
 
+/// Rendering took `seconds`.
+void tell_rendering(double seconds, ShownFrame& frame) {
+    const SceneTracer::Seconds& rays = frame.kind_seconds;
+    if (rays.total() <= 0) return void(frame.stages.emplace_back("render", 1e3 * seconds));
+    frame.stages.emplace_back("camera rays", 1e3 * rays.camera);
+    frame.stages.emplace_back("bounce rays", 1e3 * rays.bounce);
+    frame.stages.emplace_back("shadow rays", 1e3 * rays.shadow);
+    frame.stages.emplace_back("shading", 1e3 * std::max(seconds - rays.total(), 0.0));
+}
+
 } // namespace
 
 SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s)
@@ -98,6 +108,7 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.frame_depth = request.view.moving_depth;
     // Layers and heat maps need no light.
     if (!is_beauty(request.view.layer) && !is_of_frames(request.view.layer)) settings.path.max_depth = 0;
+    if (settings.time_kinds) settings.body = PathBody::Wavefront; // a loop over paths has no kinds to time
     settings.pass_samples = 1;
     if (sample_s_ > 0 && scale == 1)
         settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
@@ -242,6 +253,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     reconstruction_.pixels.clear();
     ShownFrame frame;
     frame.rays = session_.frame_rays();
+    frame.kind_seconds = session_.frame_kind_seconds();
     const double reconstruction_s = session_.frame().seconds(), sharing_s = session_.sharing_seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
@@ -253,7 +265,7 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     frame.image = shows_layer ? show_layer(request, frame)
                               : shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
     if (update_s > 0) frame.stages.emplace_back("scene", 1e3 * update_s);
-    frame.stages.emplace_back("render", 1e3 * std::max(frame.render_s - sharing_s, 0.0));
+    tell_rendering(std::max(frame.render_s - sharing_s, 0.0), frame);
     if (sharing_s > 0) frame.stages.emplace_back("ReSTIR", 1e3 * sharing_s);
     frame.stages.emplace_back("reconstruction", 1e3 * reconstruction_s);
     frame.stages.emplace_back("tone map", 1e3 * display.seconds());
@@ -328,11 +340,13 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (before < wanted) {
         added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
+            if (now.made_share < 1 && request.tell_made) request.tell_made(now.made_share);
             const bool has_begun = now.samples_done > before; // a picture has a sample, whatever that takes
             return (is_small || !abandon_) && (!has_begun || now.seconds < request.budget_s);
         });
     }
     frame.render_s = render.seconds();
+    if (added > 0) frame.kind_seconds = session_.stats().kind_seconds;
     if (added > 0 && !is_small) sample_s_ = frame.render_s / added;
     if (abandon_ && !is_small) return std::nullopt;
     frame.samples = session_.history().samples;
@@ -350,7 +364,8 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     frame.scale = scale;
     shows_film_ = frame.is_reference = !is_small && is_beauty(request.view.layer);
     frame.is_final = !is_small && frame.samples >= wanted;
-    frame.stages = {{"render", 1e3 * frame.render_s}, {"tone map", 1e3 * display_s}};
+    tell_rendering(frame.render_s, frame);
+    frame.stages.emplace_back("tone map", 1e3 * display_s);
     if (frame.is_reference) {
         const Stopwatch hash;
         frame.hash = film_hash();

@@ -278,6 +278,15 @@ std::vector<ViewSetting> make_settings() {
         "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)",
         "Rays skip what lies behind the nearest hit so far. Off: they go through it all", {"on", "nodes", "off"},
         [](const ViewState& s) { return name_of_rta(shown_combination(s).options); }, set_rta);
+    choice(
+        "clocks", "Time", "Rays (the picture stays the same)",
+        "by kind: rays of each kind and shading are timed apart (Stages, below). Each waits for the one before, so "
+        "that frames take longer",
+        {"together", "by kind"}, [](const ViewState& s) { return s.picture.time_kinds ? "by kind" : "together"; },
+        [](ViewState& s, const std::string& name) {
+            s.picture.time_kinds = name == "by kind";
+            return std::string();
+        });
     return all;
 }
 

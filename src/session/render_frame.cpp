@@ -71,6 +71,7 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     }
     Restir* const shared = restir_for(restir, of_light);
     frame_rays_ = {};
+    frame_kind_seconds_ = {};
     const LightChangeView change = look_for_change(of_light, settings);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
     take_sample(number, camera_, of_light, frame);
@@ -110,6 +111,10 @@ void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings 
     frame.begin();
     integrator.render(number, 1, frame.film_view());
     frame_rays_ = frame_rays_ + integrator.rays();
+    const SceneTracer::Seconds& seconds = tracer_->seconds();
+    frame_kind_seconds_.camera += seconds.camera;
+    frame_kind_seconds_.bounce += seconds.bounce;
+    frame_kind_seconds_.shadow += seconds.shadow;
 }
 
 /// How light has changed since the frame before, where that has left a small picture of the scene as it was.

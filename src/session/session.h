@@ -122,6 +122,9 @@ public:
     RenderResult frame_result();
     /// Rays of the last render_frame.
     RayCounts frame_rays() const;
+    /// Seconds of the last render_frame's rays by kind, but for those of sharing light; all 0 unless the settings ask
+    /// for them (time_kinds).
+    const SceneTracer::Seconds& frame_kind_seconds() const { return frame_kind_seconds_; }
     /// Seconds that sharing light (ReSTIR) took of the last render_frame; 0 without.
     double sharing_seconds() const { return restir_ ? sharing_timer_.seconds() : 0; }
     /// Another picture of the scene as it lies on the device: of this camera, with this size, these layers and this
@@ -194,6 +197,7 @@ private:
     uint32_t number_of_light_ = 0;          // that frame's
     PathSettings path_of_light_;            // likewise
     RayCounts frame_rays_;
+    SceneTracer::Seconds frame_kind_seconds_;
     uint32_t frame_number_ = 0;                          // of the last frame: its sample's
     SamplerKind frame_sampler_ = PathSettings{}.sampler; // of that sample
     bool film_is_old_ = false;                           // holds samples of a picture that is no more asked for

@@ -1,5 +1,8 @@
 // Pictures of the viewer (session_frames.h) beside those of a session alone, and the tones that they are exposed by.
 
+#include <algorithm>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include "apps/viewer/session_frames.h"
@@ -81,7 +84,9 @@ TEST_CASE("a picture at rest is metered, and places are picked in it, and what i
     Session plain = watched.session();
     plain.render(picture.samples);
     request.view.finds_exposure = true;
-    request.budget_s = 1e-9; // a pass at a time
+    request.budget_s = 1e-9;    // a pass at a time
+    std::vector<double> shares; // of the records
+    request.tell_made = [&](double share) { shares.push_back(share); };
     Session session = watched.session();
     SessionFrames frames(session, watched.scene, 0.1);
     std::optional<ShownFrame> rests;
@@ -92,6 +97,9 @@ TEST_CASE("a picture at rest is metered, and places are picked in it, and what i
     }
     CHECK(rests->hash == picture_hash(plain.picture()).hex());
     CHECK(session.stats().rays.total() == plain.stats().rays.total());
+    CHECK(!shares.empty());
+    CHECK(std::ranges::is_sorted(shares));
+    CHECK((shares.front() >= 0 && shares.back() < 1));
 }
 
 TEST_CASE("another way to share light, or another resolution of it, begins to gather anew") {
@@ -254,4 +262,41 @@ TEST_CASE("what the exposure goes by is the frame as it is shown, whatever its l
             CHECK(of_blocks == doctest::Approx(of_pixels).epsilon(1e-4));
         }
     }
+}
+
+TEST_CASE("rays of each kind and shading are timed apart where that is asked for, and the pictures are the same") {
+    Watched watched;
+    FrameRequest& request = watched.request;
+    request.budget_s = 100;
+    Session session = watched.session(), together = watched.session();
+    SessionFrames frames(session, watched.scene, 0.1), others(together, watched.scene, 0.1);
+    const auto stages_of = [](const ShownFrame& frame) {
+        std::string names;
+        for (const auto& [name, milliseconds] : frame.stages) names += name + ' ';
+        return names;
+    };
+    const std::string apart = "camera rays bounce rays shadow rays shading ";
+    for (const bool is_moving : {true, false}) {
+        CAPTURE(is_moving);
+        request.is_moving = is_moving;
+        const auto shown = [&](SessionFrames& source, bool is_timed) {
+            request.view.picture.time_kinds = is_timed;
+            std::optional<ShownFrame> frame;
+            do frame = source.next(request);
+            while (!frame || (!is_moving && !frame->is_final));
+            return *frame;
+        };
+        const ShownFrame timed = shown(frames, true), plain = shown(others, false);
+        CHECK(timed.image.pixels == plain.image.pixels);
+        CHECK(timed.hash == plain.hash);
+        CHECK(stages_of(timed).starts_with(apart));
+        CHECK(stages_of(plain).starts_with("render "));
+        const SceneTracer::Seconds& rays = timed.kind_seconds;
+        CHECK(std::min({rays.camera, rays.bounce, rays.shadow}) > 0);
+        CHECK(rays.total() < timed.render_s);
+        CHECK(plain.kind_seconds.total() == 0);
+    }
+    request.view.picture.integrator = IntegratorKind::Raster; // has no rays
+    request.view.picture.time_kinds = true;
+    CHECK(stages_of(frames.next(request).value()).starts_with("render "));
 }

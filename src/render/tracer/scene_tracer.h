@@ -56,6 +56,7 @@ public:
     /// then.
     struct Seconds {
         double camera = 0, bounce = 0, shadow = 0;
+        double total() const { return camera + bounce + shadow; }
     };
     void time_kinds(bool is_timed) {
         is_timed_ = is_timed;
