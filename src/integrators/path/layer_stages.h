@@ -33,7 +33,7 @@ struct ShadeHitsToLayers {
     RoundCounts* round;
     uint32_t last; // ShadeHits'
 
-    HD void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
         PathState path = paths.load(place);
         if (kMotion != MotionKnown::None || (path.depth == 0 && picture.camera.motion.moves())) {

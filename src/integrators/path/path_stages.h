@@ -65,7 +65,7 @@ struct ShadeHits {
     RoundCounts* round;
     uint32_t last; // place of the first fresh path, and of the first one that ends
 
-    HD void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
         PathState path = paths.load(place);
         if (kMotion != MotionKnown::None) path.time = time_of(picture.camera, settings, path);

@@ -52,12 +52,12 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
     path.radiance += clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
-/// ask_for_light, inlined whatever its size: what moves would keep its surface in memory for a call.
-template <MaterialsKnown kKnown, MotionKnown kMotion, class Events>
-HD INLINE_ON_DEVICE bool ask_for_light_inlined(const SceneView& scene, const PathSettings& settings,
-                                               const PathState& path, const Surface& surface, Vec3 wo,
-                                               bool splits_light, bool tells_bounce, ShadowRay& shadow,
-                                               Events&& events) {
+/// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
+/// `tells_bounce`: shadow.sent is, of a second vertex.
+template <MaterialsKnown kKnown, MotionKnown kMotion, class Events = NoEvents>
+HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
+                                       const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce,
+                                       ShadowRay& shadow, Events&& events = Events()) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     const SampleKey key = sample_key(settings, path.pixel, path.sample);
@@ -99,16 +99,6 @@ HD INLINE_ON_DEVICE bool ask_for_light_inlined(const SceneView& scene, const Pat
     return true;
 }
 
-/// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
-/// `tells_bounce`: shadow.sent is, of a second vertex.
-template <MaterialsKnown kKnown, MotionKnown kMotion, class Events = NoEvents>
-HD inline bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
-                             const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce, ShadowRay& shadow,
-                             Events&& events = Events()) {
-    return ask_for_light_inlined<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, tells_bounce,
-                                                  shadow, events);
-}
-
 HD inline float survival_probability(Roulette roulette, float throughput) {
     switch (roulette) {
     case Roulette::Throughput:
@@ -121,7 +111,8 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
 
 /// Draws where the path goes on. False when it ends here.
 template <class Events>
-HD inline bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo, Events& events) {
+HD INLINE_ON_DEVICE bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo,
+                                 Events& events) {
     const SampleKey key = sample_key(settings, path.pixel, path.sample);
     const float lobe = surface.bsdf.draws_lobe()
                            ? sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe)
@@ -197,9 +188,9 @@ HD inline void store_no_hit(const NoisyFrameView& frame, uint32_t pixel) {
 /// `events`: what is to be told of the vertex (vertex_events.h).
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true, bool kMayLeave = true,
           MotionKnown kMotion = MotionKnown::Perhaps, class Events = NoEvents>
-HD inline bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
-                         PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow,
-                         Events&& events = Events()) {
+HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
+                                   PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow,
+                                   Events&& events = Events()) {
     const SceneView& scene = picture.scene;
     const bool is_frame = kMayBeFrame && film.frame.is_there();
     const bool splits_light = kKnown == MaterialsKnown::Nothing && is_frame && film.frame.splits_light();
@@ -261,16 +252,9 @@ HD inline bool shade_hit(const PictureView& picture, const PathSettings& setting
     // With coat or sheen on top, what leaves it in one direction says little of another.
     const bool is_bounce = tells_bounce && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
     if (is_bounce) begin_bounce(left, path, hit, true);
-    const auto asks = [&] {
-        if constexpr (kMotion == MotionKnown::Some) {
-            return ask_for_light_inlined<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce,
-                                                          shadow, events);
-        } else {
-            return ask_for_light<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow,
-                                                  events);
-        }
-    };
-    wants_shadow = !(leaves_light && path.depth == 0) && asks();
+    wants_shadow =
+        !(leaves_light && path.depth == 0) &&
+        ask_for_light<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
     if (tells_bounce && wants_shadow && !is_bounce) {
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }

@@ -30,9 +30,10 @@ HD inline void add_to_layers(const LightPathView& layers, const FilmView& film, 
 /// `wants_shadow` is. `is_meter`: the picture is that of the irradiance of what the camera sees, W/m2, black where it
 /// sees no surface.
 template <MotionKnown kMotion>
-HD inline bool shade_hit_to_layers(const PictureView& picture, const PathSettings& settings, const FilmView& film,
-                                   const LightPathView& layers, bool is_meter, LightPathState& state, PathState& path,
-                                   const Hit& hit, ShadowRay& shadow, bool& wants_shadow, LayerShadow& parts) {
+HD INLINE_ON_DEVICE bool shade_hit_to_layers(const PictureView& picture, const PathSettings& settings,
+                                             const FilmView& film, const LightPathView& layers, bool is_meter,
+                                             LightPathState& state, PathState& path, const Hit& hit, ShadowRay& shadow,
+                                             bool& wants_shadow, LayerShadow& parts) {
     const LightSetView& lights = picture.scene.lights;
     const Rgb before = path.radiance; // taken out, so that what the vertex adds is known to the last bit
     path.radiance = {0, 0, 0};

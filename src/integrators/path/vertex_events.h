@@ -41,11 +41,11 @@ struct VertexEvents {
         surface.emission = {};
         surface.is_unlit = false;
     }
-    HD void asks_for_light(const Surface& surface, Vec3 wo, Vec3 wi) {
+    HD INLINE_ON_DEVICE void asks_for_light(const Surface& surface, Vec3 wo, Vec3 wi) {
         light_diffuse = exact_diffuse_share(surface, wo, wi, 0);
         light_is_transmission = !surface.same_side(wo, wi);
     }
-    HD void goes_on(const Surface& surface, Vec3 wo, const BsdfSample& sample) {
+    HD INLINE_ON_DEVICE void goes_on(const Surface& surface, Vec3 wo, const BsdfSample& sample) {
         is_specular = sample.is_delta();
         is_transmission = sample.is_transmission;
         const float if_dark = sample.lobe_class == LobeClass::Diffuse ? 1.0f : 0.0f;
