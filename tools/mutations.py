@@ -339,7 +339,7 @@ MUTATIONS = [
              [edit("src/session/session.cpp", "main_.integrator->has_made();", "false;")],
              ["consistency/irradiance_cache", "unit/viewer_frames"]),
     Mutation("a session forgets that a size changes the view",
-             [edit("src/session/session.cpp", "hidden_back_share_.reset();\n    settings_ =", "settings_ =")],
+             [edit("src/session/session.cpp", "hidden_back_share_.reset();\n    settings_ =", "{}\n    settings_ =")],
              ["unit/session"]),
     Mutation("the filter's table is not told from another's", [edit("src/render/filter_table.h", "filter != held_",
                                                                     "!held_")],
