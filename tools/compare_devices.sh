@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders scenes on the CPU and in CUDA and compares the hashes of the pictures: tools/compare_devices.sh PERTEV SCENES
+# Renders scenes on the CPU and in CUDA and compares the hashes of the pictures and of their layers: tools/compare_devices.sh PERTEV SCENES
 # [SPP ...]. SCENES is a folder laid out as docs/scenes.md says. Then frames of moving pictures, reconstructed. Exits 1 when a
 # picture differs.
 set -uo pipefail
@@ -8,17 +8,19 @@ shift 2
 counts=("${@:-4}")
 status=0
 
-hash_of() { # device, spp, scene and its flags
+hash_of() { # device, spp, scene and its flags; of the picture, and of the layers where there are some
     local device=$1 spp=$2
     shift 2
     "$pertev" render "$@" --device "$device" --spp "$spp" --size 640x360 -o "$work/$device.exr" --json 2>&1 |
-        sed -n 's/.*"event":"done".*"hash":"\([0-9a-f]*\)".*/\1/p'
+        sed -n 's/.*"event":"done".*"hash":"\([0-9a-f]*\)","layers_hash":\([^,]*\),.*/\1 \2/p' |
+        sed 's/ null$//; s/"//g; s/ /+/'
 }
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 here=$(cd "$(dirname "$0")" && pwd)
 python3 "$here/make_moving_box.py" "$work/box.gltf"
+python3 "$here/make_moving_box.py" "$work/mirror_box.gltf" --mirror
 for spp in "${counts[@]}"; do
     while read -r name arguments; do
         # shellcheck disable=SC2086 # the arguments are words
@@ -39,7 +41,7 @@ indirect $scenes/sibenik/sibenik.obj --integrator indirect
 irradiance $scenes/sibenik/sibenik.obj --false-color illuminance
 cast $scenes/sibenik/sibenik.obj --integrator cast
 whitted $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator whitted --ambient 0.5
-whitted-lamps $scenes/sibenik/sibenik.obj --integrator whitted
+whitted-lamps $scenes/cornell-box-mcguire/CornellBox-Mirror.obj --integrator whitted --environment 0.3,0.4,0.5
 distributed $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator distributed
 distributed-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator distributed --aperture 0.05
 hybrid $scenes/crytek-sponza/sponza.obj --integrator hybrid
@@ -69,7 +71,7 @@ blurred-camera $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequence
 blurred-depth $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1 --aov depth
 blurred-direct $scenes/sibenik/sibenik.obj --integrator direct --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
 blurred-indirect $scenes/sibenik/sibenik.obj --integrator indirect --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
-blurred-whitted $scenes/sibenik/sibenik.obj --integrator whitted --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
+blurred-whitted $work/mirror_box.gltf --time 1 --shutter 0.2 --integrator whitted --ambient 0.5
 blurred-cast $scenes/sibenik/sibenik.obj --integrator cast --camera-path $here/../bench/sequences/sibenik_turn.json --time 0.5 --shutter 0.1
 LIST
 done

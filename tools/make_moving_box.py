@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Writes the Cornell box with a lamp and a block that move, for `pertev bench sequence`: make_moving_box.py OUT.gltf
+[--mirror]
 
 The box is scenes/cornell-box/cornell-box.gltf. In 2.5 s the lamp sinks below the ceiling and swings from side to side,
-the short block slides away from its wall and back.
+the short block slides away from its wall and back. With --mirror the tall block is a mirror.
 """
 
 import base64
@@ -16,7 +17,7 @@ BOX = pathlib.Path(__file__).resolve().parent.parent / "scenes/cornell-box/corne
 SECONDS, STEPS = 2.5, 25
 
 
-def main(out):
+def main(out, has_mirror):
     box = json.loads(BOX.read_text())
     names = [node.get("name") for node in box["nodes"]]
     times = [SECONDS * k / STEPS for k in range(STEPS + 1)]
@@ -43,12 +44,18 @@ def main(out):
         "samplers": [{"input": clock, "output": output} for _, output in moves],
         "channels": [{"sampler": k, "target": {"node": node, "path": "translation"}}
                      for k, (node, _) in enumerate(moves)]}]
+    if has_mirror:
+        box["materials"].append({"name": "mirror", "doubleSided": True, "pbrMetallicRoughness": {
+            "baseColorFactor": [0.9, 0.9, 0.9, 1], "metallicFactor": 1, "roughnessFactor": 0}})
+        tall = box["nodes"][names.index("tall block")]["mesh"]
+        box["meshes"][tall]["primitives"][0]["material"] = len(box["materials"]) - 1
     box["buffers"].append({"byteLength": len(data),
                            "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()})
     pathlib.Path(out).write_text(json.dumps(box) + "\n")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    arguments = [argument for argument in sys.argv[1:] if argument != "--mirror"]
+    if len(arguments) != 1:
         sys.exit(__doc__)
-    main(sys.argv[1])
+    main(arguments[0], "--mirror" in sys.argv)

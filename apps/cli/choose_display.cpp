@@ -17,6 +17,7 @@ Display choose_shown_display(const RenderFlags& flags, Session& session, Reporte
     const std::string_view name = name_of(tone_map);
     const std::optional<PhysicalExposure> physical = physical_exposure(flags);
     const bool is_given = physical || (!flags.exposure.empty() && flags.exposure != "auto");
+    if (!is_given) reporter.set_work("metering");
     const float stops = physical   ? exposure_stops(*physical, efficacy_of(flags.scene))
                         : is_given ? parse_number("--exposure", flags.exposure)
                                    : session.meter(tone_map);

@@ -17,12 +17,16 @@ namespace {
 
 constexpr uint32_t kMostFrames = 1'000'000'000;
 
-/// The number that `text` is from its first character to its last, of a size up to a million.
+constexpr double kMostShutter = 1e6; // seconds, either way
+
+/// The number that `text` is from its first character to its last; infinite where it is too large for one.
 std::optional<double> seconds_in(std::string_view text) {
     double value = 0;
     const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc() || end != text.data() + text.size() || !(std::fabs(value) <= 1e6)) return std::nullopt;
-    return value;
+    if (end != text.data() + text.size() || fault == std::errc::invalid_argument || std::isnan(value)) {
+        return std::nullopt;
+    }
+    return fault == std::errc() ? value : HUGE_VAL;
 }
 
 } // namespace
@@ -81,7 +85,11 @@ std::optional<Shutter> shutter(const RenderFlags& flags) {
     const std::size_t comma = flags.shutter.find(',');
     const std::optional<double> close = seconds_in(std::string_view(flags.shutter).substr(comma + 1)); // npos + 1: 0
     const auto open = comma == std::string::npos ? 0.0 : seconds_in(std::string_view(flags.shutter).substr(0, comma));
-    if (open && close) return Shutter{*open, *close};
+    if (open && close) {
+        refuse(!(std::fabs(*open) <= kMostShutter && std::fabs(*close) <= kMostShutter),
+               fmt::format("--shutter {}: OPEN and CLOSE are {:g} s at most, either way", flags.shutter, kMostShutter));
+        return Shutter{*open, *close};
+    }
     throw Error(ErrorCode::BadInput,
                 fmt::format("--shutter {}: expected SECONDS, or OPEN,CLOSE, both counted from the picture's time",
                             flags.shutter));

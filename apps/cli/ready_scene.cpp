@@ -63,7 +63,6 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     RenderSettings& settings = ready->settings;
     settings = render_settings(flags, scene);
     settings.tracers = tracers;
-    if (!flags.shutter.empty()) check_shutter(settings);
     check_light(settings, scene, messages);
     ready->camera.emplace(camera_choice(flags.scene), path, scene, aspect_of(settings.width, settings.height),
                           messages);

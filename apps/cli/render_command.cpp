@@ -117,7 +117,7 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureR
     reporter.set_work("writing");
     const WrittenPicture written = write_picture(flags.outputs, record, result);
     const std::string failures = report_files(written, reporter);
-    report_result(result, written.hash, queue, watch.seconds(), cut_short, reporter);
+    report_result(result, written, queue, watch.seconds(), cut_short, reporter);
     if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
     if (flags.strict && result.invalid_samples > 0) throw not_finite(result.invalid_samples);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
@@ -136,9 +136,10 @@ int render(const RenderFlags& flags) {
     report_start(flags, ready->scene(), ready->prepared(), settings, queue, ready->load_s, reporter);
     PictureRecord record = picture_record(flags.scene, *ready);
     report_camera(record.camera, reporter);
-    reporter.set_work("metering");
+    reporter.set_work("handing the scene to the device");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
     record.display = choose_display(flags, *session, reporter);
+    reporter.set_work("rendering");
     if (flags.real_time) record.frame = reconstructed_frame(flags, ready->sequence);
     if (frame_sequence(flags)) {
         const FrameCamera camera = {*ready->camera, ready->sequence};

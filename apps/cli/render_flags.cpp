@@ -155,12 +155,21 @@ RenderSettings light_settings(const RenderFlags& flags) {
     return settings;
 }
 
+/// Throws Error(BadInput) that names what is missing.
+void refuse_half_exposure(const RenderFlags& flags) {
+    if (flags.f_number > 0 && flags.shutter_s > 0) return;
+    const char* missing = flags.f_number > 0    ? "--shutter-time SECONDS, how long the shutter is open"
+                          : flags.shutter_s > 0 ? "--f-number N, of the lens"
+                                                : "--f-number N, of the lens, and --shutter-time SECONDS";
+    const char* given = flags.f_number > 0 ? "--f-number" : flags.shutter_s > 0 ? "--shutter-time" : "--iso";
+    throw Error(ErrorCode::BadInput, fmt::format("{}: a physical exposure takes {}, too", given, missing));
+}
+
 } // namespace
 
 std::optional<PhysicalExposure> physical_exposure(const RenderFlags& flags) {
     if (!(flags.iso > 0 || flags.f_number > 0 || flags.shutter_s > 0)) return std::nullopt;
-    refuse(!(flags.f_number > 0 && flags.shutter_s > 0),
-           "--iso, --f-number, --shutter-time: an exposure takes --f-number and --shutter-time; --iso is 100 without");
+    refuse_half_exposure(flags);
     refuse(!flags.exposure.empty(), "--exposure: --f-number and --shutter-time say it; leave out one of them");
     PhysicalExposure exposure;
     if (flags.iso > 0) exposure.iso = static_cast<double>(flags.iso);
@@ -192,7 +201,8 @@ void add_light_path_flags(CLI::App& verb, RenderFlags& flags, const char* group)
         ->check(one_of(integrator_names()))
         ->capture_default_str()
         ->group(group);
-    verb.add_option("--max-depth", flags.max_depth, "most scatterings of a path: 0 emission, 1 direct light")
+    verb.add_option("--max-depth", flags.max_depth,
+                    "most scatterings of a path, and levels of a tree of rays:\n0 emission, 1 direct light")
         ->type_name("N")
         ->check(whole_between(0, kMaxPathDepth - 1))
         ->capture_default_str()
@@ -352,7 +362,11 @@ void check_shown_picture_flags(const RenderFlags& flags) {
     }
     check_display_flags(flags);
     if (!flags.size.empty()) parse_size("--size", flags.size);
-    light_settings(flags);
+    const RenderSettings settings = light_settings(flags);
+    if (!flags.shutter.empty()) check_shutter(settings);
+    Camera asked; // as far as flags say it
+    asked.aperture_radius = std::max(flags.scene.aperture_m, 0.0f);
+    check_camera(settings, asked);
     check_scene_options(flags.scene);
     check_camera_path(flags);
 }

@@ -56,7 +56,7 @@ Error not_finite(uint64_t invalid_samples) {
                  fmt::format("--strict: {} not finite; the picture is written", counted(invalid_samples, "sample")));
 }
 
-void report_result(const RenderResult& result, const std::string& hash, const Queue& queue, double total_seconds,
+void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue, double total_seconds,
                    bool interrupted, Reporter& reporter) {
     const double samples = static_cast<double>(result.picture.width) * result.picture.height * result.samples;
     const double samples_per_second = samples / result.render_seconds;
@@ -69,13 +69,14 @@ void report_result(const RenderResult& result, const std::string& hash, const Qu
         result.samples, result.render_seconds, total_seconds, frame_seconds, 1 / frame_seconds,
         samples_per_second * 1e-6, rays_per_second * 1e-6, mebibytes(host_bytes),
         queue.is_cuda() ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
-        counted(result.invalid_samples, "invalid sample"), hash,
+        counted(result.invalid_samples, "invalid sample"), written.hash,
         result.denoised ? " (of its samples; the files show it denoised)" : ""));
     reporter.event(fmt::format(
-        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","device":{},"interrupted":{}}})",
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","layers_hash":{},"device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, result.samples, json_number(frame_seconds),
         json_number(samples_per_second), json_number(rays_per_second), host_bytes, result.device_peak_bytes,
-        result.invalid_samples, hash, json_string(queue.device_name()), interrupted));
+        result.invalid_samples, written.hash, written.layers_hash.empty() ? "null" : json_string(written.layers_hash),
+        json_string(queue.device_name()), interrupted));
 }
 
 } // namespace pertev

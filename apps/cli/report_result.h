@@ -24,9 +24,9 @@ std::string report_files(const WrittenPicture& written, Reporter& reporter);
 /// What --strict ends with where samples are not finite.
 Error not_finite(uint64_t invalid_samples);
 
-/// Says time, rates, memory, invalid samples and hash. `total_seconds` since the scene began to load; `queue`: that
+/// Says time, rates, memory, invalid samples and hashes. `total_seconds` since the scene began to load; `queue`: that
 /// it was rendered on; `interrupted`: before all samples were done.
-void report_result(const RenderResult& result, const std::string& hash, const Queue& queue, double total_seconds,
+void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue, double total_seconds,
                    bool interrupted, Reporter& reporter);
 
 } // namespace pertev

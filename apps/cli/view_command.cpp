@@ -185,7 +185,7 @@ int view(const ViewFlags& flags) {
     check_jpeg_size("--size", ready->settings.width, ready->settings.height); // that is how pictures are sent
     reporter.say_messages();
     listen_for_interrupt();
-    reporter.set_work("metering");
+    reporter.set_work("handing the scene to the device");
     const PictureRecord record = picture_record(flags.render.scene, *ready);
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);

@@ -42,11 +42,19 @@ std::size_t group_memory_bytes(const std::filesystem::path& groups, const std::f
     return least;
 }
 
-std::size_t machine_memory_bytes() {
+namespace {
+
+std::size_t of_whole_machine() {
     const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGESIZE);
-    const std::size_t all =
-        pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
-    return std::min(all, group_memory_bytes("/proc/self/cgroup", "/sys/fs/cgroup"));
+    return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
 }
+
+std::size_t of_group() { return group_memory_bytes("/proc/self/cgroup", "/sys/fs/cgroup"); }
+
+} // namespace
+
+std::size_t machine_memory_bytes() { return std::min(of_whole_machine(), of_group()); }
+
+bool is_memory_of_group() { return of_group() < of_whole_machine(); }
 
 } // namespace pertev

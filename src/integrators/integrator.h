@@ -52,6 +52,16 @@ public:
     /// of the picture, the settings and its number alone, so work may be split any way. Throws Error(DeviceFault).
     virtual void render(uint32_t first, uint32_t count, const FilmView& film) = 0;
 
+    /// As render(), but where that takes long for a few samples it asks `goes_on` on the caller's thread every tenth of
+    /// a second or so, and ends once that is false. Returns how many of the samples, from the first on, are in the
+    /// film, whole; nothing is there of the others. Throws what render() and `goes_on` do.
+    virtual uint32_t render_while(uint32_t first, uint32_t count, const FilmView& film,
+                                  const std::function<bool()>& goes_on) {
+        static_cast<void>(goes_on); // who asks for few samples waits for them
+        render(first, count, film);
+        return count;
+    }
+
     /// Where it can, render() returns at once when `*flag` is true, and the film is then to be thrown away. Null:
     /// never.
     virtual void abandon_when(const std::atomic<bool>*) {}

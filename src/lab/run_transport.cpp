@@ -175,7 +175,7 @@ private:
             seconds = now.seconds;
             const double share = (static_cast<double>(now.samples_done) / samples + half) / 2;
             const double all_s = reference.seconds + seconds;
-            progress(doing, share, all_s / share - all_s);
+            progress(doing, share, share > 0 ? all_s / share - all_s : 0);
             return true;
         });
         reference.seconds += seconds;

@@ -105,8 +105,8 @@ std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText
         for (uint32_t i = 0; i < scene.materials.size(); ++i) {
             all.push_back({scene.materials[i].name});
             if (!matches_name(map.material, scene.materials[i].name)) continue;
+            if (!heights) heights = read_heights(map, messages); // first: a file that is missing is missing anywhere
             check_coordinates(map, scene, i);
-            if (!heights) heights = read_heights(map, messages);
             of_material[i] = {i, *heights, map.scale, map.middle, map.text};
         }
         if (!heights) refuse(map, "no material of the scene is called so; " + some_names(all));

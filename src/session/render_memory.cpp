@@ -5,30 +5,72 @@
 #include "base/byte_units.h"
 #include "base/error.h"
 #include "base/machine_memory.h"
+#include "base/message_text.h"
 
 namespace pertev {
+namespace {
 
-std::size_t memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked) {
-    if (asked) return *asked;
-    if (queue.is_cuda()) return SIZE_MAX;
+/// The finished picture and its layers.
+std::size_t result_bytes(const RenderSettings& settings) {
     const std::size_t channels = film_channel_count(settings.aovs) + std::size_t(3) * light_layers_of(settings);
-    const std::size_t result = std::size_t(settings.width) * settings.height * channels * sizeof(float);
-    const std::size_t all = machine_memory_bytes();
-    return all > result ? all - result : 0;
+    return std::size_t(settings.width) * settings.height * channels * sizeof(float);
 }
 
-void check_render_memory(std::size_t bytes, const RenderSettings& settings, std::size_t limit) {
-    if (bytes <= limit) return;
+/// In MiB, with as many digits as tell it from 0 and from `other`.
+std::string amount(std::size_t bytes, std::size_t other = 0) {
+    std::string text;
+    for (int digits = 1; digits <= 7; ++digits) { // 2^-20 MiB is a byte
+        const auto write = [&](std::size_t b) { return fmt::format("{:.{}f}", mebibytes(b), digits); };
+        text = write(bytes);
+        if (bytes == other || (text != write(other) && text != write(0))) break;
+    }
+    return text + " MiB";
+}
+
+std::string limit_text(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
+    if (limit.is_asked) return fmt::format("--max-memory allows {}", amount(limit.bytes, bytes));
+    return fmt::format("{} has {}, and the finished picture takes {}",
+                       is_memory_of_group() ? "the container or service that this runs in" : "this machine",
+                       amount(machine_memory_bytes(), bytes), amount(result_bytes(settings)));
+}
+
+/// What weighs, and the flags that make it less.
+std::string advice(const RenderSettings& settings, bool is_cuda) {
     const uint32_t layers = light_layers_of(settings);
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layers);
-    throw Error(
-        ErrorCode::OutOfMemory,
-        fmt::format("the render takes {:.1f} MiB of the device's memory; {:.1f} MiB are what --max-memory allows, or "
-                    "without it what this machine has beside the finished picture. {}x{} pixels{} take {:.1f} MiB in "
-                    "a film: {} smaller --size{} takes less",
-                    mebibytes(bytes), mebibytes(limit), settings.width, settings.height,
-                    layers > 0 ? fmt::format(" and {} layers of --lpe", layers) : "", mebibytes(film),
-                    layers > 0 ? "fewer of them or a" : "a", settings.aovs != 0 ? ", or fewer --aov," : ""));
+    const std::size_t own = predicted_bytes(settings, pixels, settings.samples, is_cuda, !is_cuda, false);
+    if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
+        return fmt::format("Photons take {} (--photons {}, --max-depth {}): a smaller one of either takes less",
+                           amount(own), settings.photon_map.photons, settings.path.max_depth);
+    }
+    if (settings.integrator == IntegratorKind::IrradianceCache && own > film) {
+        const bool has_walks = is_cuda || settings.body == PathBody::Wavefront;
+        return fmt::format("Records of {}x{} pixels{} take {}: a smaller --size{} takes less", settings.width,
+                           settings.height, has_walks ? " and their rays" : "", amount(own),
+                           has_walks ? ", or fewer --hemisphere-rays," : "");
+    }
+    return fmt::format("{}x{} pixels{} take {} in a film: {} smaller --size{} takes less", settings.width,
+                       settings.height, layers > 0 ? " and " + counted(layers, "layer") + " of --lpe" : "",
+                       amount(film), layers > 0 ? "fewer of them or a" : "a",
+                       settings.aovs != 0 ? ", or fewer --aov," : "");
+}
+
+} // namespace
+
+MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked) {
+    if (asked) return {*asked, true, queue.is_cuda()};
+    if (queue.is_cuda()) return {SIZE_MAX, false, true};
+    const std::size_t all = machine_memory_bytes(), result = result_bytes(settings);
+    return {all > result ? all - result : 0, false, false};
+}
+
+void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
+    if (bytes <= limit.bytes) return;
+    throw Error(ErrorCode::OutOfMemory,
+                fmt::format("the render takes {} of {}memory; {}. {}", amount(bytes, limit.bytes),
+                            limit.is_cuda ? "the GPU's " : "", limit_text(bytes, settings, limit),
+                            advice(settings, limit.is_cuda)));
 }
 
 } // namespace pertev

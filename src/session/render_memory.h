@@ -10,11 +10,19 @@
 
 namespace pertev {
 
-/// What a render may take of the queue's device: `asked`, or without it, on the CPU, what the machine has but for the
-/// finished picture and its layers, and on a GPU whatever it gives when it is asked. Bytes.
-std::size_t memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked);
+/// What a render may take of a device.
+struct MemoryLimit {
+    std::size_t bytes;
+    bool is_asked; // by --max-memory; else it is what the machine has beside the finished picture
+    bool is_cuda;  // the device's own memory; else the machine's
+};
 
-/// Throws Error(OutOfMemory) where a render takes more: `bytes`, as predicted_bytes says.
-void check_render_memory(std::size_t bytes, const RenderSettings& settings, std::size_t limit);
+/// Of the queue's device: `asked`, or without it, on the CPU, what the machine has but for the finished picture and its
+/// layers, and on a GPU whatever it gives when it is asked.
+MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked);
+
+/// Throws Error(OutOfMemory) where a render takes more: `bytes`, as predicted_bytes says. It says which limit that is,
+/// and which flags would take less.
+void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit);
 
 } // namespace pertev

@@ -17,13 +17,17 @@
 namespace pertev {
 namespace {
 
+constexpr uint32_t kFirstAtOnce = 16; // samples of a first pass
+
 /// Samples of the next pass: aims at a third of a second, so that progress moves and Ctrl-C is heard, at no cost that
-/// shows; all that go at once, where there is no limit of time. Never past the time that is left. `done` samples took
-/// `seconds`, `left` are to come.
+/// shows. Where samples are cheaper together and there is no limit of time, as many as are done already go at once, as
+/// far as they do: progress is soon seen, and what a pass costs by itself is paid a few times. Never past the time that
+/// is left. `done` samples took `seconds`, `left` are to come.
 uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
     if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
-    const uint32_t at_once = settings.time_limit_s > 0 ? 1 : samples_at_once(settings, pixels);
+    const uint32_t at_once =
+        settings.time_limit_s > 0 ? 1 : std::min(samples_at_once(settings, pixels), std::max(done, kFirstAtOnce));
     if (done == 0) return std::min(left, at_once);
     const double a_sample = std::max(seconds / done, 1e-9);
     double budget = 1.0 / 3;
@@ -290,25 +294,30 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     if (!integrator.make_ready(goes_on)) return 0;
     const double made_seconds = watch.seconds();
     for (uint32_t done = 0; done < count;) {
+        const auto now = [&] {
+            return RenderProgress{first + done, first + count, watch.seconds(), integrator.rays(), 1, made_seconds};
+        };
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
+        uint32_t added = pass;
         if (denoises) {
             render_signals(integrator, first + done, pass);
         } else {
-            integrator.render(first + done, pass, film.view());
+            added = integrator.render_while(first + done, pass, film.view(),
+                                            [&] { return !keep_going || keep_going(now()); });
         }
         if (abandon_ != nullptr && *abandon_) { // parts of a sample may be missing
             begin_film();
             return 0;
         }
-        done += pass;
+        if (added == 0) break;
+        done += added;
         const double seconds = watch.seconds();
         history_.samples = first + done;
         stats_.rays = rays_before + integrator.rays();
         stats_.kind_seconds = tracer_->seconds();
         stats_.render_seconds = seconds_before + seconds;
-        if (first == 0 && done == pass) stats_.first_pixel_seconds = since_call.seconds();
-        const RenderProgress now = {first + done, first + count, seconds, integrator.rays(), 1, made_seconds};
-        if (keep_going && !keep_going(now)) break;
+        if (first == 0 && done == added) stats_.first_pixel_seconds = since_call.seconds();
+        if (added < pass || (keep_going && !keep_going(now()))) break;
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
     }
     return history_.samples - first;

@@ -69,12 +69,13 @@ public:
 
     /// Adds `samples` samples to each pixel, or fewer: it ends where the time of the settings is over, where
     /// `keep_going`, called after each pass, returns false, and at kMaxSamplesPerPixel in the film; always at a whole
-    /// sample of all pixels. Returns how many were added: at least one where one was asked for and fits, but none where
-    /// it was abandoned. Where an integrator makes something before samples (Integrator::make_ready), `keep_going` is
-    /// called during that too, with the samples that the film has and the share that is made; where that, the time or,
-    /// on the CPU, the flag of abandon_when ends it, nothing is added and the film stays as it is. Throws
-    /// Error(OutOfMemory, DeviceFault), as all that take samples what check_camera does, and what `keep_going` throws;
-    /// the film then holds all passes done before.
+    /// sample of all pixels. Where a sample takes long (Integrator::render_while) `keep_going` is called during passes
+    /// too, with the samples that the film has by then. Returns how many were added: at least one where one was asked
+    /// for and fits, but none where `keep_going` ended the first pass, or it was abandoned. Where an integrator makes
+    /// something before samples (Integrator::make_ready), `keep_going` is called during that too, with the samples that
+    /// the film has and the share that is made; where that, the time or, on the CPU, the flag of abandon_when ends it,
+    /// nothing is added and the film stays as it is. Throws Error(OutOfMemory, DeviceFault), as all that take samples
+    /// what check_camera does, and what `keep_going` throws; the film then holds all passes done before.
     uint32_t render(uint32_t samples, const std::function<bool(const RenderProgress&)>& keep_going = {});
 
     /// Of the present picture; without samples, all zero.

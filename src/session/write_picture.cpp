@@ -50,6 +50,24 @@ std::vector<ExrLayer> take_layers(RenderResult& result) {
     return layers;
 }
 
+/// Hash of the layers, one after the other: of name, channels' names and the bits of all values. Empty where there are
+/// none.
+std::string hash_of_layers(const std::vector<ExrLayer>& layers) {
+    if (layers.empty()) return {};
+    Hasher hasher;
+    const auto add_name = [&](const std::string& name) {
+        hasher.add_value(static_cast<uint64_t>(name.size()));
+        hasher.add_values(std::span<const char>(name));
+    };
+    for (const ExrLayer& layer : layers) {
+        add_name(layer.name);
+        hasher.add_value(static_cast<uint64_t>(layer.channels.size()));
+        for (const std::string& channel : layer.channels) add_name(channel);
+        std::visit([&](const auto& values) { hasher.add_values(std::span(values)); }, layer.values);
+    }
+    return hasher.result().hex();
+}
+
 ExrMetadata metadata_of(const PictureRecord& record, const RenderResult& result, const std::string& hash) {
     ExrMetadata metadata = picture_metadata(record, result, hash);
     const ExrMetadata names = id_metadata(record.scene, result.ids);
@@ -72,9 +90,9 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
 }
 
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
-    WrittenPicture written = {picture_hash(result.picture).hex(), {}};
     const Display display = record.display.value_or(Display{});
     const std::vector<ExrLayer> layers = take_layers(result);
+    WrittenPicture written = {picture_hash(result.picture).hex(), hash_of_layers(layers), {}};
     const WriteImageOptions options = {.tone_map = display.tone_map,
                                        .exposure_stops = display.exposure_stops,
                                        .transparent = record.settings.transparent,

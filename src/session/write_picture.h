@@ -17,7 +17,8 @@ struct WrittenFile {
 };
 
 struct WrittenPicture {
-    std::string hash; // of the film's picture (image/picture_hash.h)
+    std::string hash;        // of the film's picture (image/picture_hash.h)
+    std::string layers_hash; // of all else that an EXR holds of it (hash_of_layers); empty: nothing
     std::vector<WrittenFile> files;
 };
 

@@ -229,13 +229,13 @@ TEST_CASE("what layers take is said beforehand, by either body") {
         const std::size_t layers = pixels * layers_asked->count() * 3 * sizeof(FixedSum);
         const std::size_t queues = body == PathBody::Wavefront ? paths * 48 : 0;
         CHECK(said - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
-        check_render_memory(said, settings, said);
-        const auto error = test::thrown_error([&] { check_render_memory(said, settings, said - 1); });
+        check_render_memory(said, settings, {said, true, false});
+        const auto error = test::thrown_error([&] { check_render_memory(said, settings, {said - 1, true, false}); });
         REQUIRE((error && error->code() == ErrorCode::OutOfMemory));
         CHECK(std::string(error->what()).find(fmt::format(" and {} layers of --lpe take ", layers_asked->count())) !=
               std::string::npos);
-        CHECK(memory_to_render_in(queue, settings, said) == said);
-        const std::size_t of_machine = memory_to_render_in(queue, settings, {});
+        CHECK(memory_to_render_in(queue, settings, said).bytes == said);
+        const std::size_t of_machine = memory_to_render_in(queue, settings, {}).bytes;
         const std::size_t channels = 4 + 3 + 1 + 3 * layers_asked->count(); // with albedo and depth
         CHECK(of_machine == machine_memory_bytes() - pixels * channels * sizeof(float));
     }

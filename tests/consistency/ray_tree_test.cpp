@@ -78,14 +78,17 @@ TEST_CASE("a session goes from one integrator to another, and each picture is th
 }
 
 TEST_CASE("a picture of trees that is abandoned leaves no sample behind, and the next one is whole") {
-    Queue queue = Queue::make_cpu();
+    Queue queue = test::queue_asked_for();
     Messages messages;
     const Scene scene = tree_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = tree_settings(IntegratorKind::Distributed);
     settings.pass_samples = 1;
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
-    test::check_goes_on(session, queue, scene, settings, test::mixed_scene_camera());
+    for (const IntegratorKind integrator : kTrees) {
+        settings.integrator = integrator;
+        test::check_goes_on(session, queue, scene, settings, test::mixed_scene_camera());
+    }
 }
 
 TEST_CASE("memory of trees is said beforehand") {

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/error.h"
 #include "image/picture_hash.h"
 #include "session/render_picture.h"
 #include "tests/support/direction_integrator.h"
@@ -234,8 +235,9 @@ TEST_CASE("a picture whose time ran out again and again is that of one render, w
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     for (const IntegratorKind integrator :
-         {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Distributed, IntegratorKind::Raster,
-          IntegratorKind::Reyes, IntegratorKind::Light, IntegratorKind::Bidirectional}) {
+         {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Cast, IntegratorKind::Whitted,
+          IntegratorKind::Distributed, IntegratorKind::Raster, IntegratorKind::Reyes, IntegratorKind::Light,
+          IntegratorKind::Bidirectional}) {
         CAPTURE(static_cast<int>(integrator));
         RenderSettings settings;
         settings.width = 24, settings.height = 16;
@@ -246,5 +248,57 @@ TEST_CASE("a picture whose time ran out again and again is that of one render, w
         Session broken_off(queue, prepared, test::mixed_scene_camera(), settings);
         for (int i = 0; i < 3; ++i) CHECK(broken_off.render(100) == 1);
         CHECK(picture_hash(broken_off.picture()) == picture_hash(whole.picture()));
+    }
+}
+
+namespace {
+
+void check_early_end(Queue& queue, const PreparedScene& prepared, RenderSettings settings) {
+    settings.pass_samples = 2;
+    Session whole(queue, prepared, test::mixed_scene_camera(), settings);
+    whole.render(9);
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    int calls = 0;
+    const uint32_t added = session.render(9, [&](const RenderProgress& now) {
+        ++calls;
+        CHECK(now.samples_done == 2 * static_cast<uint32_t>(calls));
+        CHECK(now.samples == 9);
+        CHECK(now.rays.camera == uint64_t(24) * 16 * now.samples_done);
+        return calls < 2;
+    });
+    CHECK(calls == 2);
+    CHECK(added == 4);
+    CHECK(session.history().samples == 4);
+    Session four(queue, prepared, test::mixed_scene_camera(), settings);
+    four.render(4);
+    CHECK(picture_hash(session.picture()) == picture_hash(four.picture()));
+    // What the callback throws leaves whole samples too.
+    CHECK_THROWS_AS(session.render(4, [](const RenderProgress&) -> bool { throw Error(ErrorCode::Interrupted, ""); }),
+                    Error);
+    CHECK(session.history().samples == 6);
+    session.render(3, [](const RenderProgress& now) {
+        CHECK(now.samples == 9);
+        return true;
+    });
+    CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
+    CHECK(session.stats().rays.total() == whole.stats().rays.total());
+}
+
+} // namespace
+
+TEST_CASE("a render ends at a whole sample when it is told to, and goes on from there") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings;
+    settings.width = 24, settings.height = 16;
+    settings.body = PathBody::Wavefront;
+    for (const IntegratorKind integrator :
+         {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Cast, IntegratorKind::Whitted,
+          IntegratorKind::Distributed, IntegratorKind::Light, IntegratorKind::Bidirectional}) {
+        CAPTURE(static_cast<int>(integrator));
+        settings.integrator = integrator;
+        check_early_end(queue, prepared, settings);
     }
 }

@@ -63,7 +63,7 @@ TEST_CASE("without a scattering all that is left is what the camera looks straig
 }
 
 TEST_CASE("a session goes to walks from the lights and back, ends early and goes on, and each picture is whole") {
-    Queue queue = Queue::make_cpu();
+    Queue queue = test::queue_asked_for();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What holds of every integrator's pictures, and what belongs to one of them alone."""
+"""What holds of every integrator's pictures, and what belongs to one of them alone.
+cli_integrators_test.py PERTEV [--device cuda]"""
 
 import base64
 import json
@@ -7,8 +8,9 @@ import signal
 import struct
 import subprocess
 import time
+import unittest
 
-from cli_run import PATIENCE_S, PROGRAM, CliTest, main, write
+from cli_run import DEVICE, PATIENCE_S, PROGRAM, CliTest, main, write
 
 INTEGRATORS = ["path", "direct", "indirect", "hybrid", "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional",
                "photon_map"]
@@ -16,7 +18,7 @@ VIEW = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"]  # of the lit triangle
 
 
 def lit_triangle():
-    """A glTF file of a triangle and a point light before it."""
+    """A glTF file of a triangle and a point light before it. Its texture coordinates are its places."""
     corners = base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
     light = {"KHR_lights_punctual": {"light": 0}}
     return json.dumps({
@@ -24,9 +26,11 @@ def lit_triangle():
         "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 5}]}},
         "nodes": [{"mesh": 0}, {"extensions": light, "translation": [0.2, 0.3, 0.5]}],
         "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + corners}],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]})
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteLength": 36, "byteStride": 12}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+                      {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+        "materials": [{"name": "skin"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}]})
 
 
 class Integrators(CliTest):
@@ -41,11 +45,9 @@ class Integrators(CliTest):
     def test_a_render_that_ctrl_c_ended_has_the_hash_of_one_of_as_many_samples(self):
         write(self.path("lit.gltf"), lit_triangle())
         for integrator in INTEGRATORS:
-            # All samples that Reyes has room for at once take seconds; where there is a limit they come one by one.
-            ended_by = ["--time-limit", "3600"] if integrator == "reyes" else []
             flags = ["--integrator", integrator, *VIEW, "--threads", "2"]
             program = subprocess.Popen([PROGRAM, "render", "lit.gltf", "-o", "ended.exr", "--size", "24x24", "--spp", "8388607",
-                                        "--device", "cpu", "--json", *ended_by, *flags], cwd=self.folder, env=self.environment,
+                                        "--device", DEVICE, "--json", *flags], cwd=self.folder, env=self.environment,
                                        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             self.addCleanup(program.kill)
             first = next(line for line in program.stdout if json.loads(line)["event"] == "progress")
@@ -58,7 +60,7 @@ class Integrators(CliTest):
             self.assertEqual(again["hash"], done["hash"], integrator)
 
     def test_what_ends_irradiance_caching_among_its_records_leaves_nothing_and_says_so(self):
-        long = ["render", "cornell-box", "-o", "x.exr", "--size", "320x240", "--spp", "4", "--device", "cpu", "--integrator",
+        long = ["render", "cornell-box", "-o", "x.exr", "--size", "320x240", "--spp", "4", "--device", DEVICE, "--integrator",
                 "irradiance_cache", "--accuracy", "0.02", "--hemisphere-rays", "4096"]  # hours of records
         for flags in [[], ["--json"]]:
             began = time.monotonic()
@@ -78,7 +80,7 @@ class Integrators(CliTest):
                 self.assertEqual(self.files(), [])
 
     def test_the_time_before_the_first_sample_of_irradiance_caching_has_a_share_and_an_end(self):
-        flags = ["render", "cornell-box", "-o", "x.exr", "--size", "96x96", "--spp", "2", "--device", "cpu", "--integrator",
+        flags = ["render", "cornell-box", "-o", "x.exr", "--size", "96x96", "--spp", "2", "--device", DEVICE, "--integrator",
                  "irradiance_cache", "--hemisphere-rays", "64"]
         told = self.succeed(*flags, "--json").events("progress")
         before = [event for event in told if event["step"] == "before_samples"]
@@ -95,6 +97,45 @@ class Integrators(CliTest):
         self.assertEqual([(event["samples"], event["share"], event["seconds_left"]) for event in told[-1:]], [(2, 1, 0)])
         self.assertRegex(self.stderr_on_a_terminal(flags),
                          r"\r\[=* *\] +\d+ %  irradiance_cache, before the first sample  [\d.]+ Mrays/s  \d+ s left\x1b\[K")
+
+    @unittest.skipIf(DEVICE != "cpu", "a GPU may have samples, or be at the limit of work, before the signal comes")
+    def test_reyes_hears_an_interrupt_while_it_dices(self):
+        self.render(output="heights.png", size="64x64")
+        write(self.path("lit.gltf"), lit_triangle())
+        fine = ["cornell-box", "--ambient", "1", "--shading-rate", "0.125"]  # minutes of micropolygons before a sample
+        folded = ["lit.gltf", *VIEW, "--displacement", "skin=heights.png,30"]
+        for scene, kind in [(fine, signal.SIGINT), (folded, signal.SIGTERM)]:
+            program = subprocess.Popen([PROGRAM, "render", *scene, "-o", "x.exr", "--integrator", "reyes", "--size", "1920x1080",
+                                        "--spp", "64", "--device", DEVICE, "--json"], cwd=self.folder, env=self.environment,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.addCleanup(program.kill)
+            while json.loads(program.stdout.readline())["event"] != "progress":
+                self.assertIsNone(program.poll())
+            program.send_signal(kind)
+            stdout, stderr = program.communicate(timeout=30)
+            last = json.loads(stdout.splitlines()[-1])
+            self.assertEqual((program.returncode, last["code"], stderr), (75, "interrupted", b""))
+            self.assertEqual(last["text"], "interrupted before there was anything to keep")
+            self.assertEqual(self.files(), ["heights.png", "lit.gltf"])
+
+    def test_heights_that_fold_a_surface_without_end_are_refused(self):
+        self.render(output="heights.png", size="64x64")
+        write(self.path("lit.gltf"), lit_triangle())
+        flags = ["render", "lit.gltf", *VIEW, "-o", "x.exr", "--integrator", "reyes", "--size", "32x24", "--spp", "1", "--device",
+                 DEVICE]
+        self.refuse(3, *flags, "--displacement", "skin=heights.png,1000", says=["--displacement", "smaller SCALE"], timeout=120)
+        self.succeed(*flags, "--displacement", "skin=heights.png,0.2")
+
+    def test_each_layer_has_a_part_in_the_hash_of_layers(self):
+        flags = ["--aov", "depth,albedo", "--lpe", "seen=LE", "--lpe", "others=L.+E"]
+        one = self.render(*flags, output="x.exr")
+        self.assertRegex(one["layers_hash"], "^[0-9a-f]{32}$")
+        self.assertEqual(self.render(*flags, "--threads", "1", output="x.exr")["layers_hash"], one["layers_hash"])
+        others = [flags[2:], flags[:-2], [*flags[:-1], "others=L..+E"], [*flags[:-1], "rest=L.+E"]]
+        hashes = {self.render(*other, output="x.exr")["layers_hash"] for other in others}
+        self.assertEqual(len(hashes | {one["layers_hash"]}), len(others) + 1)
+        bare = self.render(output="x.exr")
+        self.assertEqual((bare["layers_hash"], bare["hash"]), (None, one["hash"]))
 
     def test_where_light_is_evaluated_changes_the_hash(self):
         write(self.path("lit.gltf"), lit_triangle())

@@ -53,8 +53,10 @@ class Photometry(CliTest):
         refuse("--false-color", "illuminance", "--denoise", "svgf", says=["denoised"])
         refuse("--false-color", "illuminance", "--integrator", "whitted", "--ambient", "0", says=["not by whitted"])
         refuse("--false-color", "luminance", "--turntable", "2", output="x-#.png", says=["--false-color-range"])
-        refuse("--f-number", "4", says=["--shutter-time"])
-        refuse("--iso", "400", says=["--f-number"])
+        refuse("--f-number", "4", says=["--f-number: a physical exposure takes --shutter-time SECONDS, how"])
+        refuse("--f-number", "4", "--iso", "400", says=["--f-number: a physical exposure takes --shutter-time SECONDS, how"])
+        refuse("--shutter-time", "1", says=["--shutter-time: a physical exposure takes --f-number N, of the lens, too"])
+        refuse("--iso", "400", says=["--iso: a physical exposure takes --f-number N, of the lens, and --shutter-time SECONDS, too"])
         refuse("--f-number", "4", "--shutter-time", "1", "--exposure", "0", says=["--exposure"])
         refuse("--f-number", "4", "--shutter-time", "1", output="x.exr", says=["PNG and JPEG"])
 

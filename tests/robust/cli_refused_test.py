@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 
 from cli_run import FLOOR, SANITIZED, CliTest, gltf_with_cameras, limit_addresses, main, write
 
@@ -58,6 +59,7 @@ class WhatIsRefused(CliTest):
                 self.refuse(2, "render", "nowhere.obj", "-o", output, *flag.split(), says=[flag.split()[0] + ": "])
 
     def test_what_an_integrator_cannot_do_is_one_line(self):
+        self.render(output="heights.png")
         for flags, code, says in [
                 ("--integrator whitted --denoise svgf", 2, "--denoise svgf: reconstructs pictures of --integrator path and hybrid, not of whitted"),
                 ("--integrator distributed --max-depth 256", 3, "--max-depth 256: with --integrator distributed at most 255"),
@@ -65,6 +67,12 @@ class WhatIsRefused(CliTest):
                  "--denoise svgf: reconstructs pictures of --integrator path and hybrid, not of bidirectional"),
                 ("--integrator bidirectional --max-depth 256", 3, "--max-depth 256: with --integrator bidirectional at most 255"),
                 ("--integrator hybrid --aperture 0.1 --focus 1", 2, "--integrator hybrid: a rasteriser sees through a pinhole, and this camera has a lens"),
+                ("--integrator raster --aperture 0.1", 2, "--integrator raster: a rasteriser sees through a pinhole"),
+                ("--integrator hybrid --shutter 0.1", 2, "--shutter: rays have a time in --integrator path, direct, indirect, "
+                 "distributed, whitted and cast, not in hybrid"),
+                ("--time 0 --shutter 1e30", 2, "--shutter 1e30: OPEN and CLOSE are 1e+06 s at most, either way"),
+                ("--time 0 --shutter 1e999,2", 2, "--shutter 1e999,2: OPEN and CLOSE are 1e+06 s at most, either way"),
+                ("--time 0 --shutter 1,2,3", 2, "--shutter 1,2,3: expected SECONDS, or OPEN,CLOSE"),
                 ("--integrator raster --ambient 1 --aperture 0.1 --focus 1", 2, "--integrator raster: a rasteriser sees through a pinhole"),
                 ("--integrator photon_map --max-depth 65", 3, "--max-depth 65: with --integrator photon_map at most 64"),
                 ("--integrator photon_map --max-depth 64 --photons 16777216", 3, "--photons 16777216: with --max-depth 64 a pass may leave more"),
@@ -88,12 +96,31 @@ class WhatIsRefused(CliTest):
                 ("--displacement white=x.png,1", 2, "--displacement: --integrator reyes alone displaces surfaces, path does not"),
                 ("--integrator reyes --ambient 1 --displacement white=x.png", 2, "--displacement white=x.png: expected MATERIAL=FILE,SCALE or"),
                 ("--integrator reyes --ambient 1 --displacement nobody=x.png,1", 2, "no material of the scene is called so"),
-                ("--integrator reyes --ambient 1 --displacement *=x.png,1", 2, "without texture coordinates"),
+                ("--integrator reyes --ambient 1 --displacement white=nothere.png,1", 2, "nothere.png: cannot read: No such file"),
+                ("--integrator reyes --ambient 1 --displacement *=heights.png,1", 2, "without texture coordinates"),
                 ("--integrator cast", 2, "this scene has lamps alone: --integrator distributed or path knows all lights")]:
             with self.subTest(flags=flags):
                 outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])
                 self.assertEqual(len(outcome.stderr.strip().splitlines()), 1, outcome)
         self.refuse(2, "bench", "frames", "cornell-box", "--integrator", "distributed", "--restir", "di", says=["are for path"])
+
+    def test_a_render_for_which_there_is_no_room_says_which_limit_that_is_and_what_weighs(self):
+        with open("/proc/meminfo", encoding="ascii") as file:
+            machine_mib = int(re.search(r"MemTotal:\s*(\d+) kB", file.read()).group(1)) / 1024
+        self.assertLess(machine_mib, 1e6)
+        for flags, says, hides in [
+                ("--size 64x64 --max-memory 0.001", ["--max-memory allows 0.001 MiB", "a smaller --size takes less"], "GPU"),
+                ("--size 64x64 --max-memory 3 --integrator photon_map", ["allows 3.0 MiB", "--photons", "--max-depth"], "--size"),
+                ("--size 64x64 --max-memory 0.4 --integrator irradiance_cache", ["allows 0.4 MiB. Records of 64x64", "--size"], "film"),
+                ("--size 65536x16384 --aov depth,albedo,normal,position " + " ".join(f"--lpe l{i}=LD+E" for i in range(99)),
+                 [" has ", "and the finished picture takes", "99 layers of --lpe"], "--max-memory")]:
+            outcome = self.refuse(4, "render", "cornell-box", "-o", "x.exr", "--spp", "1", "--device", "cpu", *flags.split(),
+                                  says=["the render takes", *says])
+            last = outcome.stderr.strip().splitlines()[-1]
+            self.assertNotIn(hides, last)
+            if says[0] == " has ":
+                told = float(re.search(r"(?:this machine|runs in) has ([\d.]+) MiB", last).group(1))
+                self.assertLessEqual(told, machine_mib + 1)
 
     def test_a_flag_that_the_scene_makes_useless_is_a_warning(self):
         write(self.path("floor.obj"), FLOOR)

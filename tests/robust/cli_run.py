@@ -18,6 +18,8 @@ import zlib
 # Sanitized programs are slow and reserve terabytes of addresses.
 SANITIZED = "--sanitized" in sys.argv
 PROGRAM = os.path.abspath(next(argument for argument in sys.argv[1:] if not argument.startswith("-")))
+# The scripts that take `--device NAME` render on it (cli_integrators); the others on the CPU.
+DEVICE = sys.argv[sys.argv.index("--device") + 1] if "--device" in sys.argv[:-1] else "cpu"
 TONED = (".png", ".jpg", ".jpeg")
 UNMETERED = ["--exposure", "0"]  # finding an exposure takes thirty times as long as one of these small pictures
 
@@ -65,8 +67,9 @@ class CliTest(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.folder = os.path.join(scratch.name, "work")
         os.mkdir(self.folder)
-        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(scratch.name, "cache"), CUDA_VISIBLE_DEVICES="",
-                                TERM="xterm")
+        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(scratch.name, "cache"), TERM="xterm")
+        if DEVICE == "cpu":
+            self.environment["CUDA_VISIBLE_DEVICES"] = ""
 
     def path(self, name):
         return os.path.join(self.folder, name)
@@ -124,9 +127,9 @@ class CliTest(unittest.TestCase):
             time.sleep(0.01)
 
     def render(self, *arguments, scene="cornell-box", size="16x16", spp=1, output="picture.png"):
-        """A small picture on the CPU, exposed as it is unless `arguments` say how; gives the event that ends it."""
+        """A small picture on DEVICE, exposed as it is unless `arguments` say how; gives the event that ends it."""
         fixed = UNMETERED if output.lower().endswith(TONED) and "--exposure" not in arguments else []
-        outcome = self.succeed("render", scene, "-o", output, "--size", size, "--spp", spp, "--device", "cpu", "--json",
+        outcome = self.succeed("render", scene, "-o", output, "--size", size, "--spp", spp, "--device", DEVICE, "--json",
                                *fixed, *arguments)
         return outcome.events("done")[0]
 
@@ -256,6 +259,7 @@ def unpack_zip(packed):
 
 
 def main():
-    """Runs the tests of the calling file; the program's path and --sanitized are ours, the rest is unittest's."""
-    rest = [argument for argument in sys.argv[1:] if argument != "--sanitized" and os.path.abspath(argument) != PROGRAM]
+    """Runs the tests of the calling file; the program's path, --sanitized and --device are ours, the rest is unittest's."""
+    ours = {"--sanitized", "--device", *([DEVICE] if "--device" in sys.argv else [])}
+    rest = [argument for argument in sys.argv[1:] if argument not in ours and os.path.abspath(argument) != PROGRAM]
     unittest.main(argv=[sys.argv[0], *rest])

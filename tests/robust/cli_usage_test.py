@@ -125,9 +125,9 @@ class Strictness(CliTest):
 
 
 class SignsOfLife(CliTest):
-    def start(self, *flags, **options):
+    def start(self, *flags, size="32x32", **options):
         program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "x.png", "--device", "cpu", "--threads", "1",
-                                    "--size", "32x32", "--spp", "8388607", *flags], cwd=self.folder,
+                                    "--size", size, "--spp", "8388607", *flags], cwd=self.folder,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    **{"stderr": subprocess.PIPE, "env": self.environment, **options})
         self.addCleanup(program.kill)
@@ -146,12 +146,17 @@ class SignsOfLife(CliTest):
         to_a_file = self.start(*enough)
         quiet = self.start(*enough, "-q")
         dumb, listener, said = self.on_a_terminal(*enough, TERM="dumb")
+        in_a_sample = self.start("--exposure", "0", size="4000x2250")
         # They sleep for most of that time, which is told by the clock: others have use for the processor.
         time.sleep(1)
         for signalled, seconds in [(signal.SIGSTOP, 8), (signal.SIGCONT, 0)]:
-            for program in [to_a_file, quiet, dumb]:
+            for program in [to_a_file, quiet, dumb, in_a_sample]:
                 program.send_signal(signalled)
             time.sleep(seconds)
+        beat = next(line for line in in_a_sample.stderr if re.match(rb"\d+ s: ", line))
+        self.assertRegex(beat, rb"^\d+ s: rendering$")
+        in_a_sample.kill()
+        in_a_sample.communicate()
         for program in [to_a_file, quiet]:
             program.said = program.communicate(timeout=300)[1].decode()
         dumb.communicate(timeout=300)

@@ -128,6 +128,7 @@ TEST_CASE("what distributed leaves out is what diffuse surfaces send to each oth
     CHECK(less > 0.7 * path);
 }
 
+// The thin lens: 1 / f = 1 / o + 1 / i, for an object at distance o and its image at i behind the lens.
 TEST_CASE("a lens is sharp at its distance, and blurs a point elsewhere over its circle of confusion") {
     constexpr uint32_t kSide = 33; // the lamp is in the middle of a pixel
     constexpr float kFocus = 4, kAperture = 0.6f;
@@ -135,18 +136,31 @@ TEST_CASE("a lens is sharp at its distance, and blurs a point elsewhere over its
     camera.fov_y = 2 * 0.24497866f; // the view is half as high as it is far away
     camera.aperture_radius = kAperture;
     camera.focus_distance = kFocus;
-    const double pixels_a_metre = kSide / (0.5 * static_cast<double>(kFocus)); // in the plane in focus
-    for (const float distance : {4.0f, 3.0f, 8.0f}) {
+    // A lens of this focal length with its film where what is in focus has its image.
+    constexpr double kFocalLength = 0.5;
+    const auto image_of = [](double object) { return 1 / (1 / kFocalLength - 1 / object); };
+    const double film = image_of(static_cast<double>(kFocus));
+    const double pixels_a_metre = kSide / (0.5 * film); // on the film
+    for (const auto& [integrator, distance] : {std::pair(IntegratorKind::Distributed, 4.0f),
+                                               {IntegratorKind::Distributed, 3.0f},
+                                               {IntegratorKind::Distributed, 8.0f},
+                                               {IntegratorKind::Path, 4.0f},
+                                               {IntegratorKind::Path, 3.0f},
+                                               {IntegratorKind::Path, 8.0f}}) {
+        CAPTURE(static_cast<int>(integrator));
         CAPTURE(distance);
         Scene scene;
         const float half = 0.007f * distance; // almost a pixel, as seen
         test::add(scene, test::sheet({0, 0, -distance}, {half, 0, 0}, {0, half, 0}),
                   {.name = "lamp", .base_color = {0, 0, 0}, .emission = {1000, 1000, 1000}});
         Queue queue = test::queue_asked_for();
-        const RenderResult result = test::render(queue, scene, camera, distributed_settings(kSide, 256));
-        // The rays through a point of the plane in focus spread from the lens's disc, so the lamp's image there is a
-        // disc of radius A |d - f| / d.
-        const double radius = static_cast<double>(kAperture * std::fabs(distance - kFocus) / distance) * pixels_a_metre;
+        RenderSettings settings = distributed_settings(kSide, 256);
+        settings.integrator = integrator;
+        const RenderResult result = test::render(queue, scene, camera, settings);
+        // Light of the lamp goes through all of the lens to its image, before or behind the film: what is wide A at the
+        // lens is wide A |film - image| / image on the film.
+        const double image = image_of(static_cast<double>(distance));
+        const double radius = static_cast<double>(kAperture) * std::abs(film - image) / image * pixels_a_metre;
         double sum = 0, squares = 0, farthest = 0;
         for (uint32_t y = 0; y < kSide; ++y) {
             for (uint32_t x = 0; x < kSide; ++x) {
@@ -160,7 +174,7 @@ TEST_CASE("a lens is sharp at its distance, and blurs a point elsewhere over its
         CHECK(sum > 0);
         CHECK(farthest < radius + 1.5); // the pixel's half diagonal, and the lamp's
         CHECK(farthest > radius - 1.5);
-        if (radius == 0) {
+        if (distance == kFocus) {
             CHECK(farthest == 0);
         } else { // the mean square of an even disc is r^2 / 2, that of pixel and lamp about 1/6 each
             CHECK(squares / sum == doctest::Approx(radius * radius / 2 + 1.0 / 3).epsilon(0.15));

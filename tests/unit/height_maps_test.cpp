@@ -76,8 +76,9 @@ TEST_CASE("heights are the first channel as stored, for every material of the na
 
 TEST_CASE("a map for no material, for one without texture coordinates, or of no picture is refused") {
     const std::filesystem::path folder = test::scratch_folder();
-    const std::string file = (folder / "no.png").string();
+    const std::string file = (folder / "no.png").string(), png = (folder / "h.png").string();
     test::write_text(file, "no picture");
+    write_png(png, Rgba8Image{1, 1, {0, 0, 0, 255}});
     const Scene scene = three_sheets();
     const auto why = [&](const std::string& material, const std::string& name) {
         const HeightMapText map[] = {parse_height_map(material + "=" + name + ",1")};
@@ -85,7 +86,8 @@ TEST_CASE("a map for no material, for one without texture coordinates, or of no 
     };
     CHECK(why("door", file).find("no material of the scene is called so; there are 'floor', 'wall left'") !=
           std::string::npos);
-    CHECK(why("floor", file).find("'floor' is on a mesh without texture coordinates") != std::string::npos);
+    CHECK(why("floor", png).find("'floor' is on a mesh without texture coordinates") != std::string::npos);
     CHECK(why("wall left", file).find(file) != std::string::npos);
     CHECK(why("wall left", file + "x").find(file + "x") != std::string::npos);
+    CHECK(why("floor", file + "x").find(file + "x: cannot read") != std::string::npos);
 }

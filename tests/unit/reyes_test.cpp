@@ -341,6 +341,41 @@ TEST_CASE("pictures of micropolygons do not depend on threads or passes, and lay
     }
 }
 
+TEST_CASE("of many samples that go at once the first few come first, and then as many as there are") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const RenderSettings settings = reyes_settings(24, 16);
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    std::vector<uint32_t> told;
+    const auto keep = [&](const RenderProgress& now) {
+        if (told.empty() || now.samples_done > told.back()) told.push_back(now.samples_done);
+        return now.samples_done < 32;
+    };
+    const uint32_t added = session.render(8388607, keep);
+    REQUIRE(told.size() >= 2);
+    CHECK(added == told.back());
+    const std::size_t first = told.front() == 0 ? 1 : 0; // it was asked within the pass
+    CHECK(told.at(first) == 16);
+    CHECK(told.at(first + 1) >= 32);
+}
+
+TEST_CASE("heights that fold surfaces over each other without end are refused, and no sample is left half done") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = reyes_settings(24, 16);
+    settings.heights = random_heights(1000, static_cast<uint32_t>(scene.materials.size()) - 1);
+    Session session(queue, prepared, test::mixed_scene_camera(), settings);
+    const auto error = test::thrown_error([&] { session.render(3); });
+    REQUIRE((error && error->code() == ErrorCode::OverLimit));
+    CHECK(test::says(error, "a smaller SCALE"));
+    CHECK(session.history().samples == 0);
+    CHECK(test::mean_of(session.picture()) == 0);
+}
+
 TEST_CASE("reyes takes the memory that it says beforehand, for millions of micropolygons too") {
     const Scene scene = scene_of(test::sheet({0, 0, 0}, {5, 0, 0}, {0, 5, 0}));
     const Camera camera = looking({0, 0, 1}, {0, 0, 0});

@@ -234,40 +234,6 @@ TEST_CASE("the bytes that are predicted are those that a session takes") {
     CHECK(queue.allocated_bytes() <= predicted + 4096); // a pixel filter's table, the scene's view
 }
 
-TEST_CASE("a render ends at a whole sample when it is told to, and goes on from there") {
-    Queue queue = test::queue_asked_for();
-    const Prepared mixed(test::make_mixed_scene());
-    RenderSettings settings = queued_settings();
-    settings.pass_samples = 2;
-    Session whole(queue, mixed.prepared, camera_at(0), settings);
-    whole.render(9);
-    Session session(queue, mixed.prepared, camera_at(0), settings);
-    int calls = 0;
-    const uint32_t added = session.render(9, [&](const RenderProgress& now) {
-        ++calls;
-        CHECK(now.samples_done == 2 * static_cast<uint32_t>(calls));
-        CHECK(now.samples == 9);
-        CHECK(now.rays.camera == uint64_t(24) * 16 * now.samples_done);
-        return calls < 2;
-    });
-    CHECK(calls == 2);
-    CHECK(added == 4);
-    CHECK(session.history().samples == 4);
-    Session four(queue, mixed.prepared, camera_at(0), settings);
-    four.render(4);
-    CHECK(picture_hash(session.picture()) == picture_hash(four.picture()));
-    // What the callback throws leaves whole samples too.
-    CHECK_THROWS_AS(session.render(4, [](const RenderProgress&) -> bool { throw Error(ErrorCode::Interrupted, ""); }),
-                    Error);
-    CHECK(session.history().samples == 6);
-    session.render(3, [](const RenderProgress& now) {
-        CHECK(now.samples == 9);
-        return true;
-    });
-    CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
-    CHECK(session.stats().rays.total() == whole.stats().rays.total());
-}
-
 TEST_CASE("a call's time is over at a whole sample, and the next call has its own") {
     Queue queue = test::queue_asked_for();
     const Prepared mixed(test::make_mixed_scene());

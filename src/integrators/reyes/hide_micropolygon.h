@@ -6,6 +6,7 @@
 // Two passes over all micropolygons: the first finds the least (depth, triangle) of a sample, the second the least of
 // that triangle's micropolygons with this depth. Both are minima, so no order of threads shows.
 
+#include "device/atomic_add.h"
 #include "device/atomic_min.h"
 #include "integrators/reyes/diced_triangle.h"
 #include "integrators/reyes/piece.h"
@@ -23,6 +24,7 @@ struct ReyesPass {
     double rate; // ReyesSettings::shading_rate
     LocalLight light;
     uint32_t seed;
+    uint32_t* wide; // cells that wide micropolygons have looked at, in units of kWideCells; null: nobody asks
     SampleLists samples;
 };
 
@@ -31,6 +33,21 @@ HD inline bool is_hidden_back(const InstanceView& placed, const SeenPlane& plane
     if (placed.hides_back == 0) return false;
     const double away = plane.is_perspective ? plane.constant : plane.depth; // of the normal from the eye
     return placed.is_mirrored != 0 ? away < 0 : away > 0;
+}
+
+/// Work that a displaced scene may make, for each pixel of the picture in each of the two passes: pieces, and looks of
+/// wide micropolygons at its cell. Surfaces displaced by half their size made 172 pieces.
+inline constexpr uint64_t kMostWorkOfPixel = 1024;
+inline constexpr uint64_t kWideCells = 256; // of no concern up to here
+
+HD inline uint64_t most_wide(uint64_t pixels) { return min(kMostWorkOfPixel * pixels / kWideCells, uint64_t(1) << 30); }
+
+/// False where wide micropolygons have looked at so many cells that the pass is given up.
+HD inline bool may_look(const ReyesPass& pass, uint64_t cells) {
+    if (pass.wide == nullptr || cells <= kWideCells) return true;
+    constexpr uint64_t kMost = 1u << 15; // so that the count does not go round, whatever a round of pieces adds
+    const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMost));
+    return atomic_add(pass.wide, more) <= most_wide(pass.samples.pixels());
 }
 
 enum class HidingPass : uint8_t { FindNearest, FindMicropolygon };
@@ -49,8 +66,11 @@ HD void hide_micropolygon(const ReyesPass& pass, const DicedTriangle& triangle, 
     }
     const SampleLists& samples = pass.samples;
     const Vec2 middle = middle_of(piece);
-    for (int32_t row = samples.row_of(top); row <= samples.row_of(bottom); ++row) {
-        for (int32_t column = samples.column_of(left); column <= samples.column_of(right); ++column) {
+    const int32_t first_row = samples.row_of(top), last_row = samples.row_of(bottom);
+    const int32_t first_column = samples.column_of(left), last_column = samples.column_of(right);
+    if (!may_look(pass, uint64_t(last_row - first_row + 1) * uint64_t(last_column - first_column + 1))) return;
+    for (int32_t row = first_row; row <= last_row; ++row) {
+        for (int32_t column = first_column; column <= last_column; ++column) {
             for (uint32_t i = samples.head(column, row); i != kNoSample; i = samples.next[i]) {
                 const SamplePlace at = samples.places[i];
                 if (at.x < left || at.x > right || !has_sample(projected, at)) continue;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
 #include "device/launch.h"
 #include "integrators/reyes/shade_samples.h"
 
@@ -14,6 +15,7 @@ namespace pertev {
 namespace {
 
 constexpr uint64_t kMostSamplesAtOnce = uint64_t(1) << 23; // of all pixels, but for one of each
+constexpr double kMostPiecesOfTriangle = 64;               // beside kMostWorkOfPixel
 constexpr uint32_t kRoundsWithOneLook = 8;                 // at how far away everything is by now
 constexpr uint32_t kStack = 1u << 19, kMostUnderWay = 1u << 16;
 
@@ -61,7 +63,7 @@ float reach_of(const HeightMap& map) {
 } // namespace
 
 ReyesIntegrator::ReyesIntegrator(Queue& queue, const ReyesSettings& settings)
-    : queue_(queue), settings_(settings), count_(queue, 1, "pieces of triangles") {}
+    : queue_(queue), settings_(settings), count_(queue, 2, "pieces of triangles") {}
 
 void ReyesIntegrator::set_settings(const ReyesSettings& settings) {
     has_heights_ = has_heights_ && settings.heights == settings_.heights;
@@ -75,7 +77,7 @@ uint32_t ReyesIntegrator::samples_at_once(uint64_t pixels) {
 std::size_t ReyesIntegrator::predicted_bytes(const ReyesSettings& settings, uint64_t pixels, uint32_t samples) {
     const uint64_t all = samples_held(pixels, samples);
     std::size_t bytes = all * (sizeof(SamplePlace) + 2 * sizeof(uint64_t) + sizeof(uint32_t)) +
-                        pixels * (sizeof(uint32_t) + sizeof(float)) + sizeof(uint32_t) +
+                        pixels * (sizeof(uint32_t) + sizeof(float)) + 2 * sizeof(uint32_t) +
                         (std::size_t(kStack) + kMostUnderWay) * sizeof(Piece);
     if (settings.heights) {
         bytes += texels(*settings.heights) * sizeof(float) + materials_of(*settings.heights) * sizeof(DisplacementView);
@@ -131,13 +133,35 @@ void ReyesIntegrator::upload_heights() {
     has_heights_ = true;
 }
 
+/// Heights that are large by the size of the scene fold its surfaces over each other without end. Since what is hidden
+/// is found out in any order, two runs may differ by some pieces in what they get to do before this.
+void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
+    if (!settings_.heights) return;
+    const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
+    const double finer = 1 / std::min(1.0, static_cast<double>(settings_.shading_rate));
+    const double most = kMostPiecesOfTriangle * static_cast<double>(picture_.scene.triangle_count) +
+                        static_cast<double>(kMostWorkOfPixel * pixels) * finer * finer;
+    if (static_cast<double>(pieces) <= most && wide <= most_wide(pixels)) return;
+    throw Error(ErrorCode::OverLimit,
+                fmt::format("--displacement: surfaces are moved so far that dicing them does not end (over {} pieces a "
+                            "pixel); a smaller SCALE makes fewer, and so does a larger --shading-rate",
+                            kMostWorkOfPixel));
+}
+
 template <HidingPass kPass>
-bool ReyesIntegrator::hide(const ReyesPass& pass) {
+bool ReyesIntegrator::hide(const ReyesPass& pass, const std::function<bool()>& goes_on) {
     const PiecesView pieces = {stack_.data(), under_way_.data(), count_.data(), kStack};
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
     uint32_t height = 0, round = 0;
+    uint64_t taken_in_all = 0;
+    Stopwatch since_asked;
+    queue_.zero(count_.data() + 1, sizeof(uint32_t));
     for (uint32_t begun = 0; height > 0 || begun < triangles; ++round) {
         if (is_abandoned()) return false;
+        if (since_asked.seconds() > 0.1) {
+            if (!goes_on()) return false;
+            since_asked = {};
+        }
         const bool is_news = kPass == HidingPass::FindNearest ? round % kRoundsWithOneLook == 0 : round == 0;
         if (is_news) launch(queue_, "find_far", pass.samples.pixels(), FindFar{pass.samples});
         const uint32_t taken = pieces_at_once(height);
@@ -145,13 +169,22 @@ bool ReyesIntegrator::hide(const ReyesPass& pass) {
         launch(queue_, "take_pieces", taken + more, TakePieces{pieces, height, taken, begun});
         launch(queue_, "split_pieces", taken + more, SplitPieces<kPass>{pass, pieces});
         begun += more;
-        queue_.copy_to_host(&height, count_.data(), sizeof height);
+        uint32_t counts[2]; // on the stack; of wide micropolygons
+        queue_.copy_to_host(counts, count_.data(), sizeof counts);
+        height = counts[0];
         PERTEV_CHECK(height <= kStack);
+        taken_in_all += taken + more;
+        check_work(taken_in_all, counts[1]);
     }
     return true;
 }
 
 void ReyesIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
+    render_while(first, count, film, [] { return true; });
+}
+
+uint32_t ReyesIntegrator::render_while(uint32_t first, uint32_t count, const FilmView& film,
+                                       const std::function<bool()>& goes_on) {
     PERTEV_CHECK(!film.frame.is_there());
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
     const auto at_once = static_cast<uint32_t>(std::min<uint64_t>(count, places_.size() / pixels));
@@ -165,6 +198,7 @@ void ReyesIntegrator::render(uint32_t first, uint32_t count, const FilmView& fil
                                 static_cast<double>(settings_.shading_rate),
                                 light_,
                                 settings_.seed,
+                                settings_.heights ? count_.data() + 1 : nullptr,
                                 {places_.data(), nearest_.data(), ways_.data(), next_.data(), heads_.data(),
                                  far_.data(), picture_.camera.width, picture_.camera.height, first + done, now}};
         nearest_.fill(0xff); // kNothingThere
@@ -172,10 +206,14 @@ void ReyesIntegrator::render(uint32_t first, uint32_t count, const FilmView& fil
         heads_.fill(0xff);   // kNoSample
         launch(queue_, "place_samples", pixels * now,
                PlaceSamples{picture_.camera, settings_.sampler, settings_.seed, pass.samples});
-        if (!hide<HidingPass::FindNearest>(pass) || !hide<HidingPass::FindMicropolygon>(pass)) return;
+        if (!hide<HidingPass::FindNearest>(pass, goes_on) || !hide<HidingPass::FindMicropolygon>(pass, goes_on)) {
+            queue_.wait();
+            return done;
+        }
         launch(queue_, "shade_samples", pixels, ShadeSamples{pass, film});
     }
     queue_.wait();
+    return count;
 }
 
 } // namespace pertev

@@ -27,7 +27,10 @@ public:
 
     /// The camera has no lens (why_no_raster). Throws Error(OverLimit) too, for a scene with too many triangles.
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
+    /// Throws Error(OverLimit) too, where what is displaced makes more work than is ever wanted (kMostWorkOfPixel).
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
+    uint32_t render_while(uint32_t first, uint32_t count, const FilmView& film,
+                          const std::function<bool()>& goes_on) override;
     void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
     /// None: nothing is traced.
     RayCounts rays() const override { return {}; }
@@ -40,7 +43,8 @@ private:
     void upload_heights();
     bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
     template <HidingPass kPass>
-    bool hide(const ReyesPass& pass);
+    bool hide(const ReyesPass& pass, const std::function<bool()>& goes_on);
+    void check_work(uint64_t pieces, uint32_t wide) const;
 
     Queue& queue_;
     ReyesSettings settings_;
