@@ -30,8 +30,8 @@ RadiositySettings quick_settings() {
     return settings;
 }
 
-Scene lit_box() {
-    Scene scene = test::closed_box(test::white(0.5f));
+Scene lit_box(float reflectance = 0.5f) {
+    Scene scene = test::closed_box(test::white(reflectance));
     test::add(scene, test::sheet({0.2f, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}), test::lamp_material(0, 5));
     return scene;
 }
@@ -305,7 +305,7 @@ TEST_CASE("a solution that was ended says what it holds, in its file too, and is
 }
 
 TEST_CASE("where links are ended while patches are divided, the parts keep the light of the whole") {
-    const Scene scene = lit_box();
+    const Scene scene = lit_box(0.02f);
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RadiositySettings settings = quick_settings();
@@ -319,12 +319,13 @@ TEST_CASE("where links are ended while patches are divided, the parts keep the l
     });
     CHECK(solved.stats.was_interrupted);
     CHECK(solved.solution.extent.part == SolvedPart::SomeBounces);
-    CHECK(solved.solution.patches.size() > 24); // some were divided
-    const auto black = std::ranges::count_if(solved.solution.patches,
-                                             [](const PatchLight& patch) { return luminance(patch.mean) < 0.01f; });
-    const auto black_before = std::ranges::count_if(
-        solution_of(scene, settings).patches, [](const PatchLight& patch) { return luminance(patch.mean) < 0.01f; });
-    CHECK(black <= black_before);
+    CHECK(solved.solution.patches.size() > 24);                    // some were divided
+    const auto dim_share = [](const RadiositySolution& solution) { // what other surfaces send is a hundredth
+        const auto dim = std::ranges::count_if(solution.patches,
+                                               [](const PatchLight& patch) { return luminance(patch.mean) < 0.02f; });
+        return static_cast<double>(dim) / static_cast<double>(solution.patches.size());
+    };
+    CHECK(dim_share(solved.solution) < dim_share(solution_of(scene, settings)) + 0.1);
 }
 
 TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {
