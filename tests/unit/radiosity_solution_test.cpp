@@ -325,7 +325,7 @@ TEST_CASE("where links are ended while patches are divided, the parts keep the l
                                                [](const PatchLight& patch) { return luminance(patch.mean) < 0.02f; });
         return static_cast<double>(dim) / static_cast<double>(solution.patches.size());
     };
-    CHECK(dim_share(solved.solution) < dim_share(solution_of(scene, settings)) + 0.1);
+    CHECK(dim_share(solved.solution) < 0.5); // of parts that are black 0.82
 }
 
 TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {
