@@ -132,10 +132,7 @@ int bench_frames(const FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
-    const ReconstructionSettings& wanted = flags.render.reconstruction.settings;
-    const bool asks_for_more = flags.render.reconstruction.restir != name_of(RestirLight::Off) ||
-                               wanted.resolution_scale != 1 || wanted.orders_samples;
-    if (!makes_frames(settings.integrator) && asks_for_more) {
+    if (!makes_frames(settings.integrator) && ask_for_frames(flags.render.reconstruction)) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
                                 "--sample-order are for path and hybrid",

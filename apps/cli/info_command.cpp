@@ -14,6 +14,7 @@
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "formats/read_scene.h"
+#include "image/image_format.h"
 #include "image/picture_hash.h"
 #include "image/read_exr.h"
 #include "image/read_image.h"
@@ -68,19 +69,6 @@ private:
     };
     std::vector<Fact> facts_;
 };
-
-constexpr std::string_view kPictures[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr"};
-
-std::string lower_case_extension(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return extension;
-}
-
-bool is_image(const std::string& file) {
-    const std::string extension = lower_case_extension(file);
-    return std::ranges::find(kPictures, extension) != std::end(kPictures);
-}
 
 void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     const Image image = read_image(flags.file, &messages);
@@ -140,13 +128,13 @@ int info(const InfoFlags& flags) {
     Messages& messages = reporter.messages();
     Facts facts;
     facts.add("file", flags.file);
-    if (is_image(flags.file)) {
+    if (is_picture_name(flags.file)) {
         describe_image(flags, facts, messages);
     } else if (is_scene_name(flags.file)) {
         describe_scene(flags, facts, messages);
     } else {
         throw Error(ErrorCode::BadInput, fmt::format("{}: neither a picture ({}) nor {}", flags.file,
-                                                     fmt::join(kPictures, " "), scene_kinds()));
+                                                     fmt::join(kPictureExtensions, " "), scene_kinds()));
     }
     reporter.say_messages();
     facts.report(reporter);

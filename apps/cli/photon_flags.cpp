@@ -1,5 +1,6 @@
 #include "apps/cli/photon_flags.h"
 
+#include <limits>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -27,11 +28,11 @@ void add_photon_flags(CLI::App& verb, PhotonFlags& flags, const char* group) {
                     "of photon_map: from how far photons count, of the first sample;\nit shrinks (a hundredth of the "
                     "scene)")
         ->type_name("METRES")
-        ->check(number_above_zero())
+        ->check(number_between(kLeastPhotonRadius, std::numeric_limits<float>::max()))
         ->group(group);
     verb.add_option("--caustic-radius", flags.caustic_radius, "the same of caustics (a quarter of --radius)")
         ->type_name("METRES")
-        ->check(number_above_zero())
+        ->check(number_between(kLeastPhotonRadius, std::numeric_limits<float>::max()))
         ->group(group);
     verb.add_option("--nearest", flags.nearest,
                     "of photon_map: the N nearest photons count, within the radius\n(all within it)")

@@ -56,7 +56,8 @@ void add_solving_flags(CLI::App& verb, RadiosityFlags& flags, const char* group)
         ->check(number_above_zero())
         ->group(group);
     verb.add_option("--form-factors", flags.form_factors,
-                    fmt::format("of radiosity: rays or hemicube ({})", name_of(defaults.form_factors)))
+                    fmt::format("of radiosity: rays or hemicube, which hierarchical has not ({})",
+                                name_of(defaults.form_factors)))
         ->type_name("NAME")
         ->check(one_of(form_factor_names()))
         ->group(group);
@@ -128,6 +129,9 @@ RadiositySettings radiosity_settings(const RadiosityFlags& flags, uint32_t seed)
            "--link-error: of --solver hierarchical");
     refuse(flags.hemicube > 0 && settings.form_factors != FormFactors::Hemicube,
            "--hemicube: of --form-factors hemicube");
+    refuse(settings.solver == RadiositySolver::Hierarchical && settings.form_factors == FormFactors::Hemicube,
+           "--form-factors hemicube: --solver hierarchical has links in place of rows, whose light is found by rays; "
+           "leave out one of them");
     refuse(flags.steps > 0 && settings.solver != RadiositySolver::Southwell, "--steps: of --solver southwell");
     refuse(flags.tolerance > 0 && settings.solver == RadiositySolver::Matrix,
            "--tolerance: --solver matrix leaves nothing; leave out one of them");
@@ -218,16 +222,18 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityF
     const SolveStats& stats = solved.stats;
     reporter.say(
         fmt::format("{} patches send, {} are shown; {} form factors ({:.0f} bytes a patch) in {:.2f} s, "
-                    "solved in {:.2f} s ({} steps, {:.2g} left), divided in {:.2f} s",
+                    "{} {:.2f} s ({} steps, {:.2g} left), divided in {:.2f} s",
                     stats.patches, stats.shown, stats.factors,
                     static_cast<double>(stats.bytes) / static_cast<double>(std::max<uint64_t>(stats.patches, 1)),
-                    stats.factor_seconds, stats.solve_seconds, stats.steps, stats.left, stats.divide_seconds));
+                    stats.factor_seconds, stats.was_interrupted ? "ended after solving for" : "solved in",
+                    stats.solve_seconds, stats.steps, stats.left, stats.divide_seconds));
     say_what_is_left(stats, settings, reporter);
     reporter.event(fmt::format(
-        R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"peak_bytes":{},"steps":{},"left":{},"reached_limit":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{}}})",
+        R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"peak_bytes":{},"steps":{},"left":{},"reached_limit":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{},"holds":{}}})",
         stats.patches, stats.shown, stats.factors, stats.bytes, peak_memory_bytes(), stats.steps,
         json_number(stats.left), stats.reached_limit, stats.factor_seconds, stats.solve_seconds, stats.divide_seconds,
-        json_string(solved.solution.hash().hex()), stats.was_interrupted));
+        json_string(solved.solution.hash().hex()), stats.was_interrupted,
+        stats.was_interrupted ? json_string(describe(solved.solution.extent)) : "null"));
     return solved;
 }
 

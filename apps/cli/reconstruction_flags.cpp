@@ -66,6 +66,11 @@ RestirSettings restir_settings(const ReconstructionFlags& flags) {
     return settings;
 }
 
+bool ask_for_frames(const ReconstructionFlags& flags) {
+    return flags.restir != name_of(RestirLight::Off) || flags.settings.resolution_scale != 1 ||
+           flags.settings.orders_samples;
+}
+
 std::string json_of(const ReconstructionFlags& flags) {
     return json_of(reconstruction_settings(flags), restir_settings(flags));
 }

@@ -28,6 +28,8 @@ void add_reconstruction_flags(CLI::App& verb, ReconstructionFlags& flags, const 
 /// As the flags say; with --no-reconstruction of_samples_alone.
 ReconstructionSettings reconstruction_settings(const ReconstructionFlags& flags);
 RestirSettings restir_settings(const ReconstructionFlags& flags);
+/// Whether there is something that frames of integrators alone have that make them (makes_frames).
+bool ask_for_frames(const ReconstructionFlags& flags);
 /// All of both as a JSON object: what makes the bytes of a frame, beside the picture's own settings.
 std::string json_of(const ReconstructionFlags& flags);
 

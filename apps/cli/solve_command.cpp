@@ -1,5 +1,6 @@
 // pertev solve radiosity SCENE -o FILE: light that does not depend on a camera, solved once for any number of pictures.
 
+#include <filesystem>
 #include <optional>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/write_file_atomically.h"
+#include "image/image_format.h"
 #include "session/check_integrator.h"
 #include "session/moving_scene.h"
 
@@ -31,10 +33,20 @@ struct SolveFlags {
     ReportFlags report;
 };
 
+/// "box.rad" for "box.png".
+std::string solution_name(const std::string& picture) {
+    return std::filesystem::path(picture).replace_extension(".rad").string();
+}
+
 int solve(const SolveFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     radiosity_settings(flags.radiosity, flags.seed); // refused before anything is read
+    refuse(
+        is_picture_name(flags.output),
+        fmt::format("--output {}: a solution is no picture; -o {} keeps it, and pertev render --integrator radiosity "
+                    "--solution {} shows it",
+                    flags.output, solution_name(flags.output), solution_name(flags.output)));
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.threads));
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
@@ -53,8 +65,9 @@ int solve(const SolveFlags& flags) {
     write_solution(flags.output, solved.solution);
     reporter.output(flags.output);
     const bool cut_short = solved.stats.was_interrupted;
-    reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, cut_short ? ", as far as it was solved" : "",
-                             solved.solution.hash().hex()));
+    const std::string holds =
+        cut_short ? fmt::format(", ended before it was whole: it holds {}", describe(solved.solution.extent)) : "";
+    reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, solved.solution.hash().hex()));
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 

@@ -13,7 +13,9 @@
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/read_file.h"
 #include "base/version.h"
+#include "image/image_format.h"
 #include "image/read_image.h"
 #include "lab/run_transport.h"
 #include "lab/transport_light.h"
@@ -66,6 +68,17 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
     return presets;
 }
 
+/// Errors are of radiance: what was made for a display has lost it.
+Image read_linear_image(const std::string& file, Messages& messages) {
+    const std::vector<std::byte> bytes = read_file(file);
+    const std::optional<ImageFormat> format = recognise_image(bytes);
+    refuse(format == ImageFormat::Png || format == ImageFormat::Jpeg,
+           fmt::format("--reference {}: a picture for displays, tone-mapped and of few bits; errors are of radiance, "
+                       "which an EXR or HDR file has (pertev render -o reference.exr)",
+                       file));
+    return read_image(bytes, file, &messages);
+}
+
 TransportSettings settings_of(const TransportFlags& flags, const std::string& size, bool is_cuda, Messages& messages) {
     TransportSettings settings;
     for (const std::string& name : flags.integrators) {
@@ -83,7 +96,7 @@ TransportSettings settings_of(const TransportFlags& flags, const std::string& si
                                  : is_cuda                   ? kReferenceSamplesCuda
                                                              : kReferenceSamples;
     if (!flags.reference.empty()) {
-        settings.reference = read_image(flags.reference, &messages);
+        settings.reference = read_linear_image(flags.reference, messages);
         settings.reference_file = flags.reference;
     }
     return settings;

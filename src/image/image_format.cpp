@@ -14,4 +14,14 @@ std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes) {
     return std::nullopt;
 }
 
+std::string lower_case_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension;
+}
+
+bool is_picture_name(const std::filesystem::path& file) {
+    return std::ranges::find(kPictureExtensions, lower_case_extension(file)) != std::end(kPictureExtensions);
+}
+
 } // namespace pertev

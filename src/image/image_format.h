@@ -3,8 +3,11 @@
 // Which picture format a file holds, told from its first bytes: names and extensions lie.
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace pertev {
 
@@ -12,5 +15,12 @@ enum class ImageFormat { Png, Jpeg, Hdr, Exr };
 
 /// The format whose magic bytes `bytes` starts with; nothing for any other content.
 std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes);
+
+/// Of pictures that are read and written.
+inline constexpr std::string_view kPictureExtensions[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr"};
+/// Of a file's name, with the dot.
+std::string lower_case_extension(const std::filesystem::path& file);
+/// Whether the name has one of kPictureExtensions, in letters of either case.
+bool is_picture_name(const std::filesystem::path& file);
 
 } // namespace pertev

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,7 +18,6 @@
 #include "lab/transport_light.h"
 #include "lab/transport_solutions.h"
 #include "session/check_integrator.h"
-#include "session/session.h"
 #include "session/settings_text.h"
 
 namespace pertev {
@@ -143,24 +143,26 @@ private:
         if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
     }
 
-    /// What a turn has left after so many seconds for so many samples.
-    double left_of_turn_s(const TransportRow& row, double seconds, uint32_t samples) const {
+    /// What a turn has left after so many seconds, `made_s` of them before its samples.
+    double left_of_turn_s(const TransportRow& row, double seconds, uint32_t samples, double made_s = 0) const {
         if (!row.repetitions.empty()) return std::max(0.0, row.repetitions.front().back().seconds - seconds);
-        const double to_most_s = seconds / std::max(1u, samples) * (settings_.max_samples - samples);
+        const double to_most_s = (seconds - made_s) / std::max(1u, samples) * (settings_.max_samples - samples);
         return std::max(0.0, std::min(share_s() - seconds, samples > 0 ? to_most_s : share_s()));
     }
 
-    /// Adds samples to the session's film, which took `before_s` to come to. Returns the seconds that took.
-    double render(Session& session, const TransportRow& row, uint32_t samples, const std::string& doing,
-                  double before_s) {
-        double seconds = 0;
-        session.render(samples, [&](const RenderProgress& now) {
-            seconds = now.seconds;
-            const double done_s = before_s + seconds, left_s = left_of_turn_s(row, done_s, now.samples_done);
-            progress(doing, done_s / (done_s + left_s), left_s);
+    /// Adds samples to the session's film. Returns what it has then, without its errors; `before` is what it had.
+    TransportFigures render(Session& session, const TransportRow& row, uint32_t samples, const std::string& doing,
+                            const TransportFigures& before) {
+        TransportFigures all;
+        session.render(samples - before.samples, [&](const RenderProgress& now) {
+            all = {.samples = now.samples_done,
+                   .seconds = before.seconds + now.seconds,
+                   .made_seconds = before.made_seconds + now.made_seconds};
+            const double left_s = left_of_turn_s(row, all.seconds, all.samples, all.made_seconds);
+            progress(doing, all.seconds / (all.seconds + left_s), left_s);
             return true;
         });
-        return seconds;
+        return all;
     }
 
     /// One of the two halves of the reference.
@@ -242,8 +244,7 @@ private:
         const std::size_t before = queue_.allocated_bytes();
         Session session(queue_, prepared_, camera_,
                         settings_of(settings_, row.name, repetition_seed(settings_, number)));
-        render(session, row, 1, doing, 0); // memory, caches and the driver's first launch are not timed
-        session.cut();
+        warm_up(session, [&] { progress(doing, 0, left_of_turn_s(row, 0, 0)); });
         try {
             add_figures(session, row, number, doing, figures, pictures);
         } catch (const TransportStopped&) {
@@ -288,18 +289,18 @@ private:
 
     void add_figures(Session& session, const TransportRow& row, uint32_t number, const std::string& doing,
                      Repetition& figures, std::vector<Image>& pictures) {
-        double seconds = 0;
+        TransportFigures last;
         for (uint32_t samples = 1;;) {
-            seconds += render(session, row, samples - session.history().samples, doing, seconds);
-            figures.push_back({.samples = samples, .seconds = seconds});
+            last = render(session, row, samples, doing, last);
+            figures.push_back(last);
             pictures.push_back(session.picture());
             if (number > 0) {
                 const Repetition& first = row.repetitions.front();
                 if (figures.size() >= first.size()) return;
                 samples = first[figures.size()].samples;
             } else {
-                if (2 * seconds > share_s() || samples > settings_.max_samples / 2) return;
-                samples *= 2;
+                samples = next_samples(last, share_s(), settings_.max_samples);
+                if (samples == 0) return;
             }
         }
     }
@@ -361,6 +362,23 @@ private:
 };
 
 } // namespace
+
+uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t most) {
+    const double sampled_s = last.seconds - last.made_seconds, for_samples_s = share_s - last.made_seconds;
+    const double fitting = sampled_s > 0 ? for_samples_s / sampled_s * last.samples : most;
+    const auto least = static_cast<double>(last.samples) * 9 / 8;
+    const double next = std::min({fitting, 2.0 * last.samples, static_cast<double>(most)});
+    return next >= std::max(least, last.samples + 1.0) ? static_cast<uint32_t>(next) : 0;
+}
+
+void warm_up(Session& session, const std::function<void()>& tell) {
+    bool has_begun = false;
+    session.render(1, [&](const RenderProgress& now) {
+        if (tell) tell();
+        return now.made_share >= 1 || !std::exchange(has_begun, true);
+    });
+    session.cut();
+}
 
 TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
                              const std::function<bool(const LabProgress&)>& keep_going) {

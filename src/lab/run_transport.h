@@ -15,6 +15,7 @@
 #include "lab/transport_report.h"
 #include "scene/scene.h"
 #include "session/render_settings.h"
+#include "session/session.h"
 
 namespace pertev {
 
@@ -41,14 +42,24 @@ inline uint32_t reference_seed(const TransportSettings& settings, uint32_t half)
     return settings.picture.path.seed + 0x80000000u + half;
 }
 
+/// Samples of the picture after `last`, the first repetition's: twice as many where they come within `share_s`, else as
+/// many as do, where those are an eighth more at least; 0: none. What is made before the first sample (made_seconds) is
+/// there and takes no time again. At most `most`.
+uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t most);
+
+/// A sample of each pixel that no figures count, so that memory, caches and the driver's first launches are not timed.
+/// Where the integrator makes something before samples it is ended once that has begun: it is made once, and timed.
+/// The film begins anew. Throws as Session::render.
+void warm_up(Session& session, const std::function<void()>& tell = {});
+
 /// All integrators take their first turn, then all their second, and so on: so an interrupt leaves something of each.
 /// The first repetition of an integrator goes on to 1, 2, 4, ... samples as long as the next fits into its share of the
-/// time (one sample is always rendered); the others have the same numbers. Radiosity has solutions of growing detail in
-/// their place (lab/transport_solutions.h), as long as the next would fit into the share by itself. One that cannot
-/// render this scene is refused in its row. `scene` has been through validate(). Stops early, with `interrupted` set,
-/// when keep_going returns false; the repetition that was under way is kept where it is an integrator's first. Throws
-/// Error(BadInput) where the reference given has another size or is not finite, or the reference's integrator cannot
-/// render the scene; what Session throws of the device.
+/// time (one sample is always rendered), and then to as many as do; the others have the same numbers. Radiosity has
+/// solutions of growing detail in their place (lab/transport_solutions.h), as long as the next would fit into the share
+/// by itself. One that cannot render this scene is refused in its row. `scene` has been through validate(). Stops
+/// early, with `interrupted` set, when keep_going returns false; the repetition that was under way is kept where it is
+/// an integrator's first. Throws Error(BadInput) where the reference given has another size or is not finite, or the
+/// reference's integrator cannot render the scene; what Session throws of the device.
 TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
                              const std::function<bool(const LabProgress&)>& keep_going);
 

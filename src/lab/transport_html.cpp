@@ -86,8 +86,10 @@ std::string html_of(const TransportReport& report) {
             list_item("Pertev", report.commit) +
             list_item("Size", fmt::format("{} x {}", report.width, report.height)) +
             list_item("Scatterings", fmt::format("at most {}", report.max_depth)) +
-            list_item("Time", fmt::format("{:g} s of rendering for each integrator, in {} repetitions of other seeds",
-                                          report.seconds, report.repetitions)) +
+            list_item("Time", fmt::format("{:g} s of rendering for each integrator, in {}", report.seconds,
+                                          report.repetitions == 1
+                                              ? "one repetition"
+                                              : fmt::format("{} repetitions of other seeds", report.repetitions))) +
             "</ul>\n";
     body +=
         "<p>relMSE is the mean of (x - r)<sup>2</sup> / (r<sup>2</sup> + 0.01) over pixels and channels, r the "

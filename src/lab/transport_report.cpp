@@ -36,7 +36,8 @@ std::optional<TransportFigures> at_time(const Repetition& repetition, double sec
         if (seconds == b.seconds) return b;
         if (i == 0) return std::nullopt;
         const TransportFigures& a = repetition[i - 1];
-        const double share = log_share(seconds, a.seconds, b.seconds);
+        const double made_s = b.made_seconds; // which comes once, however many samples follow
+        const double share = log_share(seconds - made_s, a.seconds - made_s, b.seconds - made_s);
         return TransportFigures{0, seconds, between(a.rel_mse, b.rel_mse, share), between(a.flip, b.flip, share)};
     }
     return std::nullopt;
@@ -158,10 +159,18 @@ double equal_seconds(const TransportScene& scene) {
 }
 
 uint32_t equal_samples(const TransportScene& scene) {
-    uint32_t least = 0;
-    for_each_end(scene, false,
-                 [&](const TransportFigures& end) { least = least > 0 ? std::min(least, end.samples) : end.samples; });
-    return least;
+    uint32_t most = 0;
+    for (const TransportRow& row : scene.rows) {
+        if (row.is_solved || row.repetitions.empty()) continue;
+        for (const TransportFigures& one : row.repetitions.front()) {
+            const bool have_all = std::ranges::all_of(scene.rows, [&](const TransportRow& other) {
+                return other.is_solved || other.repetitions.empty() || at_samples(other, one.samples);
+            });
+            if (have_all) most = std::max(most, one.samples);
+        }
+        break; // the others have no more in common
+    }
+    return most;
 }
 
 std::optional<double> efficiency(const TransportPoint& point) {

@@ -23,7 +23,8 @@ struct TransportFigures {
     uint32_t samples = 0; // of each pixel
     double seconds = 0;   // of rendering alone, of all these samples; of a solution, that of solving too
     double rel_mse = 0, flip = 0;
-    uint64_t patches = 0; // of the solution that is shown; 0: nothing was solved
+    uint64_t patches = 0;    // of the solution that is shown; 0: nothing was solved
+    double made_seconds = 0; // of `seconds`, that what all samples need took: before the first, and once
 };
 
 /// Samples rise; of solutions patches do. Cut short by an interrupt, it ends early.
@@ -99,15 +100,16 @@ struct TransportPoint {
 /// After each number of samples that all its repetitions have begun with. Empty where there are no figures.
 std::vector<TransportPoint> points_of(const TransportRow& row);
 
-/// Each repetition's curve is interpolated, straight in the logarithms of time and value (a value of 0 is interpolated
-/// as it is), and the mean is over these. None where `seconds` lies before a repetition's first figures or behind its
-/// last, or there are none. Of solutions it is the last that is there by then.
+/// Each repetition's curve is interpolated, straight in the logarithms of value and of the time that samples took (a
+/// value of 0 is interpolated as it is), and the mean is over these. None where `seconds` lies before a repetition's
+/// first figures or behind its last, or there are none. Of solutions it is the last that is there by then.
 std::optional<TransportPoint> at_time(const TransportRow& row, double seconds);
 /// None where there is no such number in all repetitions, and of solutions, which samples make no better.
 std::optional<TransportPoint> at_samples(const TransportRow& row, uint32_t samples);
 
-/// The longest time, and the largest number of samples, that all repetitions of all integrators with figures have come
-/// to; 0: there are none. Solutions do not count, but for the time where there is nothing else.
+/// The longest time that all repetitions of all integrators with figures have come to, and the largest number of
+/// samples that all of them have a picture of; 0: there is none. Solutions do not count, but for the time where there
+/// is nothing else.
 double equal_seconds(const TransportScene& scene);
 uint32_t equal_samples(const TransportScene& scene);
 

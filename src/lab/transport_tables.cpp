@@ -133,8 +133,11 @@ std::string text_of(const TransportReport& report) {
                             scene.name, scene.shows.empty() ? "" : " (" + scene.shows + ")", report.width,
                             report.height, report.max_depth, report.device, describe_reference(scene.reference));
         if (has_findings(scene)) {
-            text += fmt::format("\nafter {:.3g} s of rendering each (mean of {} repetitions ± 95 % confidence)\n{}",
-                                equal_seconds(scene), report.repetitions, align_columns(equal_time_table(scene)));
+            const std::string of = report.repetitions == 1
+                                       ? "one repetition, so that nothing is known of its noise"
+                                       : fmt::format("mean of {} repetitions ± 95 % confidence", report.repetitions);
+            text += fmt::format("\nafter {:.3g} s of rendering each ({})\n{}", equal_seconds(scene), of,
+                                align_columns(equal_time_table(scene)));
             text += fmt::format("\nafter {} samples of each pixel\n{}", equal_samples(scene),
                                 align_columns(equal_samples_table(scene)));
         }

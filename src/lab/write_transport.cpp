@@ -59,10 +59,13 @@ std::string patches_of(const TransportFigures& f, const char* none) {
     return f.patches > 0 ? fmt::format("{}", f.patches) : none;
 }
 
-CsvCells figures_head() { return {"repetition", "samples", "seconds", "rel_mse", "hdr_flip", "patches"}; }
+CsvCells figures_head() {
+    return {"repetition", "samples", "seconds", "rel_mse", "hdr_flip", "patches", "made_seconds"};
+}
 CsvCells figures_cells(std::size_t repetition, const TransportFigures& f) {
-    return {fmt::format("{}", repetition),    fmt::format("{}", f.samples),  fmt::format("{:.9f}", f.seconds),
-            fmt::format("{:.9g}", f.rel_mse), fmt::format("{:.9g}", f.flip), patches_of(f, "")};
+    return {fmt::format("{}", repetition),        fmt::format("{}", f.samples),  fmt::format("{:.9f}", f.seconds),
+            fmt::format("{:.9g}", f.rel_mse),     fmt::format("{:.9g}", f.flip), patches_of(f, ""),
+            fmt::format("{:.9f}", f.made_seconds)};
 }
 
 CsvCells joined(std::initializer_list<CsvCells> parts) {
@@ -94,8 +97,9 @@ std::string json_of(const std::optional<TransportPoint>& p) { return p ? json_of
 
 std::string json_of(const TransportScene& scene, const TransportRow& row) {
     const auto figures = [](const TransportFigures& f) {
-        return fmt::format(R"({{"samples":{},"seconds":{},"rel_mse":{},"hdr_flip":{},"patches":{}}})", f.samples,
-                           json_number(f.seconds), json_number(f.rel_mse), json_number(f.flip), patches_of(f, "null"));
+        return fmt::format(R"({{"samples":{},"seconds":{},"rel_mse":{},"hdr_flip":{},"patches":{},"made_seconds":{}}})",
+                           f.samples, json_number(f.seconds), json_number(f.rel_mse), json_number(f.flip),
+                           patches_of(f, "null"), json_number(f.made_seconds));
     };
     const auto repetition = [&](const Repetition& r) { return json_list(r, figures); };
     const bool has_figures = !row.repetitions.empty();

@@ -207,6 +207,7 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
     LinkNodes nodes(scene, std::move(coarse), patch_size, settings, watch);
     Refiner refiner(scene, nodes, settings, watch);
     HierarchicalSolution solution;
+    solution.without_direct = nodes.without_direct();
     std::vector<Link> links = {{nodes.root(), nodes.root()}};
     bool is_done = false;
     while (!is_done && !watch.is_over() && solution.passes < kMostPasses) {
@@ -216,6 +217,7 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
         }
         watch.begin(fmt::format("links, pass {}", solution.passes + 1), 0);
         refiner.refine(links);
+        if (watch.is_over() && solution.passes == 0) break; // links that are not there yet would pass nothing on
         nodes.sort(links);
         for (uint32_t k = 0; k < kSweeps; ++k) solution.left = nodes.sweep(links);
         ++solution.passes;

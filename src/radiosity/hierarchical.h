@@ -22,7 +22,8 @@ struct HierarchicalSolution {
     PatchTree tree;              // as it was divided
     std::vector<Rgb> irradiance; // [patches] W/m2
     uint64_t links = 0, passes = 0;
-    double left = 0;            // share of the light that the last pass changed
+    double left = 1;            // share of the light that the last pass changed; 1: there was none
+    double without_direct = 0;  // share of the patches that direct light was not found for
     std::size_t bytes = 0;      // of links and of what stands for patches and clusters
     bool reached_limit = false; // ended by the most passes there are
 };

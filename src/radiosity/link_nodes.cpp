@@ -1,6 +1,7 @@
 #include "radiosity/link_nodes.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "base/error.h"
 #include "base/parallel_for.h"
@@ -210,6 +211,10 @@ void LinkNodes::divide(std::span<const uint8_t> wishes) {
         quad_sent_.push_back(patch_sent_[i]);
         quad_gathered_.push_back({});
         tree_.split(view_, i);
+        const Rgb direct = direct_[i]; // the whole's, until theirs is found: where that is ended it is not black
+        const float spread = direct_spread_[i];
+        direct_.resize(tree_.patches.size(), direct);
+        direct_spread_.resize(tree_.patches.size(), spread);
         became_[i] = quad;
         patch_shapes_[i] = linked_patch(view_, tree_.patches[i]);
         stale_.push_back(i);
@@ -231,13 +236,18 @@ void LinkNodes::add_patches() {
                             quarter = {.rays = kDirectRays, .seed = seed_};
     const RowMakers of_whole(scene_, tree_, whole, &watch_), of_quarter(scene_, tree_, quarter, &watch_);
     watch_.begin("direct light", stale_.size());
+    std::atomic<uint64_t> found{0};
     parallel_for_ranges(stale_.size(), 8, [&](uint64_t begin, uint64_t end) {
         const std::unique_ptr<RowMaker> makers[] = {of_whole.for_thread(), of_quarter.for_thread()};
         for (uint64_t k = begin; k < end && !watch_.is_over(); ++k) {
             find_direct(stale_[k], *makers[0], *makers[1]);
+            ++found;
             watch_.done();
         }
     });
+    if (tree_.quads.empty() && !stale_.empty()) { // parts have that of their whole
+        without_direct_ = 1 - static_cast<double>(found) / static_cast<double>(stale_.size());
+    }
     stale_.clear();
 }
 

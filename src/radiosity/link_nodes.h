@@ -69,6 +69,10 @@ public:
     /// light that has changed.
     double sweep(std::span<const Link> links);
 
+    /// Share of the patches that direct light was not found for at the beginning, as the watch was over: they are
+    /// black.
+    double without_direct() const { return without_direct_; }
+
     /// Puts links in receivers' order: those of one stay in theirs.
     void sort(std::vector<Link>& links) const;
 
@@ -119,6 +123,7 @@ private:
     std::vector<float> most_sent_;
     std::vector<PatchCode> became_; // [patches] quads
     std::vector<uint32_t> stale_;   // patches whose direct light is to be found
+    double without_direct_ = 0;
 };
 
 } // namespace pertev

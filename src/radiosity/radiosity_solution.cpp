@@ -13,11 +13,12 @@
 namespace pertev {
 namespace {
 
-/// The last letter is the version. Files of version 1 have no SolvedLight.
-constexpr char kMagic[16] = {'p', 'e', 'r', 't', 'e', 'v', ' ', 'r', 'a', 'd', 'i', 'o', 's', 'i', 't', '2'};
-constexpr char kOldVersion = '1';
+/// The last letter is the version.
+constexpr char kMagic[16] = {'p', 'e', 'r', 't', 'e', 'v', ' ', 'r', 'a', 'd', 'i', 'o', 's', 'i', 't', '3'};
+constexpr int kVersion = 3;
+constexpr int kFirstWithLight = 2, kFirstWithExtent = 3;
 
-/// What a file begins with; then its SolvedLight, text, roots, quads and patches.
+/// What a file begins with; then its SolvedLight, SolvedExtent, text, roots, quads and patches.
 struct Header {
     char magic[16];
     uint64_t text, roots, quads, patches; // bytes; elements
@@ -25,11 +26,14 @@ struct Header {
     float ambient[3];
     uint32_t unused;
 };
-static_assert(sizeof(Header) == 96 && sizeof(SolvedLight) == 32);
+static_assert(sizeof(Header) == 96 && sizeof(SolvedLight) == 32 && sizeof(SolvedExtent) == 8);
 
-bool has_version(const Header& header, char version) {
+/// 0 where it is no such file, or of a later version.
+int version_of(const Header& header) {
     constexpr std::size_t kName = sizeof kMagic - 1;
-    return std::memcmp(header.magic, kMagic, kName) == 0 && header.magic[kName] == version;
+    if (std::memcmp(header.magic, kMagic, kName) != 0) return 0;
+    const int version = header.magic[kName] - '0';
+    return version >= 1 && version <= kVersion ? version : 0;
 }
 
 Hash128 content_hash(const RadiositySolution& solution) {
@@ -40,6 +44,10 @@ Hash128 content_hash(const RadiositySolution& solution) {
     hasher.add(std::as_bytes(std::span(solution.roots)));
     hasher.add(std::as_bytes(std::span(solution.quads)));
     hasher.add(std::as_bytes(std::span(solution.patches)));
+    if (solution.extent != SolvedExtent{}) { // so that whole ones have the hash that they have had from the start
+        hasher.add_value(static_cast<uint32_t>(solution.extent.part));
+        hasher.add(std::as_bytes(std::span(&solution.extent.left, 1)));
+    }
     return hasher.result();
 }
 
@@ -71,6 +79,10 @@ bool is_sound(const RadiositySolution& solution) {
     return true;
 }
 
+bool is_sound(const SolvedExtent& extent) {
+    return extent.part <= SolvedPart::SomeDivided && extent.left >= 0 && extent.left <= 1;
+}
+
 bool is_light(Rgb c) { return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0; }
 
 bool has_light_alone(const RadiositySolution& solution) {
@@ -82,6 +94,24 @@ bool has_light_alone(const RadiositySolution& solution) {
 } // namespace
 
 Hash128 RadiositySolution::hash() const { return content_hash(*this); }
+
+std::string describe(const SolvedExtent& extent) {
+    switch (extent.part) {
+    case SolvedPart::All:
+        return {};
+    case SolvedPart::SomeDirectLight:
+        return fmt::format("direct light alone, and {:.2g} % of the patches are without", 100 * extent.left);
+    case SolvedPart::DirectLight:
+        return "direct light alone, nothing that surfaces pass on";
+    case SolvedPart::SomeBounces:
+        return fmt::format("light whose solution was ended early: its last step changed {:.2g} % of it, or left that "
+                           "much unsent, and patches are not divided as far as was asked for",
+                           100 * extent.left);
+    case SolvedPart::SomeDivided:
+        return "all light, in patches that are not divided as far as was asked for";
+    }
+    return {};
+}
 
 Hash128 geometry_hash(const Scene& scene) {
     Hasher hasher;
@@ -139,12 +169,13 @@ void write_solution(const std::filesystem::path& path, const RadiositySolution& 
     header.ambient[0] = solution.ambient.r, header.ambient[1] = solution.ambient.g,
     header.ambient[2] = solution.ambient.b;
     std::vector<std::byte> bytes;
-    bytes.reserve(sizeof header + sizeof(SolvedLight) + solution.made.size() + solution.bytes());
+    bytes.reserve(sizeof header + sizeof(SolvedLight) + sizeof(SolvedExtent) + solution.made.size() + solution.bytes());
     const auto append = [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
     append(std::as_bytes(std::span(&header, 1)));
     PERTEV_CHECK(solution.light.has_value());
     const SolvedLight light = *solution.light;
     append(std::as_bytes(std::span(&light, 1)));
+    append(std::as_bytes(std::span(&solution.extent, 1)));
     append(std::as_bytes(std::span(solution.made)));
     append(std::as_bytes(std::span(solution.roots)));
     append(std::as_bytes(std::span(solution.quads)));
@@ -158,22 +189,24 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     Header header;
     if (bytes.size() < sizeof header) refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
     take(bytes, std::span(&header, 1));
-    const bool is_old = has_version(header, kOldVersion);
-    if (!is_old && !has_version(header, kMagic[sizeof kMagic - 1])) {
+    const int version = version_of(header);
+    if (version == 0) {
         refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
     }
     constexpr uint64_t kMost = uint64_t(1) << 40; // so that no sum below passes 64 bits
     const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMost;
-    const uint64_t of_light = is_old ? 0 : sizeof(SolvedLight);
+    const bool has_light = version >= kFirstWithLight, has_extent = version >= kFirstWithExtent;
+    const uint64_t before = (has_light ? sizeof(SolvedLight) : 0) + (has_extent ? sizeof(SolvedExtent) : 0);
     const uint64_t size = !has_sizes ? 0
-                                     : of_light + header.text + header.roots * sizeof(PatchCode) +
+                                     : before + header.text + header.roots * sizeof(PatchCode) +
                                            header.quads * sizeof(PatchQuad) + header.patches * sizeof(PatchLight);
     if (!has_sizes || size != bytes.size()) {
         refuse_file(path, fmt::format("a radiosity solution that was cut short or damaged: {} bytes, it says {}",
                                       file.size(), sizeof header + size));
     }
     RadiositySolution solution;
-    if (!is_old) take(bytes, std::span(&solution.light.emplace(), 1));
+    if (has_light) take(bytes, std::span(&solution.light.emplace(), 1));
+    if (has_extent) take(bytes, std::span(&solution.extent, 1));
     solution.geometry = header.geometry;
     solution.ambient = {header.ambient[0], header.ambient[1], header.ambient[2]};
     solution.made.resize(header.text);
@@ -184,15 +217,21 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     take(bytes, std::span(solution.roots));
     take(bytes, std::span(solution.quads));
     take(bytes, std::span(solution.patches));
-    if (content_hash(solution) != header.content || !is_sound(solution) || !has_light_alone(solution)) {
+    if (content_hash(solution) != header.content || !is_sound(solution.extent) || !is_sound(solution) ||
+        !has_light_alone(solution)) {
         refuse_file(path, "a radiosity solution that was damaged: what it holds is not what was written");
     }
     check_scene(path, solution, scene);
-    if (is_old) {
+    if (!has_light) {
         messages.warn(fmt::format("{}: made by an earlier version, which did not write down what light it was solved "
                                   "for: where lights or materials have changed since, it shows those of then (pertev "
                                   "solve radiosity makes a new one)",
                                   path.string()));
+    }
+    if (solution.extent.part != SolvedPart::All) {
+        messages.warn(fmt::format("{}: was ended while it was solved, and holds {} (pertev solve radiosity makes a "
+                                  "whole one)",
+                                  path.string(), describe(solution.extent)));
     }
     return solution;
 }

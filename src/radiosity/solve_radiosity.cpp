@@ -239,10 +239,19 @@ SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const Radi
     stats.factors = solution.links;
     stats.steps = solution.passes;
     stats.left = solution.left;
+    stats.without_direct = solution.without_direct;
     stats.reached_limit = solution.reached_limit;
     stats.bytes = solution.bytes;
     stats.solve_seconds = time.seconds();
     return {std::move(solution.tree), std::move(solution.irradiance), {}, {}};
+}
+
+/// Of a solution that was ended before its patches were divided.
+SolvedExtent extent_of(const SolveStats& stats, RadiositySolver solver) {
+    const auto share = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
+    if (stats.without_direct > 0) return {SolvedPart::SomeDirectLight, share(stats.without_direct)};
+    if (solver == RadiositySolver::Hierarchical && stats.steps == 0) return {SolvedPart::DirectLight, 1};
+    return {SolvedPart::SomeBounces, share(stats.left)};
 }
 
 } // namespace
@@ -258,6 +267,8 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
                               ? solve_links(scene, patch_size, settings, watch, stats)
                               : solve_rows(scene, patch_size, settings, watch, stats);
     stats.patches = shown.tree.patches.size();
+    SolvedExtent extent;
+    if (watch.is_over()) extent = extent_of(stats, settings.solver);
     const Stopwatch divide_time;
     if (settings.subdivisions > 0 && !watch.is_over()) {
         const PatchTree sources = shown.tree;
@@ -268,6 +279,7 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
         }
     }
     stats.was_interrupted = watch.is_over();
+    if (stats.was_interrupted && extent.part == SolvedPart::All) extent.part = SolvedPart::SomeDivided;
     RadiositySolution& solution = solved.solution;
     solution.geometry = geometry_hash(*prepared.scene);
     solution.light = solved_light(*prepared.scene);
@@ -276,6 +288,7 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
     solution.roots = std::move(shown.tree.roots);
     solution.quads = std::move(shown.tree.quads);
     solution.ambient = shown.ambient;
+    solution.extent = extent;
     stats.shown = solution.patches.size();
     stats.divide_seconds = divide_time.seconds();
     return solved;

@@ -22,6 +22,7 @@ struct SolveStats {
     uint64_t factors = 0;            // not 0
     uint64_t steps = 0;              // SolvedSystem's
     double left = 0;                 // SolvedSystem's
+    double without_direct = 0;       // share of the patches; 0 unless it was interrupted
     double factor_seconds = 0, solve_seconds = 0, divide_seconds = 0;
     std::size_t bytes = 0; // that the system took, of the host's memory
     bool was_interrupted = false;

@@ -23,8 +23,23 @@ bool is_all_unlit(const Scene& scene) {
         return scene.materials[instance.material].kind == MaterialKind::Unlit;
     });
 }
+bool gives_light(const Environment& environment) {
+    const Rgb scale = environment.scale;
+    if (environment.image.pixels.empty()) return max_component(scale) > 0;
+    const std::vector<float>& pixels = environment.image.pixels;
+    for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) {
+        if (max_component(scale * Rgb{pixels[i], pixels[i + 1], pixels[i + 2]}) > 0) return true;
+    }
+    return false;
+}
 bool has_any_light(const Scene& scene) {
-    return has_punctual_light(scene) || has_lamp(scene) || scene.environment || is_all_unlit(scene);
+    return has_punctual_light(scene) || has_lamp(scene) || is_all_unlit(scene) ||
+           (scene.environment && gives_light(*scene.environment));
+}
+/// "no lamp, no point, spot or directional light, no environment"
+std::string no_lights_of(const Scene& scene) {
+    return fmt::format("no lamp, no point, spot or directional light, {}",
+                       scene.environment ? "and the environment is black" : "no environment");
 }
 
 void refuse_layers(bool is_wrong, const std::string& why) {
@@ -113,14 +128,11 @@ void check_camera(const RenderSettings& settings, const Camera& camera) {
 
 std::string why_dark(const RenderSettings& settings, const Scene& scene) {
     if (settings.integrator == IntegratorKind::PhotonMap && settings.path.max_depth > 0 && !has_any_light(scene)) {
-        return fmt::format("--integrator {}: photons leave lights, and this scene has none: no lamp, no point, spot or "
-                           "directional light, no environment",
-                           integrator_name(settings));
+        return fmt::format("--integrator {}: photons leave lights, and this scene has none: {}",
+                           integrator_name(settings), no_lights_of(scene));
     }
     if (settings.integrator == IntegratorKind::Radiosity && !has_any_light(scene)) {
-        return "radiosity: surfaces pass light on, and this scene has none: no lamp, no point, spot or directional "
-               "light, "
-               "no environment";
+        return "radiosity: surfaces pass light on, and this scene has none: " + no_lights_of(scene);
     }
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
     return fmt::format("--integrator {}: point, spot and directional lights alone light its surfaces, and {}: "
@@ -130,6 +142,12 @@ std::string why_dark(const RenderSettings& settings, const Scene& scene) {
 
 void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages) {
     if (const std::string why = why_dark(settings, scene); !why.empty()) throw Error(ErrorCode::BadInput, why);
+    const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;
+    if (!is_ambient && !has_any_light(scene)) {
+        messages.warn("nothing in this scene gives light: " + no_lights_of(scene) +
+                      "; what light would have to show is black (--environment 1,1,1 gives some)");
+        return;
+    }
     if (!lacks_lights(settings, scene)) return;
     messages.note(
         fmt::format("--integrator {}: point, spot and directional lights light its surfaces, and {}; surfaces "

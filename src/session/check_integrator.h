@@ -23,7 +23,8 @@ void check_camera(const RenderSettings& settings, const Camera& camera);
 /// photon leaves a light. Empty where something may be lit.
 std::string why_dark(const RenderSettings& settings, const Scene& scene);
 
-/// Throws Error(BadInput) that says why_dark; a note tells what whitted leaves out.
+/// Throws Error(BadInput) that says why_dark; a note tells what whitted leaves out, a warning that nothing in the scene
+/// gives light, its environment neither.
 void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages);
 
 } // namespace pertev

@@ -128,6 +128,24 @@ class Radiosity(CliTest):
             self.assertEqual([event["event"] for event in events], ["error"])
         self.assertEqual([name for name in self.files() if name.startswith("long")], [])
 
+    def test_what_is_ended_while_links_are_made_is_kept_with_what_it_holds_and_shown_with_a_warning(self):
+        program = self.start("solve", "radiosity", "cornell-box", "-o", "ended.rad", "--solver", "hierarchical",
+                             "--patch-size", "0.01", "--link-error", "0.001")
+        next(line for line in program.stdout if json.loads(line)["event"] == "radiosity")
+        self.wait_while(program, False)
+        time.sleep(0.3)
+        events, _ = self.end(program)
+        self.assertEqual(program.returncode, 75)
+        (solved,) = [event for event in events if event["event"] == "radiosity_solved"]
+        self.assertTrue(solved["interrupted"])
+        self.assertIn("light", solved["holds"])
+        outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "ended.rad")
+        self.assertIn("ended.rad: was ended while it was solved, and holds " + solved["holds"], outcome.stderr)
+
+    def test_a_solution_is_not_written_under_the_name_of_a_picture(self):
+        for name in ["box.png", "box.EXR"]:
+            self.refuse(2, "solve", "radiosity", "cornell-box", "-o", name, *COARSE, says=["a solution is no picture", "box.rad"])
+
     def test_memory_stays_below_what_was_said_and_a_lower_limit_is_refused(self):
         for flags in [["--patch-size", "0.04"], ["--patch-size", "0.04", "--solver", "southwell"],
                       ["--patch-size", "0.08", "--form-factors", "hemicube", "--hemicube", "32"],

@@ -11,7 +11,10 @@
 #include "image/metrics.h"
 #include "session/open_scene.h"
 #include "tests/support/cpu_seconds.h"
+#include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
+#include "tests/support/radiosity_scenes.h"
+#include "tests/support/render_scenes.h"
 #include "tests/support/room_with_ball.h"
 
 using namespace pertev;
@@ -164,5 +167,25 @@ TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, f
         CAPTURE(photons);
         CHECK(photons < 1.5 * path);
         CHECK(by_photons == doctest::Approx(by_path).epsilon(0.01));
+    }
+}
+
+TEST_CASE("no radius is too small to divide light by its square, nor k photons in one place") {
+    Queue queue = Queue::make_cpu();
+    Scene scene = test::closed_box(test::white(0.5f)); // where photons are left, so that there is something to look up
+    scene.lights.push_back(test::point_light({0, 0.5f, 0}, {1, 1, 1}));
+    RenderSettings settings;
+    settings.integrator = IntegratorKind::PhotonMap;
+    settings.width = settings.height = 16;
+    settings.samples = 2;
+    settings.photon_map.photons = 256;
+    settings.photon_map.gather = PhotonGather::Direct;
+    for (const float radius : {1e-30f, 3e-20f, kLeastPhotonRadius, 1e30f}) {
+        for (const uint32_t nearest : {0u, 2u}) {
+            settings.photon_map.radius = settings.photon_map.caustic_radius = radius;
+            settings.photon_map.nearest = nearest;
+            CAPTURE(radius);
+            CHECK(test::render(queue, scene, test::camera_down({0, 0, 0}, 0.2f), settings).invalid_samples == 0);
+        }
     }
 }

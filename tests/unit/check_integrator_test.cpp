@@ -53,3 +53,34 @@ TEST_CASE("a scene that cast or whitted would show as black is refused, with wha
     scene.lights.front().intensity = {0, 0, 0};
     CHECK(!said(IntegratorKind::Cast, scene).empty());
 }
+
+TEST_CASE(
+    "an environment that is black is no light: what needs some refuses the scene, the others say that it is dark") {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 1), test::white());
+    const std::string none = "no lamp, no point, spot or directional light, and the environment is black";
+    const auto check_dark = [&] {
+        CHECK(said(IntegratorKind::PhotonMap, scene) ==
+              "--integrator photon_map: photons leave lights, and this scene has none: " + none);
+        CHECK(said(IntegratorKind::Radiosity, scene) ==
+              "radiosity: surfaces pass light on, and this scene has none: " + none);
+        for (const IntegratorKind kind :
+             {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Light, IntegratorKind::Bidirectional,
+              IntegratorKind::Distributed, IntegratorKind::IrradianceCache, IntegratorKind::Whitted}) {
+            CHECK(said(kind, scene).starts_with("nothing in this scene gives light: " + none));
+        }
+        CHECK(said(IntegratorKind::Whitted, scene, Rgb{1, 1, 1}).empty()); // asked for
+    };
+    scene.environment = Environment{.image = {}, .scale = {0, 0, 0}, .rotation = 0};
+    check_dark();
+    scene.environment = Environment{.image = {2, 1, 3, std::vector<float>(6)}, .scale = {1, 1, 1}, .rotation = 0};
+    check_dark();
+    scene.environment->image.pixels[5] = 1e-6f;
+    CHECK(said(IntegratorKind::Path, scene).empty());
+    CHECK(said(IntegratorKind::PhotonMap, scene).empty());
+    scene.environment->scale.b = 0; // which is all that it has
+    check_dark();
+    test::add(scene, test::floor_at(1, 1), {.name = "lamp", .emission = {1, 1, 1}});
+    CHECK(said(IntegratorKind::Path, scene).empty());
+    CHECK(said(IntegratorKind::Radiosity, scene).empty());
+}

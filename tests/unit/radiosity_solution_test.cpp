@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -29,8 +30,8 @@ RadiositySettings quick_settings() {
     return settings;
 }
 
-Scene lit_box() {
-    Scene scene = test::closed_box(test::white(0.5f));
+Scene lit_box(float reflectance = 0.5f) {
+    Scene scene = test::closed_box(test::white(reflectance));
     test::add(scene, test::sheet({0.2f, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}), test::lamp_material(0, 5));
     return scene;
 }
@@ -148,7 +149,7 @@ TEST_CASE("a solution comes back from its file, and another scene's or a damaged
     for (int i = 0; i < 300; ++i) { // a bit somewhere
         std::vector<std::byte> damaged = whole;
         const auto most = static_cast<uint32_t>(whole.size());
-        const std::size_t at = i < 128 ? static_cast<std::size_t>(i) : random.below(most);
+        const std::size_t at = i < 136 ? static_cast<std::size_t>(i) : random.below(most);
         if (at >= 92 && at < 96) continue; // no part of it
         damaged[at] ^= std::byte(1u << random.below(8));
         write_bytes(path, damaged);
@@ -234,7 +235,7 @@ TEST_CASE("a solution's file of the version before is read, with a warning that 
     write_solution(path, solution);
     std::vector<std::byte> bytes = read_file(path);
     bytes[15] = std::byte('1');
-    bytes.erase(bytes.begin() + 96, bytes.begin() + 128); // had no hashes of light
+    bytes.erase(bytes.begin() + 96, bytes.begin() + 136); // had no hashes of light, nor how far it was solved
     write_bytes(path, bytes);
     scene.materials[6].emission = grey(50);
     Messages messages;
@@ -246,9 +247,85 @@ TEST_CASE("a solution's file of the version before is read, with a warning that 
     CHECK(messages.all()[0].text.find("by an earlier version") != std::string::npos);
     scene.meshes[0].positions[1].x += 1;
     CHECK(why_refused(path, scene).find("of another scene") != std::string::npos);
-    bytes[15] = std::byte('3');
+    bytes[15] = std::byte('4');
     write_bytes(path, bytes);
     CHECK(why_refused(path, scene).find("no radiosity solution") != std::string::npos);
+}
+
+TEST_CASE("a solution that was ended says what it holds, in its file too, and is shown with a warning") {
+    const std::filesystem::path path = test::scratch_folder() / "ended";
+    const Scene scene = lit_box();
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    /// Ended at the `heard`th time that it tells of `during`.
+    const auto ended = [&](RadiositySolver solver, const std::string& during, int heard) {
+        RadiositySettings settings = quick_settings();
+        settings.solver = solver;
+        settings.patch_size = 0.2f;
+        settings.contrast = 0.01f;
+        int count = 0;
+        const SolvedRadiosity solved = solve_radiosity(
+            prepared, settings, [&](const char* what, double) { return what != during || ++count < heard; });
+        CHECK(solved.stats.was_interrupted);
+        write_solution(path, solved.solution);
+        Messages said;
+        const RadiositySolution back = read_solution(path, scene, said);
+        CHECK(back.hash() == solved.solution.hash());
+        CHECK(back.extent == solved.solution.extent);
+        REQUIRE(said.all().size() == 1);
+        CHECK(said.all()[0].is_warning);
+        CHECK(said.all()[0].text.find("was ended while it was solved, and holds " + describe(back.extent)) !=
+              std::string::npos);
+        return back;
+    };
+    const RadiositySolution begun = ended(RadiositySolver::Hierarchical, "direct light", 1);
+    CHECK(begun.extent == SolvedExtent{SolvedPart::SomeDirectLight, 1});
+    const RadiositySolution direct = ended(RadiositySolver::Hierarchical, "links, pass 1", 1);
+    CHECK(direct.extent == SolvedExtent{SolvedPart::DirectLight, 1});
+    const RadiositySolution linked = ended(RadiositySolver::Hierarchical, "links, pass 2", 1);
+    CHECK(linked.extent.part == SolvedPart::SomeBounces);
+    CHECK(linked.extent.left < 1);
+    const RadiositySolution swept = ended(RadiositySolver::GaussSeidel, "solving", 1);
+    CHECK(swept.extent.part == SolvedPart::SomeBounces);
+    CHECK(swept.extent.left == 1);
+    const RadiositySolution divided = ended(RadiositySolver::GaussSeidel, "dividing patches", 1);
+    CHECK(divided.extent == SolvedExtent{SolvedPart::SomeDivided, 0});
+
+    RadiositySolution whole = solution_of(scene);
+    CHECK(whole.extent == SolvedExtent{});
+    const Hash128 hash = whole.hash();
+    for (const SolvedPart part : {SolvedPart::DirectLight, SolvedPart::SomeDivided}) { // by what else they differ
+        whole.extent.part = part;
+        CHECK(whole.hash() != hash);
+        CHECK_FALSE(describe(whole.extent).empty());
+    }
+    whole.extent.left = 2; // no share
+    write_solution(path, whole);
+    CHECK(why_refused(path, scene).find("was damaged") != std::string::npos);
+}
+
+TEST_CASE("where links are ended while patches are divided, the parts keep the light of the whole") {
+    const Scene scene = lit_box(0.02f);
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RadiositySettings settings = quick_settings();
+    settings.solver = RadiositySolver::Hierarchical;
+    settings.patch_size = 0.1f;
+    settings.subdivisions = 0;
+    bool has_links = false;
+    const SolvedRadiosity solved = solve_radiosity(prepared, settings, [&](const char* what, double) {
+        has_links |= std::string(what).starts_with("links");
+        return !has_links || std::string(what) != "direct light";
+    });
+    CHECK(solved.stats.was_interrupted);
+    CHECK(solved.solution.extent.part == SolvedPart::SomeBounces);
+    CHECK(solved.solution.patches.size() > 24);                    // some were divided
+    const auto dim_share = [](const RadiositySolution& solution) { // what other surfaces send is a hundredth
+        const auto dim = std::ranges::count_if(solution.patches,
+                                               [](const PatchLight& patch) { return luminance(patch.mean) < 0.02f; });
+        return static_cast<double>(dim) / static_cast<double>(solution.patches.size());
+    };
+    CHECK(dim_share(solved.solution) < 0.5); // of parts that are black 0.82
 }
 
 TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {

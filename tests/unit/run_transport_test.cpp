@@ -14,6 +14,7 @@
 #include "radiosity/radiosity_view.h"
 #include "session/choose_camera.h"
 #include "session/open_scene.h"
+#include "tests/support/cpu_seconds.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -132,6 +133,48 @@ TEST_CASE("what irradiance caching may take of the host's memory stands beside t
     CHECK(cache.host_bytes == RecordStore::predicted_host_bytes(16 * 16));
     CHECK(cache.host_bytes > 1000); // records have places
     CHECK(row_named(scene, "path").host_bytes == 0);
+}
+
+TEST_CASE("irradiance caching makes its records once, in the time that is told, and goes on by what samples take") {
+    SmallRun small;
+    small.settings.integrators = {"irradiance_cache"};
+    small.settings.reference_samples = 2;
+    small.settings.repetitions = 2;
+    small.settings.picture.width = small.settings.picture.height = 32;
+    small.settings.max_samples = 4;
+    const TransportScene scene = small.run();
+    const TransportRow& row = row_named(scene, "irradiance_cache");
+    REQUIRE(row.repetitions.size() == 2);
+    for (const Repetition& repetition : row.repetitions) {
+        REQUIRE(repetition.size() == 3);
+        const double made_s = repetition.front().made_seconds;
+        CHECK(made_s > 0.5 * repetition.front().seconds);
+        CHECK(repetition.back().made_seconds < 1.1 * made_s); // once
+        CHECK(repetition.back().seconds > repetition.back().made_seconds);
+    }
+
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(small.scene, {}, messages);
+    RenderSettings picture = small.settings.picture;
+    picture.integrator = IntegratorKind::IrradianceCache;
+    picture.width = picture.height = 64;
+    Session session(small.queue, prepared, small.camera, picture);
+    const double before_s = test::cpu_seconds();
+    int told = 0;
+    warm_up(session, [&] { ++told; });
+    const double warm_s = test::cpu_seconds() - before_s;
+    CHECK(session.history().samples == 0);
+    CHECK(told == 2); // as it begins, and a moment later
+    const double then_s = test::cpu_seconds();
+    session.render(1);
+    CHECK(warm_s < 0.6 * (test::cpu_seconds() - then_s)); // of records alone
+
+    picture.integrator = IntegratorKind::Path;
+    session.set_settings(picture);
+    int samples = 0;
+    warm_up(session, [&] { ++samples; });
+    CHECK(samples == 1); // there is nothing to make
+    CHECK(session.history().samples == 0);
 }
 
 TEST_CASE("the time of a solution's picture is that of solving and rendering, and its patches halve") {

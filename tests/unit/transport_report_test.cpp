@@ -84,6 +84,42 @@ TEST_CASE("samples at equal time leave out what begins a picture") {
     CHECK(point->samples == doctest::Approx(2));
 }
 
+TEST_CASE("what is made before samples is a time that comes once") {
+    // 10 s of records, then 0.1 s a sample, whose error is 1 / n: straight in the logarithm of what samples took.
+    Repetition repetition;
+    for (uint32_t n = 1; n <= 64; n *= 8) repetition.push_back({n, 10 + 0.1 * n, 1.0 / n, 0.5 / n, 0, 10});
+    const auto point = at_time(transport_row("irradiance_cache", {repetition}), 10 + 0.1 * 24);
+    REQUIRE(point);
+    CHECK(point->rel_mse.mean == doctest::Approx(1.0 / 24).epsilon(1e-5));
+    CHECK(point->flip.mean == doctest::Approx(0.5 / 24).epsilon(1e-5));
+    CHECK(point->seconds.mean == doctest::Approx(12.4));
+}
+
+TEST_CASE("the next samples are those that fit into what is left, and records are not made again for them") {
+    const TransportFigures begun = {.samples = 1, .seconds = 3, .made_seconds = 2.9};
+    CHECK(next_samples(begun, 5, 1u << 16) == 2);
+    CHECK(next_samples({.samples = 8, .seconds = 3.7, .made_seconds = 2.9}, 5, 1u << 16) == 16);
+    CHECK(next_samples({.samples = 16, .seconds = 4.5, .made_seconds = 2.9}, 5, 1u << 16) == 21); // 0.1 s each
+    CHECK(next_samples({.samples = 20, .seconds = 4.9, .made_seconds = 2.9}, 5, 1u << 16) == 0);  // one more
+    CHECK(next_samples(begun, 3, 1u << 16) == 0);
+    CHECK(next_samples(begun, 1e-9, 1u << 16) == 0);
+    CHECK(next_samples({.samples = 1, .seconds = 1}, 5, 1u << 16) == 2);
+    CHECK(next_samples({.samples = 2, .seconds = 2}, 5, 1u << 16) == 4);
+    CHECK(next_samples({.samples = 4, .seconds = 4}, 5, 1u << 16) == 5);
+    CHECK(next_samples({.samples = 64, .seconds = 1}, 1000, 64) == 0);
+    CHECK(next_samples({.samples = 64, .seconds = 1}, 1000, 100) == 100);
+    CHECK(next_samples({.samples = 1, .seconds = 0}, 1, 8) == 2);
+}
+
+TEST_CASE("equal samples are the most that all have a picture of") {
+    TransportScene scene = small_transport_scene();
+    for (Repetition& repetition : scene.rows[0].repetitions) repetition.push_back({13, 1.3, 0.1, 0.1}); // by path alone
+    CHECK(equal_samples(scene) == 8);
+    scene.rows[1].repetitions[1].pop_back(); // an interrupt
+    CHECK(equal_samples(scene) == 4);
+    REQUIRE(at_samples(scene.rows[0], 4));
+}
+
 TEST_CASE("an error of 0 is interpolated as it is") {
     TransportRow row = transport_row("raster", {{{1, 1, 0, 0.5}, {2, 2, 0, 0.5}}});
     const auto point = at_time(row, 1.5);
@@ -128,7 +164,7 @@ TEST_CASE("of solutions the last that is there by a time counts, whole, and none
     CHECK(equal_seconds(scene) == doctest::Approx(5)); // there is nothing else
     TransportReport report = {.device = "CPU"};
     report.scenes.push_back(scene);
-    CHECK(test::has(csv_of(report), ",400\n"));
+    CHECK(test::has(csv_of(report), ",400,0.000000000\n"));
     CHECK(test::has(json_of(report), R"("is_solved":true,"device_bytes":3145728,"host_bytes":2097152)"));
     const std::string html = html_of(report);
     test::check_tags(html);

@@ -90,7 +90,7 @@ private:
             find_nearest(structure_of<kSearch>(map), place.surface.position, map.radius, gather.nearest_count, nearest);
         float radius_squared = square(map.radius);
         if (count == gather.nearest_count) radius_squared = nearest[--count].distance_squared;
-        if (!(radius_squared > 0)) return {};
+        if (!(radius_squared >= square(kLeastPhotonRadius))) return {}; // all in one place
         Rgb all = {};
         for (uint32_t k = 0; k < count; ++k) all += sent_on(map, place, nearest[k].index);
         return (kInvPi / radius_squared) * all;

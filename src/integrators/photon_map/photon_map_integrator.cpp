@@ -127,8 +127,8 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
     const uint64_t kinds = picture_settings_.max_depth < 2 ? 0 : target_count_ > 0 ? 2 : 1;
     run(job, kinds * picture_map_.photons, true);
     const float shrunk = radius_of_pass(pass), largest = length(world_.centre) + world_.radius;
-    job.near = shrunk * global_radius_;
-    job.maps = maps_.build(job.near, shrunk * caustic_radius_, largest);
+    job.near = max(shrunk * global_radius_, kLeastPhotonRadius);
+    job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kLeastPhotonRadius), largest);
     run(job, pixels, false);
     rays_.camera += pixels;
 }

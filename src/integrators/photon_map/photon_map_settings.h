@@ -36,8 +36,11 @@ inline constexpr uint32_t kMostPhotons = 1u << 24;    // PhotonMapSettings::phot
 inline constexpr uint32_t kMostNearestPhotons = 1024; // PhotonMapSettings::nearest
 inline constexpr uint32_t kMostPhotonDepth = 64;      // the largest max_depth: there is room for photons of all depths
 inline constexpr uint64_t kMostStored = (1u << 30) - 1; // photons of a pass that there is room for
-inline constexpr float kRadiusOfScene = 1.0f / 50;      // of the radius of a sphere round the scene
-inline constexpr float kCausticRadius = 1.0f / 4;       // of the global map's radius
+/// Metres: no pass has a smaller radius. Light is divided by its square, and places are no nearer to each other than
+/// rounding lets them be.
+inline constexpr float kLeastPhotonRadius = 1e-9f;
+inline constexpr float kRadiusOfScene = 1.0f / 50; // of the radius of a sphere round the scene
+inline constexpr float kCausticRadius = 1.0f / 4;  // of the global map's radius
 
 /// Whether photons that so many scatterings let through can be kept.
 constexpr bool has_room_for_photons(uint32_t photons, uint32_t max_depth) {
