@@ -67,7 +67,14 @@ void RenderLoop::run(const std::function<bool()>& goes_on) {
 
 void RenderLoop::handle(const Command& command) {
     is_new_ = true;
-    if (const Steer* asked = std::get_if<Steer>(&command)) return steer(*asked);
+    if (const Steer* asked = std::get_if<Steer>(&command)) {
+        try {
+            return steer(*asked);
+        } catch (const Error& error) { // of a place that was looked at, or of a light meter
+            if (error.code() == ErrorCode::DeviceFault) throw;
+            return audience_.tell(asked->client, notice_text("error", error.what()));
+        }
+    }
     if (const Save* save = std::get_if<Save>(&command)) return saves_.push_back(*save);
     is_done_ = false;                   // somebody came: shows the present picture again
     if (!last_) moved_at_s_ = now_s_(); // or a small one at once: a sample of a large picture may take long
@@ -217,6 +224,8 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
     } catch (const Error& error) {
         if (error.code() == ErrorCode::DeviceFault) throw;
         audience_.tell(0, notice_text("error", error.what()));
+        made_share_ = 1;
+        is_done_ = error.code() == ErrorCode::OverLimit; // what is in view asks for too much: until it is another view
         const ViewState failed = std::exchange(view_, shown_);
         view_.display = failed.display;
         // What was set at rest is first asked for by a frame of the movement.

@@ -346,7 +346,7 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
         });
     }
     frame.render_s = render.seconds();
-    if (added > 0) frame.kind_seconds = session_.stats().kind_seconds;
+    if (added > 0 && session_.settings().time_kinds) frame.kind_seconds = session_.stats().kind_seconds;
     if (added > 0 && !is_small) sample_s_ = frame.render_s / added;
     if (abandon_ && !is_small) return std::nullopt;
     frame.samples = session_.history().samples;

@@ -240,7 +240,7 @@ void LinkNodes::add_patches() {
     parallel_for_ranges(stale_.size(), 8, [&](uint64_t begin, uint64_t end) {
         const std::unique_ptr<RowMaker> makers[] = {of_whole.for_thread(), of_quarter.for_thread()};
         for (uint64_t k = begin; k < end && !watch_.is_over(); ++k) {
-            find_direct(stale_[k], *makers[0], *makers[1]);
+            if (!find_direct(stale_[k], *makers[0], *makers[1])) break;
             ++found;
             watch_.done();
         }
@@ -251,8 +251,9 @@ void LinkNodes::add_patches() {
     stale_.clear();
 }
 
-/// Of a patch that may be divided quarter by quarter, to see whether it should be.
-void LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_quarter) {
+/// Of a patch that may be divided quarter by quarter, to see whether it should be. False, and the patch is as before,
+/// where the watch was over meanwhile: rows are cut short then.
+bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_quarter) {
     const Patch& patch = tree_.patches[number];
     const uint32_t parts = can_divide(kIsPatch | number) ? 4 : 1;
     Rgb sum;
@@ -268,9 +269,11 @@ void LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_qu
         sum += light;
         least = min(least, luminance(light)), most = max(most, luminance(light));
     }
+    if (watch_.is_over()) return false;
     direct_[number] = (1.0f / static_cast<float>(parts)) * sum;
     direct_spread_[number] = most - least;
     patch_sent_[number] = patch.reflectance * direct_[number];
+    return true;
 }
 
 std::size_t LinkNodes::bytes() const { return most_bytes(tree_.patches.size(), clusters_.faces.size()); }

@@ -100,7 +100,7 @@ private:
     std::size_t index_of(NodeCode code) const;
     std::size_t index_count() const { return clusters_.clusters.size() + tree_.quads.size() + tree_.patches.size(); }
     void add_patches();
-    void find_direct(uint32_t patch, RowMaker& of_whole, RowMaker& of_quarter);
+    bool find_direct(uint32_t patch, RowMaker& of_whole, RowMaker& of_quarter);
     void gather(std::span<const Link> links);
     void receive(NodeCode receiver, std::span<const Link> links);
     Rgb push(PatchCode code, Rgb above, double& changed, double& all);

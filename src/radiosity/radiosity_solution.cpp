@@ -100,11 +100,11 @@ std::string describe(const SolvedExtent& extent) {
     case SolvedPart::All:
         return {};
     case SolvedPart::SomeDirectLight:
-        return fmt::format("direct light alone, and {:.2g} % of the patches are without", 100 * extent.left);
+        return fmt::format("direct light alone, and {:.3g} % of the patches are without", 100 * extent.left);
     case SolvedPart::DirectLight:
         return "direct light alone, nothing that surfaces pass on";
     case SolvedPart::SomeBounces:
-        return fmt::format("light whose solution was ended early: its last step changed {:.2g} % of it, or left that "
+        return fmt::format("light whose solution was ended early: its last step changed {:.3g} % of it, or left that "
                            "much unsent, and patches are not divided as far as was asked for",
                            100 * extent.left);
     case SolvedPart::SomeDivided:

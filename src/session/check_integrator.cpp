@@ -18,11 +18,12 @@ bool has_lamp(const Scene& scene) {
     return std::ranges::any_of(scene.instances,
                                [&](const Instance& instance) { return scene.materials[instance.material].is_lamp(); });
 }
-bool is_all_unlit(const Scene& scene) {
-    return std::ranges::all_of(scene.instances, [&](const Instance& instance) {
-        return scene.materials[instance.material].kind == MaterialKind::Unlit;
-    });
+auto is_unlit_in(const Scene& scene) {
+    return [&](const Instance& instance) { return scene.materials[instance.material].kind == MaterialKind::Unlit; };
 }
+bool is_all_unlit(const Scene& scene) { return std::ranges::all_of(scene.instances, is_unlit_in(scene)); }
+/// Paths that find it take its colour on, though it is no light.
+bool has_unlit(const Scene& scene) { return std::ranges::any_of(scene.instances, is_unlit_in(scene)); }
 bool gives_light(const Environment& environment) {
     const Rgb scale = environment.scale;
     if (environment.image.pixels.empty()) return max_component(scale) > 0;
@@ -143,7 +144,7 @@ std::string why_dark(const RenderSettings& settings, const Scene& scene) {
 void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages) {
     if (const std::string why = why_dark(settings, scene); !why.empty()) throw Error(ErrorCode::BadInput, why);
     const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;
-    if (!is_ambient && !has_any_light(scene)) {
+    if (!is_ambient && !has_any_light(scene) && !has_unlit(scene)) {
         messages.warn("nothing in this scene gives light: " + no_lights_of(scene) +
                       "; what light would have to show is black (--environment 1,1,1 gives some)");
         return;

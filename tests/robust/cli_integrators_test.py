@@ -50,7 +50,8 @@ class Integrators(CliTest):
                                         "--device", DEVICE, "--json", *flags], cwd=self.folder, env=self.environment,
                                        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             self.addCleanup(program.kill)
-            first = next(line for line in program.stdout if json.loads(line)["event"] == "progress")
+            first = next(line for line in program.stdout
+                         if json.loads(line)["event"] == "progress" and json.loads(line)["samples"] > 0)
             program.send_signal(signal.SIGINT)
             lines = (first + program.communicate(timeout=PATIENCE_S)[0]).decode().splitlines()
             done = next(json.loads(line) for line in lines if json.loads(line)["event"] == "done")

@@ -40,7 +40,9 @@ HD inline bool is_hidden_back(const InstanceView& placed, const SeenPlane& plane
 inline constexpr uint64_t kMostWorkOfPixel = 1024;
 inline constexpr uint64_t kWideCells = 256; // of no concern up to here
 
-HD inline uint64_t most_wide(uint64_t pixels) { return min(kMostWorkOfPixel * pixels / kWideCells, uint64_t(1) << 30); }
+/// Of a picture; a tiny one may have as many as one of 64x64.
+HD inline uint64_t most_work(uint64_t pixels) { return kMostWorkOfPixel * max(pixels, uint64_t(4096)); }
+HD inline uint64_t most_wide(uint64_t pixels) { return min(most_work(pixels) / kWideCells, uint64_t(1) << 30); }
 
 /// False where wide micropolygons have looked at so many cells that the pass is given up.
 HD inline bool may_look(const ReyesPass& pass, uint64_t cells) {

@@ -140,7 +140,7 @@ void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
     const double finer = 1 / std::min(1.0, static_cast<double>(settings_.shading_rate));
     const double most = kMostPiecesOfTriangle * static_cast<double>(picture_.scene.triangle_count) +
-                        static_cast<double>(kMostWorkOfPixel * pixels) * finer * finer;
+                        static_cast<double>(most_work(pixels)) * finer * finer;
     if (static_cast<double>(pieces) <= most && wide <= most_wide(pixels)) return;
     throw Error(ErrorCode::OverLimit,
                 fmt::format("--displacement: surfaces are moved so far that dicing them does not end (over {} pieces a "
