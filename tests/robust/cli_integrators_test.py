@@ -60,6 +60,19 @@ class Integrators(CliTest):
             again = self.render(*flags[:-1], "1", scene="lit.gltf", size="24x24", spp=done["samples"], output="again.exr")
             self.assertEqual(again["hash"], done["hash"], integrator)
 
+    def check_nothing_is_kept(self, kind, *arguments):
+        """A signal of this kind ends the program, which had told of progress, before it has a sample."""
+        program = subprocess.Popen([PROGRAM, *arguments, "--json"], cwd=self.folder, env=self.environment,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(program.kill)
+        while json.loads(program.stdout.readline())["event"] != "progress":
+            self.assertIsNone(program.poll())
+        program.send_signal(kind)
+        stdout, stderr = program.communicate(timeout=30)
+        last = json.loads(stdout.splitlines()[-1])
+        self.assertEqual((program.returncode, last["code"], last["interrupted"]), (75, "interrupted", True))
+        self.assertEqual((last["text"], stderr), ("interrupted before there was anything to keep", b""))
+
     def test_what_ends_irradiance_caching_among_its_records_leaves_nothing_and_says_so(self):
         long = ["render", "cornell-box", "-o", "x.exr", "--size", "320x240", "--spp", "4", "--device", DEVICE, "--integrator",
                 "irradiance_cache", "--accuracy", "0.02", "--hemisphere-rays", "4096"]  # hours of records
@@ -68,16 +81,7 @@ class Integrators(CliTest):
             outcome = self.refuse(75, *long, "--time-limit", "0.5", *flags, says=["--time-limit 0.5", "first sample"])
             self.assertLess(time.monotonic() - began, 30, outcome)
             for kind in [signal.SIGINT, signal.SIGTERM]:
-                program = subprocess.Popen([PROGRAM, *long, "--json"], cwd=self.folder, env=self.environment,
-                                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-                self.addCleanup(program.kill)
-                while json.loads(program.stdout.readline())["event"] != "progress":
-                    self.assertIsNone(program.poll())
-                program.send_signal(kind)
-                stdout, stderr = program.communicate(timeout=30)
-                last = json.loads(stdout.splitlines()[-1])
-                self.assertEqual((program.returncode, last["code"], last["interrupted"]), (75, "interrupted", True))
-                self.assertEqual((last["text"], stderr), ("interrupted before there was anything to keep", b""))
+                self.check_nothing_is_kept(kind, *long)
                 self.assertEqual(self.files(), [])
 
     def test_the_time_before_the_first_sample_of_irradiance_caching_has_a_share_and_an_end(self):
@@ -106,17 +110,8 @@ class Integrators(CliTest):
         fine = ["cornell-box", "--ambient", "1", "--shading-rate", "0.125"]  # minutes of micropolygons before a sample
         folded = ["lit.gltf", *VIEW, "--displacement", "skin=heights.png,30"]
         for scene, kind in [(fine, signal.SIGINT), (folded, signal.SIGTERM)]:
-            program = subprocess.Popen([PROGRAM, "render", *scene, "-o", "x.exr", "--integrator", "reyes", "--size", "1920x1080",
-                                        "--spp", "64", "--device", DEVICE, "--json"], cwd=self.folder, env=self.environment,
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            self.addCleanup(program.kill)
-            while json.loads(program.stdout.readline())["event"] != "progress":
-                self.assertIsNone(program.poll())
-            program.send_signal(kind)
-            stdout, stderr = program.communicate(timeout=30)
-            last = json.loads(stdout.splitlines()[-1])
-            self.assertEqual((program.returncode, last["code"], stderr), (75, "interrupted", b""))
-            self.assertEqual(last["text"], "interrupted before there was anything to keep")
+            self.check_nothing_is_kept(kind, "render", *scene, "-o", "x.exr", "--integrator", "reyes", "--size", "1920x1080",
+                                       "--spp", "64", "--device", DEVICE)
             self.assertEqual(self.files(), ["heights.png", "lit.gltf"])
 
     def test_heights_that_fold_a_surface_without_end_are_refused(self):
