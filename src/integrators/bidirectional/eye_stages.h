@@ -18,7 +18,7 @@ struct ShadeEyes {
     FilmView film;
     uint32_t round;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const PictureView& picture = scene.picture;
         const uint32_t walk = walks.owners[round % 2][i];
         const Ray ray = load_ray(walks.rays[round % 2] + i);
@@ -69,7 +69,8 @@ private:
     }
 
     /// One point of one light, as path tracing draws it.
-    HD_FUSED void ask_for_light(const Surface& surface, const WalkState& state, Vec3 wo, SampleKey key) const {
+    HD INLINE_ON_DEVICE void ask_for_light(const Surface& surface, const WalkState& state, Vec3 wo,
+                                           SampleKey key) const {
         const SceneView& view = scene.picture.scene;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, key, light_group(state.depth()), Pair::Last);
@@ -102,7 +103,8 @@ private:
         return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
     }
 
-    HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wo, SampleKey key) const {
+    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wo,
+                                   SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = eye_group(state.depth(), kWalkChoices);
         const WalkDraw draw =
@@ -163,7 +165,7 @@ struct JoinWalks {
     WalksView walks;
     uint32_t first, round;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const uint32_t vertices = walks.counts->vertices, present = i % vertices, number = first + i / vertices;
         const uint32_t walk = walks.present_owners[present];
         if (number >= walks.kept_counts[walk] || round + number + 2 > scene.settings.max_depth) return;

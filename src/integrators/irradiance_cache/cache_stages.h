@@ -42,7 +42,7 @@ struct ShadeCacheWalks {
     uint32_t first_cell;
     uint32_t round;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const uint32_t walk = walks.owners[round % 2][i];
         if (cache.aims[walk] == WalkAim::End) return;
         const PictureView& picture = scene.picture;
@@ -107,7 +107,7 @@ private:
     }
 
     /// One point of one light, as path tracing draws it.
-    HD_FUSED void ask_for_light(const Vertex& vertex, uint32_t walk, const WalkState& state) const {
+    HD INLINE_ON_DEVICE void ask_for_light(const Vertex& vertex, uint32_t walk, const WalkState& state) const {
         const SceneView& view = scene.picture.scene;
         const Surface& surface = vertex.surface;
         if (surface.bsdf.has_delta_only() || is_black(state.throughput)) return;
@@ -131,7 +131,7 @@ private:
         walks.ask(atomic_add(&walks.counts->asked, 1u), connection, place_in_film(walk, state));
     }
 
-    HD_FUSED void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, CacheSight sight) const {
+    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, CacheSight sight) const {
         const Surface& surface = vertex.surface;
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = eye_group(state.depth(), kWalkChoices);

@@ -29,7 +29,7 @@ struct BeginHemispheres {
     HemisphereJob job;
     uint32_t first;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const uint32_t at = first + i, cells = job.grid.cells();
         const uint32_t number = job.begin + at / cells, cell = at % cells;
         cache.cells[at] = {0, 0, 0, kInfinity};
@@ -93,7 +93,7 @@ struct FinishRecords {
     HemisphereJob job;
     IrradianceRecord* records; // of the picture
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const RecordSite site = job.sites[job.begin + i];
         const Surface surface = make_surface<kKnown>(scene.picture.scene, hit_of(site), site.direction);
         const float side = CachedSurface(surface, -site.direction).side;

@@ -21,7 +21,7 @@ struct LookUpLight {
     FilmView film;
     uint64_t* missed; // lookups that found no record
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const CacheLookup lookup = cache.load(i);
         const Vec3 wo = -lookup.direction;
         const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
@@ -63,7 +63,7 @@ struct SeekPlaces {
     RecordSite* sites;
     uint32_t first;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const CacheLookup lookup = cache.load(i);
         const Vec3 wo = -lookup.direction;
         const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
@@ -91,7 +91,7 @@ struct DrawRecords {
     Rgb light; // of marks, W/(sr m2)
     uint32_t round;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const uint32_t walk = walks.owners[round % 2][i];
         const Hit hit = walks.hits().load(i);
         if (cache.aims[walk] != WalkAim::Seek || hit.instance == kNoHit) return;

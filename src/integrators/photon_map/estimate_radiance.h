@@ -32,7 +32,7 @@ struct EstimateRadiance {
     PhotonMapsView maps;
     FilmView film;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const Lookup lookup = gather.load(i);
         const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
         // Scatterings of a photon at most: the surface itself is one more.

@@ -51,7 +51,7 @@ struct ShadeSights {
     float near; // metres: a surface that is so near to the last one is no place to look light up
     uint32_t round;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const PictureView& picture = scene.picture;
         const uint32_t walk = walks.owners[round % 2][i];
         const Ray ray = load_ray(walks.rays[round % 2] + i);
@@ -126,7 +126,7 @@ private:
     }
 
     /// One point of one light, as path tracing draws it. Returns how near that is: nearness_of, or 0.
-    HD_FUSED float ask_for_light(const Vertex& vertex, const WalkState& state) const {
+    HD INLINE_ON_DEVICE float ask_for_light(const Vertex& vertex, const WalkState& state) const {
         const SceneView& view = scene.picture.scene;
         const Surface& surface = vertex.surface;
         LightSample light;
@@ -163,7 +163,8 @@ private:
     }
 
     /// `nearness`: of ask_for_light.
-    HD_FUSED void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, Sight sight, float nearness) const {
+    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, Sight sight,
+                                   float nearness) const {
         const Surface& surface = vertex.surface;
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = eye_group(state.depth(), kWalkChoices);

@@ -93,7 +93,7 @@ struct ShadePhotons {
     PhotonPass pass;
     uint32_t round;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const Hit hit = walks.hits().load(i);
         const uint32_t walk = walks.owners[round % 2][i];
         WalkState state = walks.states[walk];
@@ -127,7 +127,8 @@ private:
             {surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, power, state.pixel, state.depth()},
             is_caustic);
     }
-    HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, bool is_caustic) const {
+    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi,
+                                   bool is_caustic) const {
         const SubpathSettings& settings = scene.settings;
         const SampleKey key = pass.key(state.pixel, settings.seed);
         const uint32_t choices = particle_group(state.depth(), kWalkChoices);

@@ -30,8 +30,8 @@ struct BeginEyes {
 };
 
 /// What the camera's own rays say of the first surface, and the light that comes straight from it.
-HD_FUSED void add_seen(const PictureView& picture, const FilmView& film, const WalkState& state, const Ray& ray,
-                       const Hit& hit, const Surface& surface) {
+HD INLINE_ON_DEVICE void add_seen(const PictureView& picture, const FilmView& film, const WalkState& state,
+                                  const Ray& ray, const Hit& hit, const Surface& surface) {
     add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
     if (!is_black(surface.emission)) add_radiance(film, state.pixel, surface.emission);
 }

@@ -71,7 +71,7 @@ struct ShadeParticles {
     WalksView walks;
     uint32_t round;
 
-    HD_FUSED void operator()(uint32_t i) const {
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const Hit hit = walks.hits().load(i);
         if (hit.instance == kNoHit) return;
         const SubpathSettings& settings = scene.settings;
@@ -101,8 +101,8 @@ struct ShadeParticles {
     }
 
 private:
-    HD_FUSED void ask_camera(const Surface& surface, const Hit& hit, uint32_t walk, const WalkState& state, Vec3 wi,
-                             SampleKey key) const {
+    HD INLINE_ON_DEVICE void ask_camera(const Surface& surface, const Hit& hit, uint32_t walk, const WalkState& state,
+                                        Vec3 wi, SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const CameraRays& camera = scene.picture.camera;
         const Vec2 lens = camera.has_lens() ? sample_2d(settings.sampler, key,
@@ -137,7 +137,8 @@ private:
         walks.ask(place, connection, state.pixel);
         walks.asked_rasters[place] = seen.raster;
     }
-    HD_FUSED void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi, SampleKey key) const {
+    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi,
+                                   SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const uint32_t choices = particle_group(state.depth(), kWalkChoices);
         const WalkDraw draw =

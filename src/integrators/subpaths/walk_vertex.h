@@ -2,18 +2,11 @@
 
 // What both kinds of walks do where they meet a surface.
 
+#include "base/host_device.h"
 #include "integrators/subpaths/subpath_settings.h"
 #include "integrators/subpaths/walk_memory.h"
 #include "render/particle_scatter.h"
 #include "render/picture_view.h"
-
-// Host-device functions that are large and called once: one that a device's compiler left out of line would have whole
-// surfaces in memory, where what is known of their materials is lost.
-#if defined(__CUDACC__)
-#define HD_FUSED __host__ __device__ __forceinline__
-#else
-#define HD_FUSED inline
-#endif
 
 namespace pertev {
 
