@@ -123,6 +123,9 @@ class MovingPictures(CliTest):
         refuse("--shutter", "0.1", says=["--shutter: it is open about a time; say --time S, or --frames A-B"])
         for text in ("", "a", "1,2,3", "1,", ",1", "nan", "inf", "1e30"):
             refuse("--time", "1", "--shutter=" + text, says=["--shutter"])
+        refuse("--time", "1", "--shutter", "1e400", says=["--shutter 1e400: OPEN and CLOSE are 1e+06 s at most, either way"])
+        self.assertEqual(self.hash_at("--time", "1", "--shutter", "1e-400"), self.hash_at("--time", "1", "--shutter", "0"))
+        refuse("--time", "1", "--shutter=1e-400,-1", says=["--shutter 1e-400,-1: it closes before it opens"])
         refuse("--time", "1", "--shutter", "0.2,0.1", says=["--shutter 0.2,0.1: it closes before it opens"])
         refuse("--time", "1", "--shutter", "0.1", "--turntable", "9", says=["--frames"])
         for integrator in ("hybrid", "raster", "light", "bidirectional"):
