@@ -1,19 +1,27 @@
 #!/usr/bin/env bash
-# Renders scenes on the CPU and in CUDA and compares the hashes of the pictures and of their layers: tools/compare_devices.sh PERTEV SCENES
-# [SPP ...]. SCENES is a folder laid out as docs/scenes.md says. Then frames of moving pictures, reconstructed. Exits 1 when a
-# picture differs.
+# Renders scenes on the CPU and in CUDA and compares the hashes of the pictures, of their layers and of what the denoiser makes of
+# them: tools/compare_devices.sh PERTEV SCENES [SPP ...]. SCENES is a folder laid out as docs/scenes.md says. Then sequences, and
+# frames of moving pictures, reconstructed. Exits 1 when a picture differs.
 set -uo pipefail
 pertev=$1 scenes=$2
 shift 2
 counts=("${@:-4}")
 status=0
 
-hash_of() { # device, spp, scene and its flags; of the picture, and of the layers where there are some
+hashes_in() { # event; of the picture, and of its layers and of the denoised picture where there are some
+    sed -n 's/.*"event":"'"$1"'".*"hash":"\([0-9a-f]*\)","layers_hash":\([^,]*\),"denoised_hash":\([^,]*\),.*/\1 \2 \3/p' |
+        sed 's/ null//g; s/"//g; s/ /+/g'
+}
+hash_of() { # device, spp, scene and its flags
     local device=$1 spp=$2
     shift 2
-    "$pertev" render "$@" --device "$device" --spp "$spp" --size 640x360 -o "$work/$device.exr" --json 2>&1 |
-        sed -n 's/.*"event":"done".*"hash":"\([0-9a-f]*\)","layers_hash":\([^,]*\),.*/\1 \2/p' |
-        sed 's/ null$//; s/"//g; s/ /+/'
+    "$pertev" render "$@" --device "$device" --spp "$spp" --size 640x360 -o "$work/$device.exr" --json 2>&1 | hashes_in done
+}
+sequence_of() { # device, scene and its flags; of the frames' hashes, of which each must be there
+    local device=$1 frames
+    shift
+    frames=$("$pertev" render "$@" --device "$device" --frames 0-3 --size 320x180 -o "$work/$device-#.exr" --json 2>&1 | hashes_in frame)
+    [ "$(wc -l <<<"$frames")" = 4 ] && md5sum <<<"$frames" | cut -c1-32
 }
 
 work=$(mktemp -d)
@@ -63,6 +71,8 @@ irradiance_cache-records $scenes/sibenik/sibenik.obj --integrator irradiance_cac
 radiosity $scenes/cornell-box-mcguire/CornellBox-Mirror.obj --integrator radiosity --patch-size 0.3 --patch-rays 32
 radiosity-flat $scenes/sibenik/sibenik.obj --integrator radiosity --flat-patches --patch-rays 16 --subdivisions 0
 bidirectional-sky $scenes/crytek-sponza/sponza.obj --integrator bidirectional --max-depth 6
+denoised cornell-box --denoise svgf
+denoised-layers $scenes/crytek-sponza/sponza.obj --denoise svgf --aov albedo,normal
 layers $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --lpe seen=LE --lpe diffuse=L.*DE --lpe glossy=L.*[GS]E
 blurred $work/box.gltf --time 1 --shutter 0.2
 blurred-distributed $work/box.gltf --time 1 --shutter=-0.1,0.1 --integrator distributed
@@ -85,6 +95,19 @@ for scene in cornell-box "$scenes/sibenik/sibenik.obj"; do
     [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
     printf '%-16s measured at a place  %s  %s\n' "$(basename "$scene")" "$(md5sum <<<"$cpu" | cut -c1-8)" "$verdict"
 done
+
+# Four frames of each sequence, with all that a file holds of them.
+while read -r name arguments; do
+    # shellcheck disable=SC2086 # the arguments are words
+    cpu=$(sequence_of cpu $arguments) cuda=$(sequence_of cuda $arguments)
+    verdict=same
+    [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
+    printf '%-16s frames 0-3  cpu %s  cuda %s  %s\n' "$name" "${cpu:-failed}" "${cuda:-failed}" "$verdict"
+done <<LIST
+sequence-layers $work/box.gltf --fps 4 --spp 4 --lpe seen=LE --lpe others=L.+E --aov motion
+sequence-denoised $work/box.gltf --fps 4 --spp 4 --denoise svgf
+sequence-real-time $work/box.gltf --fps 4 --real-time --aov albedo,depth
+LIST
 
 # The hash of the 31st frame of each sequence that docs/real_time.md has figures of.
 frame_of() {

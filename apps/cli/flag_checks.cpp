@@ -19,6 +19,9 @@ CLI::Validator checked(Accepts accepts, std::string wanted) {
     return CLI::Validator(check, ""); // nothing in --help: the flag's own text tells
 }
 
+/// Before the exponent, other than 0.
+bool has_digits(const std::string& number) { return number.find_first_of("123456789") < number.find_first_of("eE"); }
+
 } // namespace
 
 CLI::Validator number_between(float low, float high) {
@@ -30,11 +33,14 @@ CLI::Validator number_between(float low, float high) {
 }
 
 CLI::Validator number_above_zero(float high) {
-    const auto accepts = [high](const std::string& text) {
+    const auto check = [high](std::string& text) {
         const auto value = number_in(text);
-        return value && *value > 0 && *value <= high;
+        if (value && *value > 0 && *value <= high) return std::string();
+        const bool is_rounded = value && *value == 0 && has_digits(text);
+        return fmt::format("{} is {}not a number above 0 and at most {}", text,
+                           is_rounded ? "so near 0 that it counts as 0, which is " : "", high);
     };
-    return checked(accepts, fmt::format("a number above 0 and at most {}", high));
+    return {check, ""};
 }
 
 CLI::Validator whole_between(uint32_t low, uint32_t high) {

@@ -13,6 +13,7 @@
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "formats/read_scene.h"
 #include "image/image_format.h"
 #include "image/picture_hash.h"

@@ -1,6 +1,5 @@
 // The flags that say what moves, and at which times.
 
-#include <charconv>
 #include <cmath>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 #include "apps/cli/render_flags.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "formats/parse_number.h"
 
 namespace pertev {
 namespace {
@@ -19,14 +19,10 @@ constexpr uint32_t kMostFrames = 1'000'000'000;
 
 constexpr double kMostShutter = 1e6; // seconds, either way
 
-/// The number that `text` is from its first character to its last; infinite where it is too large for one.
+/// As number_in, in double; infinite where it is too large.
 std::optional<double> seconds_in(std::string_view text) {
-    double value = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (end != text.data() + text.size() || fault == std::errc::invalid_argument || std::isnan(value)) {
-        return std::nullopt;
-    }
-    return fault == std::errc() ? value : HUGE_VAL;
+    const std::optional<double> value = parse_whole_float<double>(text);
+    return value && !std::isnan(*value) ? value : std::nullopt;
 }
 
 } // namespace

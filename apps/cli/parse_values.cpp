@@ -8,19 +8,12 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "formats/parse_number.h"
 
 namespace pertev {
 namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
-
-template <class T>
-std::optional<T> parse_all_of(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 std::optional<Vec3> three_numbers(std::string_view text) {
     float values[3];
@@ -38,11 +31,16 @@ std::optional<Vec3> three_numbers(std::string_view text) {
 } // namespace
 
 std::optional<float> number_in(std::string_view text) {
-    const auto value = parse_all_of<float>(text);
+    const std::optional<float> value = parse_whole_float(text);
     return value && is_finite(*value) ? value : std::nullopt;
 }
 
-std::optional<uint64_t> whole_number_in(std::string_view text) { return parse_all_of<uint64_t>(text); }
+std::optional<uint64_t> whole_number_in(std::string_view text) {
+    uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
 
 std::pair<uint32_t, uint32_t> parse_size(const std::string& flag, const std::string& text) {
     const std::size_t cross = std::min(text.find('x'), text.size());

@@ -265,8 +265,8 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
         tally.update_s += update_s;
         tally.invalid_samples += result.invalid_samples;
         reporter.event(fmt::format(
-            R"({{"event":"frame","frame":{},"time":{},"hash":"{}","samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
-            frame, time_s ? fmt::format("{}", *time_s) : "null", hash, result.samples, update_s,
+            R"({{"event":"frame","frame":{},"time":{},{},"samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
+            frame, time_s ? fmt::format("{}", *time_s) : "null", hashes_json(written), result.samples, update_s,
             result.render_seconds));
     }
     reporter.end_progress();

@@ -51,6 +51,12 @@ std::string report_files(const WrittenPicture& written, Reporter& reporter) {
     return fmt::format("{}", fmt::join(failures, "; "));
 }
 
+std::string hashes_json(const WrittenPicture& written) {
+    const auto or_null = [](const std::string& hash) { return hash.empty() ? "null" : json_string(hash); };
+    return fmt::format(R"("hash":"{}","layers_hash":{},"denoised_hash":{})", written.hash, or_null(written.layers_hash),
+                       or_null(written.denoised_hash));
+}
+
 Error not_finite(uint64_t invalid_samples) {
     return Error(ErrorCode::BadInput,
                  fmt::format("--strict: {} not finite; the picture is written", counted(invalid_samples, "sample")));
@@ -72,11 +78,10 @@ void report_result(const RenderResult& result, const WrittenPicture& written, co
         counted(result.invalid_samples, "invalid sample"), written.hash,
         result.denoised ? " (of its samples; the files show it denoised)" : ""));
     reporter.event(fmt::format(
-        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},"hash":"{}","layers_hash":{},"device":{},"interrupted":{}}})",
+        R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},{},"device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, result.samples, json_number(frame_seconds),
         json_number(samples_per_second), json_number(rays_per_second), host_bytes, result.device_peak_bytes,
-        result.invalid_samples, written.hash, written.layers_hash.empty() ? "null" : json_string(written.layers_hash),
-        json_string(queue.device_name()), interrupted));
+        result.invalid_samples, hashes_json(written), json_string(queue.device_name()), interrupted));
 }
 
 } // namespace pertev

@@ -21,6 +21,9 @@ void report_camera(const CameraSource& camera, Reporter& reporter);
 /// Says which files were written. Returns what went wrong with the others; empty where nothing has.
 std::string report_files(const WrittenPicture& written, Reporter& reporter);
 
+/// As members of a JSON object: `hash`, `layers_hash` and `denoised_hash`, null where there are none.
+std::string hashes_json(const WrittenPicture& written);
+
 /// What --strict ends with where samples are not finite.
 Error not_finite(uint64_t invalid_samples);
 

@@ -24,6 +24,13 @@ std::size_t least_of(const std::filesystem::path& root, std::filesystem::path gr
     return std::min(least, number_in(root / file));
 }
 
+std::size_t of_whole_machine() {
+    const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGESIZE);
+    return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
+}
+
+std::size_t of_group() { return group_memory_bytes("/proc/self/cgroup", "/sys/fs/cgroup"); }
+
 } // namespace
 
 std::size_t group_memory_bytes(const std::filesystem::path& groups, const std::filesystem::path& folder) {
@@ -41,17 +48,6 @@ std::size_t group_memory_bytes(const std::filesystem::path& groups, const std::f
     }
     return least;
 }
-
-namespace {
-
-std::size_t of_whole_machine() {
-    const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGESIZE);
-    return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : SIZE_MAX;
-}
-
-std::size_t of_group() { return group_memory_bytes("/proc/self/cgroup", "/sys/fs/cgroup"); }
-
-} // namespace
 
 std::size_t machine_memory_bytes() { return std::min(of_whole_machine(), of_group()); }
 

@@ -3,39 +3,56 @@
 // Decimal text to float for the text formats: correctly rounded (std::from_chars), so the same on every machine and in
 // every locale. What a float cannot hold becomes an infinity or zero, as IEEE 754 rounds it.
 
+#include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string_view>
 
 namespace pertev {
 
+/// Whether the size of a number other than 0 is under 1, by the decimal place of its first digit that is not 0.
+inline bool is_under_one(std::string_view number) {
+    const std::size_t end = std::min(number.find_first_of("eE"), number.size());
+    const std::string_view digits = number.substr(0, end);
+    const auto point = static_cast<int64_t>(std::min(digits.find('.'), digits.size()));
+    const auto first = static_cast<int64_t>(digits.find_first_of("123456789"));
+    const int64_t place = first < point ? point - first - 1 : point - first;
+    std::string_view power = number.substr(std::min(end + 1, number.size()));
+    if (power.starts_with('+')) power.remove_prefix(1);
+    int64_t exponent = 0;
+    const auto read = std::from_chars(power.data(), power.data() + power.size(), exponent);
+    if (read.ec == std::errc::result_out_of_range) return power.starts_with('-');
+    return exponent < -place;
+}
+
 /// The number at the start of `text`, which is cut behind it; nothing when there is none. Takes a leading +, and `nan`
 /// and `inf` in any case.
-inline std::optional<float> parse_float(std::string_view& text) {
+template <class Float = float>
+std::optional<Float> parse_float(std::string_view& text) {
     const char* begin = text.data();
     const char* end = begin + text.size();
     if (begin != end && *begin == '+') ++begin;
-    float value = 0;
+    Float value = 0;
     auto [after, fault] = std::from_chars(begin, end, value);
-    if (fault == std::errc::result_out_of_range) {
-        double wide = 0;
-        if (std::from_chars(begin, end, wide).ec == std::errc{}) {
-            value = static_cast<float>(wide);
-        } else { // outside double as well: the exponent's sign tells which way
-            const std::string_view number(begin, static_cast<std::size_t>(after - begin));
-            const std::size_t exponent = number.find_first_of("eE");
-            const bool is_tiny = exponent != number.npos ? number.substr(exponent).find('-') != number.npos
-                                                         : number.find_first_of("123456789") > number.find('.');
-            value = is_tiny ? 0.0f : std::numeric_limits<float>::infinity();
-            if (number.starts_with('-')) value = -value;
-        }
+    if (fault == std::errc::result_out_of_range) { // the library does not say which way
+        const std::string_view number(begin, static_cast<std::size_t>(after - begin));
+        value = is_under_one(number) ? Float(0) : std::numeric_limits<Float>::infinity();
+        if (number.starts_with('-')) value = -value;
     } else if (fault != std::errc{}) {
         return std::nullopt;
     }
     text.remove_prefix(static_cast<std::size_t>(after - text.data()));
     return value;
+}
+
+/// The number that `text` is from its first character to its last, without a leading +.
+template <class Float = float>
+std::optional<Float> parse_whole_float(std::string_view text) {
+    if (text.starts_with('+')) return std::nullopt;
+    const std::optional<Float> value = parse_float<Float>(text);
+    return text.empty() ? value : std::nullopt;
 }
 
 } // namespace pertev

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/file_extension.h"
 #include "image/read_image.h"
 
 namespace pertev {
@@ -20,7 +21,7 @@ Image read_environment_image(const std::filesystem::path& path, Messages& messag
         image.pixels.resize(3 * count);
         image.channels = 3;
     }
-    const std::string extension = path.extension().string();
+    const std::string extension = lower_case_extension(path);
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
         messages.warn(fmt::format("{}: 8-bit pictures cut bright light off; an .hdr or .exr gives its full range",
                                   path.string()));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_gltf.h"
 #include "formats/read_obj.h"
@@ -33,8 +34,7 @@ const std::array kReaders = {
 
 /// Null for an extension that no reader has.
 const FormatReader* find_reader(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string extension = lower_case_extension(path);
     const auto found = std::ranges::find(kReaders, extension, &FormatReader::extension);
     return found == kReaders.end() ? nullptr : &*found;
 }

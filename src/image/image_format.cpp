@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/file_extension.h"
+
 namespace pertev {
 
 std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes) {
@@ -12,12 +14,6 @@ std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes) {
     if (start.starts_with("#?RADIANCE") || start.starts_with("#?RGBE")) return ImageFormat::Hdr;
     if (start.starts_with("\x76\x2f\x31\x01")) return ImageFormat::Exr;
     return std::nullopt;
-}
-
-std::string lower_case_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return extension;
 }
 
 bool is_picture_name(const std::filesystem::path& file) {

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace pertev {
@@ -18,8 +17,6 @@ std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes);
 
 /// Of pictures that are read and written.
 inline constexpr std::string_view kPictureExtensions[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr"};
-/// Of a file's name, with the dot.
-std::string lower_case_extension(const std::filesystem::path& file);
 /// Whether the name has one of kPictureExtensions, in letters of either case.
 bool is_picture_name(const std::filesystem::path& file);
 

@@ -1,10 +1,9 @@
 #include "image/write_image.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/write_file_atomically.h"
 #include "image/tone_map_image.h"
 #include "image/write_hdr.h"
@@ -14,9 +13,7 @@
 namespace pertev {
 
 ImageFormat image_format_for(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::string extension = lower_case_extension(path);
     if (extension == ".exr") return ImageFormat::Exr;
     if (extension == ".png") return ImageFormat::Png;
     if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::Jpeg;

@@ -56,7 +56,7 @@ struct Material {
                 &roughness_texture,  &emission_texture, &normal_texture};
     }
     bool is_emissive() const { return max_component(emission) > 0; }
-    /// Gives light to other surfaces: what an unlit one emits is seen by the camera alone.
+    /// Is looked for as a light. An unlit one is not: rays from the camera or a surface that meet it see its colour.
     bool is_lamp() const { return is_emissive() && kind != MaterialKind::Unlit; }
 };
 

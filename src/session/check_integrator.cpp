@@ -54,14 +54,15 @@ bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
 }
 bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
     return needs_punctual_lights(settings.integrator) && settings.integrator != IntegratorKind::Cast &&
-           scene.environment;
+           scene.environment && gives_light(*scene.environment);
 }
 
 /// "this scene has lamps alone"
 std::string lights_of(const Scene& scene) {
-    const bool has_both = has_lamp(scene) && scene.environment;
-    const std::string others = fmt::format("{}{}{}", has_lamp(scene) ? "lamps" : "", has_both ? " and " : "",
-                                           scene.environment ? "an environment" : "");
+    const bool has_environment = scene.environment && gives_light(*scene.environment);
+    const std::string others =
+        fmt::format("{}{}{}", has_lamp(scene) ? "lamps" : "", has_lamp(scene) && has_environment ? " and " : "",
+                    has_environment ? "an environment" : "");
     return others.empty() ? "this scene has none" : fmt::format("this scene has {} alone", others);
 }
 

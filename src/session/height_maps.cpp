@@ -1,7 +1,6 @@
 #include "session/height_maps.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/read_file.h"
+#include "formats/parse_number.h"
 #include "image/decode_image.h"
 #include "scene/names.h"
 
@@ -24,11 +24,8 @@ constexpr float kMostScale = 0x1p20f; // of heights, either way
 }
 
 std::optional<float> number_of(std::string_view text) {
-    float value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [last, fault] = std::from_chars(text.data(), end, value);
-    if (text.empty() || fault != std::errc() || last != end || !std::isfinite(value)) return std::nullopt;
-    return value;
+    const std::optional<float> value = parse_whole_float(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// What follows the last comma, cut off; none where that is no number.

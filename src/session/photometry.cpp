@@ -1,15 +1,13 @@
 #include "session/photometry.h"
 
-#include <filesystem>
-
+#include "base/file_extension.h"
 #include "math/portable_math.h"
 
 namespace pertev {
 
 double lumens_per_watt(const std::string& scene, double asked_for) {
     if (asked_for > 0) return asked_for;
-    std::string extension = std::filesystem::path(scene).extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string extension = lower_case_extension(scene);
     return extension == ".gltf" || extension == ".glb" ? 1 : kLumensPerWatt;
 }
 

@@ -78,7 +78,7 @@ struct RenderProgress {
     double seconds = 0;                     // since the call began to render
     RayCounts rays;                         // of the call
     double made_share = 1;                  // of what the integrator makes before the first sample; 1: all is made
-    double made_seconds = 0;                // of `seconds`, that this took
+    double made_seconds = 0;                // of `seconds`, that this took; 0: there was nothing to make
 };
 
 /// Of the samples in the film.

@@ -285,14 +285,16 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
+    bool makes = false;
     const auto goes_on = [&](double made_share) {
+        makes = true;
         const double seconds = watch.seconds();
         if (abandon_ != nullptr && *abandon_) return false;
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) return false;
         return !keep_going || keep_going({first, first + count, seconds, integrator.rays(), made_share, seconds});
     };
     if (!integrator.make_ready(goes_on)) return 0;
-    const double made_seconds = watch.seconds();
+    const double made_seconds = makes ? watch.seconds() : 0;
     for (uint32_t done = 0; done < count;) {
         const auto now = [&] {
             return RenderProgress{first + done, first + count, watch.seconds(), integrator.rays(), 1, made_seconds};

@@ -1,12 +1,12 @@
 #include "session/set_lamps.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "formats/parse_number.h"
 #include "scene/names.h"
 #include "session/lamp_surface.h"
 #include "session/photometry.h"
@@ -142,9 +142,8 @@ LampStrength parse_lamp(std::string_view text) {
     lamp.unit = unit->second;
     amount.remove_suffix(unit->first.size());
     while (amount.ends_with(' ')) amount.remove_suffix(1);
-    const char* const end = amount.data() + amount.size();
-    const auto [last, fault] = std::from_chars(amount.data(), end, lamp.value);
-    if (fault != std::errc() || last != end || !(lamp.value >= 0 && lamp.value <= 1e15)) fail();
+    lamp.value = parse_whole_float<double>(amount).value_or(-1);
+    if (!(lamp.value >= 0 && lamp.value <= 1e15)) fail();
     return lamp;
 }
 

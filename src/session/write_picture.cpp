@@ -92,7 +92,10 @@ std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& r
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
     const Display display = record.display.value_or(Display{});
     const std::vector<ExrLayer> layers = take_layers(result);
-    WrittenPicture written = {picture_hash(result.picture).hex(), hash_of_layers(layers), {}};
+    WrittenPicture written = {.hash = picture_hash(result.picture).hex(),
+                              .layers_hash = hash_of_layers(layers),
+                              .denoised_hash = result.denoised ? picture_hash(*result.denoised).hex() : "",
+                              .files = {}};
     const WriteImageOptions options = {.tone_map = display.tone_map,
                                        .exposure_stops = display.exposure_stops,
                                        .transparent = record.settings.transparent,

@@ -17,8 +17,9 @@ struct WrittenFile {
 };
 
 struct WrittenPicture {
-    std::string hash;        // of the film's picture (image/picture_hash.h)
-    std::string layers_hash; // of all else that an EXR holds of it (hash_of_layers); empty: nothing
+    std::string hash;          // of the film's picture (image/picture_hash.h)
+    std::string layers_hash;   // of all else that an EXR holds of it (hash_of_layers); empty: nothing
+    std::string denoised_hash; // of what files show in its place, as of the film's picture; empty: they show that
     std::vector<WrittenFile> files;
 };
 

@@ -98,6 +98,19 @@ class MovingPictures(CliTest):
                             "--aov", "motion")
         self.assertIn("--aov motion: 0 without --frames", said.stderr)
 
+    def test_a_frame_has_the_hashes_of_the_picture_at_its_time(self):
+        names = ["hash", "layers_hash", "denoised_hash"]
+        small = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--json"]
+        lpes = ["--lpe", "seen=LE", "--lpe", "others=L.+E"]
+        for flags, told in [([], [0]), (lpes, [0, 1]), (["--denoise", "svgf"], [0, 1, 2])]:
+            frames = self.succeed("render", "m.gltf", "-o", "f-#.exr", *small, *flags, "--frames", "3-4", "--fps", "4").events("frame")
+            for event in frames:
+                self.assertEqual([i for i, name in enumerate(names) if event[name] is not None], told)
+                done = self.succeed("render", "m.gltf", "-o", "x.exr", *small, *flags, "--time", repr(event["time"])).events("done")[0]
+                self.assertEqual([event[name] for name in names], [done[name] for name in names])
+            for i in told:
+                self.assertNotEqual(frames[0][names[i]], frames[1][names[i]])
+
     def test_a_shutter_blurs_what_moves(self):
         sharp = self.hash_at("--time", "1")
         blurred = self.hash_at("--time", "1", "--shutter", "0.5")
@@ -123,6 +136,9 @@ class MovingPictures(CliTest):
         refuse("--shutter", "0.1", says=["--shutter: it is open about a time; say --time S, or --frames A-B"])
         for text in ("", "a", "1,2,3", "1,", ",1", "nan", "inf", "1e30"):
             refuse("--time", "1", "--shutter=" + text, says=["--shutter"])
+        refuse("--time", "1", "--shutter", "1e400", says=["--shutter 1e400: OPEN and CLOSE are 1e+06 s at most, either way"])
+        self.assertEqual(self.hash_at("--time", "1", "--shutter", "1e-400"), self.hash_at("--time", "1", "--shutter", "0"))
+        refuse("--time", "1", "--shutter=1e-400,-1", says=["--shutter 1e-400,-1: it closes before it opens"])
         refuse("--time", "1", "--shutter", "0.2,0.1", says=["--shutter 0.2,0.1: it closes before it opens"])
         refuse("--time", "1", "--shutter", "0.1", "--turntable", "9", says=["--frames"])
         for integrator in ("hybrid", "raster", "light", "bidirectional"):

@@ -64,6 +64,7 @@ class Denoised(CliTest):
         facts = self.info("x.exr")
         self.assertEqual((facts["pertev.denoise"], facts["pertev.hash"]), ("svgf", plain["hash"]))
         self.assertNotEqual(facts["hash"], plain["hash"])
+        self.assertEqual((done["denoised_hash"], plain["denoised_hash"]), (facts["hash"], None))
         self.assertNotIn("pertev.denoise", self.info("plain.exr"))
         _, _, before = read_exr(self.path("plain.exr"))
         _, _, layers = read_exr(self.path("x.exr"))
@@ -74,7 +75,9 @@ class Denoised(CliTest):
 
     def test_each_frame_of_a_sequence_is_denoised_by_itself(self):
         flags = ["--spp", "2", "--size", "40x30", "--denoise", "svgf", "--turntable", "3"]
-        self.succeed("render", "cornell-box", "-o", "a-#.exr", *flags)
+        told = self.succeed("render", "cornell-box", "-o", "a-#.exr", "--json", *flags).events("frame")
+        self.assertEqual([event["denoised_hash"] for event in told], [self.info(f"a-{frame}.exr")["hash"] for frame in range(3)])
+        self.assertEqual([event["hash"] for event in told], [self.info(f"a-{frame}.exr")["pertev.hash"] for frame in range(3)])
         self.succeed("render", "cornell-box", "-o", "b-#.exr", *flags)
         os.remove(self.path("b-1.exr"))
         self.succeed("render", "cornell-box", "-o", "b-#.exr", "--continue", *flags)

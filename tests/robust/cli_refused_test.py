@@ -48,6 +48,19 @@ class WhatIsRefused(CliTest):
             outcome = self.refuse(2, "render", "cornell-box", "-o", "x.png", *flag.split(), says=[*flag.split(), limit])
             self.assertNotIn("finite", outcome.stderr)
 
+    def test_a_number_that_is_too_small_for_a_float_is_0(self):
+        for flag, number in [("--focus", "1e-60"), ("--time-limit", "1e-400"), ("--clamp", "1e-5000"), ("--fps", "0.0e-9")]:
+            why = "" if number == "0.0e-9" else "so near 0 that it counts as 0, which is "
+            self.refuse(2, "render", "cornell-box", "-o", "x.png", flag, number, says=[f"{flag}: {number} is {why}not a number"])
+        small = ["--size", "8x6", "--spp", "1", "--device", "cpu", "--json"]
+        flags = ["--environment {0},1,1", "--eye 1,{0},3", "--exposure {0}", "--environment-rotation {0}",
+                 "--lamp light={0}lm", "--aperture {0}"]
+        for flag in flags:
+            with self.subTest(flag=flag):
+                hashes = [self.succeed("render", "cornell-box", "-o", "x.png", *small, *flag.format(number).split()).events("done")[0]["hash"]
+                          for number in ["0", "1e-46", "1e-5000"]]
+                self.assertEqual(len(set(hashes)), 1)
+
     def test_a_flag_that_the_others_make_useless_ends_with_2_before_the_scene_is_read(self):
         for flag, output in [("--transparent", "x.jpg"), ("--transparent", "x.hdr"), ("--aov albedo", "x.png"),
                              ("--exposure 1", "x.exr"), ("--exposure auto", "x.hdr"), ("--tone-map agx", "x.exr"),

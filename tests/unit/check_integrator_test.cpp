@@ -66,10 +66,15 @@ TEST_CASE(
               "radiosity: surfaces pass light on, and this scene has none: " + none);
         for (const IntegratorKind kind :
              {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Light, IntegratorKind::Bidirectional,
-              IntegratorKind::Distributed, IntegratorKind::IrradianceCache, IntegratorKind::Whitted}) {
+              IntegratorKind::Distributed, IntegratorKind::IrradianceCache}) {
             CHECK(said(kind, scene).starts_with("nothing in this scene gives light: " + none));
         }
-        CHECK(said(IntegratorKind::Whitted, scene, Rgb{1, 1, 1}).empty()); // asked for
+        for (const IntegratorKind kind :
+             {IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Raster, IntegratorKind::Reyes}) {
+            CHECK(test::says(Error(ErrorCode::BadInput, said(kind, scene)),
+                             "directional lights alone light its surfaces, and this scene has none: "));
+            CHECK(said(kind, scene, Rgb{1, 1, 1}).empty()); // asked for
+        }
     };
     scene.environment = Environment{.image = {}, .scale = {0, 0, 0}, .rotation = 0};
     check_dark();

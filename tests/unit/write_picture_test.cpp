@@ -70,6 +70,20 @@ TEST_CASE("an EXR holds the picture, its layers and how it was made") {
     CHECK(text_of(file.metadata, "pertev.tone_map") == "(none)"); // it is shown nowhere
 }
 
+TEST_CASE("what files show of a denoised picture has a hash of its own, which is that of the file's channels") {
+    RenderSettings settings;
+    RenderResult result = small_result(settings);
+    const std::vector<std::string> paths = {test::scratch_folder() / "picture.exr"};
+    CHECK(write_picture(paths, small_record(settings), result).denoised_hash.empty());
+    result = small_result(settings);
+    result.denoised = result.picture;
+    result.denoised->pixels[7] += 1;
+    const WrittenPicture written = write_picture(paths, small_record(settings), result);
+    CHECK(written.hash == picture_hash(result.picture).hex());
+    CHECK(written.denoised_hash == picture_hash(read_image(paths[0])).hex());
+    CHECK(written.denoised_hash != written.hash);
+}
+
 TEST_CASE("a PNG shows the picture by the display that was chosen, which the EXR beside it names") {
     RenderSettings settings;
     RenderResult result = small_result(settings);

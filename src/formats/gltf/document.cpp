@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "formats/gltf/find_json_fault.h"
 
 namespace pertev::gltf {
@@ -51,7 +52,7 @@ Document::Document(const std::filesystem::path& path, std::vector<std::byte> byt
     }
     if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
         split_glb();
-    } else if (path.extension() == ".glb") {
+    } else if (lower_case_extension(path) == ".glb") {
         throw Error(ErrorCode::BadInput,
                     fmt::format("{}: byte 0: expected the letters glTF, with which a GLB file starts", file_));
     }

@@ -1,0 +1,24 @@
+// Names of files in letters of either case.
+
+#include <doctest/doctest.h>
+
+#include "base/file_extension.h"
+#include "formats/read_scene.h"
+#include "image/image_format.h"
+#include "image/write_image.h"
+#include "session/photometry.h"
+
+using namespace pertev;
+
+TEST_CASE("an extension is the same in letters of either case, for all who ask for it") {
+    CHECK(lower_case_extension("folder.X/Leaf.PnG") == ".png");
+    CHECK(lower_case_extension("a.b.GLB") == ".glb");
+    CHECK(lower_case_extension("folder.X/leaf").empty());
+    CHECK(lower_case_extension("leaf.\xc3\x84") == ".\xc3\x84"); // letters of other alphabets stay
+    CHECK(is_picture_name("A.EXR"));
+    CHECK(image_format_for("A.JPEG") == ImageFormat::Jpeg);
+    CHECK(is_scene_name("A.GLTF"));
+    CHECK_FALSE(tells_lamp_sides("A.OBJ"));
+    CHECK(lumens_per_watt("A.GlB") == 1);
+    CHECK(lumens_per_watt("A.OBJ") == kLumensPerWatt);
+}
