@@ -60,7 +60,7 @@ Making render_one(Session& session) {
     return making;
 }
 
-const TransportRow& row_named(const TransportScene& scene, const std::string& name) {
+const TransportRow& row_named(const TransportScene& scene, std::string_view name) {
     return *std::ranges::find(scene.rows, name, &TransportRow::name);
 }
 
