@@ -83,18 +83,6 @@ SolvedSystem solve(const RadiositySystem& system, const RadiositySettings& setti
     return solve_by_matrix(system, keep_going);
 }
 
-Rgb gathered(const FormFactorRow& row, const std::vector<Rgb>& radiosity) {
-    double r = 0, g = 0, b = 0;
-    for (const FormFactor& from : row.factors) {
-        const auto factor = static_cast<double>(from.factor);
-        const Rgb sent = radiosity[from.patch];
-        r += factor * static_cast<double>(sent.r);
-        g += factor * static_cast<double>(sent.g);
-        b += factor * static_cast<double>(sent.b);
-    }
-    return row.direct + Rgb{static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
-}
-
 /// Whether light changes over a patch by more than the share `contrast` of all that it shows.
 bool changes(const PatchLight& light, Rgb ambient, float contrast) {
     float least = kInfinity, most = 0;
@@ -125,7 +113,9 @@ public:
             [&](uint64_t k) {
                 return NumberedPatch{&tree.patches[parts[k]], hash_words(parts[k], level, 0x70617274u).x};
             },
-            [&](uint64_t k, const FormFactorRow& row) { irradiance[parts[k]] = gathered(row, sent_); });
+            [&](uint64_t k, const FormFactorRow& row) {
+                irradiance[parts[k]] = row.direct + gather(row.factors, sent_);
+            });
         return !parts.empty() && !watch_.is_over();
     }
 
