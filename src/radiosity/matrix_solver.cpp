@@ -47,6 +47,18 @@ std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSo
     return b;
 }
 
+/// Of lamps and of what is no patch, once over no surface: all that is known before the elimination is through.
+SolvedSystem solve_direct_light(const RadiositySystem& system) {
+    std::vector<Rgb> exitance;
+    for (const SystemPatch& patch : system.patches) exitance.push_back(patch.exitance);
+    SolvedSystem solved;
+    for (std::size_t i = 0; i < system.patches.size(); ++i) {
+        solved.irradiance.push_back(system.direct[i] + gather(system.row(i), exitance));
+    }
+    solved.left = 1;
+    return solved;
+}
+
 } // namespace
 
 void check_matrix_size(std::size_t patches) {
@@ -65,7 +77,7 @@ SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& k
     std::vector<Rgb> radiosity(n);
     for (int k = 0; k < 3; ++k) {
         const std::vector<double> found = eliminate(system, k, keep_going);
-        if (found.empty() && n > 0) throw Error(ErrorCode::Interrupted, "interrupted");
+        if (found.empty() && n > 0) return solve_direct_light(system);
         for (std::size_t i = 0; i < n; ++i) {
             const auto value = static_cast<float>(found[i]);
             (k == 0 ? radiosity[i].r : k == 1 ? radiosity[i].g : radiosity[i].b) = value;

@@ -74,7 +74,7 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
 SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double tolerance, const KeepSolving& keep_going = {});
 /// Throws Error(OverLimit) for more than kMostMatrixPatches.
 void check_matrix_size(std::size_t patches);
-/// As check_matrix_size().
+/// As check_matrix_size(). Of an elimination that was ended the solution is direct light alone, by 0 steps.
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going = {});
 
 } // namespace pertev

@@ -19,7 +19,10 @@ namespace {
 
 constexpr uint64_t kRowsOfThread = 4; // at least, one after the other
 
-[[noreturn]] void interrupt() { throw Error(ErrorCode::Interrupted, "interrupted"); }
+[[noreturn]] void interrupt() {
+    throw Error(ErrorCode::Interrupted, "interrupted while form factors were made: nothing is written, as no light is "
+                                        "solved before all of them are there");
+}
 
 /// Makes `count` rows, each given to take(k, row), from any thread. False where the watch was over before all were
 /// made.
@@ -240,7 +243,8 @@ SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const Radi
 SolvedExtent extent_of(const SolveStats& stats, RadiositySolver solver) {
     const auto share = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
     if (stats.without_direct > 0) return {SolvedPart::SomeDirectLight, share(stats.without_direct)};
-    if (solver == RadiositySolver::Hierarchical && stats.steps == 0) return {SolvedPart::DirectLight, 1};
+    const bool begins_with_direct = solver == RadiositySolver::Hierarchical || solver == RadiositySolver::Matrix;
+    if (begins_with_direct && stats.steps == 0) return {SolvedPart::DirectLight, 1};
     return {SolvedPart::SomeBounces, share(stats.left)};
 }
 

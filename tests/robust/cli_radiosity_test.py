@@ -125,7 +125,9 @@ class Radiosity(CliTest):
             events, seconds = self.end(program)
             self.assertEqual(program.returncode, 75)
             self.assertLess(seconds, 1)  # a row alone takes as long
-            self.assertEqual([event["event"] for event in events], ["error"])
+            self.assertEqual([event["event"] for event in events if event["event"] != "progress"], ["error"])
+            self.assertIn("while form factors were made: nothing is written, as no light is solved before all of them",
+                          events[-1]["text"])
         self.assertEqual([name for name in self.files() if name.startswith("long")], [])
 
     def test_what_is_ended_while_links_are_made_is_kept_with_what_it_holds_and_shown_with_a_warning(self):
