@@ -171,19 +171,21 @@ public:
         if (what_ != what) {
             what_ = what;
             first_ = share;
-            watch_.restart();
+            step_watch_.restart();
         }
-        const double done = share - first_, seconds = watch_.seconds();
-        const bool is_known = done > 0.01 && seconds > 1;
-        reporter_.progress(share,
-                           is_known ? fmt::format("{}, {:.0f} s left", what, seconds * (1 - share) / done) : what);
+        const double done = share - first_, seconds = step_watch_.seconds();
+        const double left = done > 0.01 && seconds > 1 ? seconds * (1 - share) / done : -1;
+        reporter_.progress(share, left >= 0 ? fmt::format("{}, {:.0f} s left", what, left) : what);
+        reporter_.event(
+            fmt::format(R"({{"event":"progress","seconds":{:.3f},"step":{},"share":{:.4f},"seconds_left":{}}})",
+                        watch_.seconds(), json_string(what_), share, left >= 0 ? fmt::format("{:.3f}", left) : "null"));
     }
 
 private:
     Reporter& reporter_;
     std::string what_;
     double first_ = 0;
-    Stopwatch watch_;
+    Stopwatch watch_, step_watch_;
 };
 
 void say_what_is_left(const SolveStats& stats, const RadiositySettings& settings, Reporter& reporter) {
