@@ -234,6 +234,7 @@ SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const Radi
     stats.left = solution.left;
     stats.without_direct = solution.without_direct;
     stats.reached_limit = solution.reached_limit;
+    stats.link_error = solution.link_error;
     stats.bytes = solution.bytes;
     stats.solve_seconds = time.seconds();
     return {std::move(solution.tree), std::move(solution.irradiance), {}, {}};
@@ -277,7 +278,9 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
     RadiositySolution& solution = solved.solution;
     solution.geometry = geometry_hash(*prepared.scene);
     solution.light = solved_light(*prepared.scene);
-    solution.made = json_of(settings);
+    RadiositySettings made = settings;
+    if (stats.link_error > 0) made.link_error = stats.link_error;
+    solution.made = json_of(made);
     solution.patches = light_corners(scene.view(), shown.tree, shown.irradiance);
     solution.roots = std::move(shown.tree.roots);
     solution.quads = std::move(shown.tree.quads);
@@ -286,6 +289,21 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
     stats.shown = solution.patches.size();
     stats.divide_seconds = divide_time.seconds();
     return solved;
+}
+
+void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages) {
+    if (stats.link_error > settings.link_error) {
+        messages.warn(fmt::format("radiosity: --link-error {} has more than {} links, which is the most there may be; "
+                                  "solved by --link-error {} (which, given at once, takes less time)",
+                                  settings.link_error, kMostLinks, stats.link_error));
+    }
+    if (!stats.reached_limit) return;
+    const bool is_ambient = settings.solver == RadiositySolver::Southwell;
+    messages.warn(fmt::format(
+        "radiosity: after {} steps, which is where it ends, {:.2g} of the light {}: more than --tolerance {} (next to "
+        "nothing absorbs it; lower reflectances, or a larger tolerance)",
+        stats.steps, stats.left, is_ambient ? "is unsent, and shown as ambient light" : "still changes",
+        settings.tolerance));
 }
 
 std::string json_of(const RadiositySettings& s) {

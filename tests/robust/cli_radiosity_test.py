@@ -177,6 +177,7 @@ class Radiosity(CliTest):
             self.assertEqual((done["hash"], done["interrupted"]), (solved["hash"], False))
             self.assertLessEqual(done["seconds"], done["total_seconds"])
             self.assertGreater(done["peak_bytes"], 2**20)
+            self.assertEqual(solved["link_error"], 0.1 if solver == "hierarchical" else None)
         # What a picture is solved for first says so too.
         outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--json", *COARSE)
         self.assertIn("form factors", [event["step"] for event in outcome.events("progress")])
@@ -199,7 +200,8 @@ class Radiosity(CliTest):
             self.assertLess(told["peak_bytes"] - before["peak_bytes"], predicted, flags)
             self.assertLessEqual(told["shown"], before["most_shown"])
             self.refuse(4, "solve", "radiosity", "cornell-box", "-o", "m.rad", *flags, "--max-memory",
-                        predicted / 2**20 - 0.01, says=["radiosity: may take", "--max-memory", "largest parts"])
+                        predicted / 2**20 - 0.01, says=["radiosity: may take", "--max-memory", "largest parts",
+                                                        "--solver gauss-seidel" if "hierarchical" in flags else "--patch-rays"])
 
     def test_a_picture_for_which_there_is_no_room_is_refused_before_its_scene_is_solved(self):
         outcome = self.refuse(4, "render", "cornell-box", "-o", "x.png", "--integrator", "radiosity", "--size", "4096x4096",
