@@ -425,7 +425,7 @@ MUTATIONS = [
              [edit("src/radiosity/southwell.cpp", "most_[2 * at] >= most_[2 * at + 1] ? 2 * at", "most_[2 * at] > most_[2 * at + 1] ? 2 * at")],
              ["unit/radiosity_solvers"]),
     Mutation("ambient light that is not reflected on",
-             [edit("src/radiosity/southwell.cpp", "std::max(1 - reflected[k] / area, kLeastAbsorbed)", "std::max(1 - 0 * reflected[k] / area, kLeastAbsorbed)")],
+             [edit("src/radiosity/southwell.cpp", "std::max(1 - spread.reflected[k] / area, kLeastAbsorbed)", "std::max(1 - 0 * spread.reflected[k] / area, kLeastAbsorbed)")],
              ["unit/radiosity_solvers"]),
     Mutation("pixels on a hemicube's sides that all count alike",
              [edit("src/radiosity/hemicube.cpp", "side.push_back(z * pixel *", "side.push_back(0.5 * pixel *")],

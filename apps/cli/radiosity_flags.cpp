@@ -171,31 +171,22 @@ public:
         if (what_ != what) {
             what_ = what;
             first_ = share;
-            watch_.restart();
+            step_watch_.restart();
         }
-        const double done = share - first_, seconds = watch_.seconds();
-        const bool is_known = done > 0.01 && seconds > 1;
-        reporter_.progress(share,
-                           is_known ? fmt::format("{}, {:.0f} s left", what, seconds * (1 - share) / done) : what);
+        const double done = share - first_, seconds = step_watch_.seconds();
+        const double left = done > 0.01 && seconds > 1 ? seconds * (1 - share) / done : -1;
+        reporter_.progress(share, left >= 0 ? fmt::format("{}, {:.0f} s left", what, left) : what);
+        reporter_.event(
+            fmt::format(R"({{"event":"progress","seconds":{:.3f},"step":{},"share":{:.4f},"seconds_left":{}}})",
+                        watch_.seconds(), json_string(what_), share, left >= 0 ? fmt::format("{:.3f}", left) : "null"));
     }
 
 private:
     Reporter& reporter_;
     std::string what_;
     double first_ = 0;
-    Stopwatch watch_;
+    Stopwatch watch_, step_watch_;
 };
-
-void say_what_is_left(const SolveStats& stats, const RadiositySettings& settings, Reporter& reporter) {
-    if (!stats.reached_limit) return;
-    const bool is_ambient = settings.solver == RadiositySolver::Southwell;
-    reporter.messages().warn(fmt::format(
-        "radiosity: after {} steps, which is where it ends, {:.2g} of the light {}: more than --tolerance {} (next to "
-        "nothing absorbs it; lower reflectances, or a larger tolerance)",
-        stats.steps, stats.left, is_ambient ? "is unsent, and shown as ambient light" : "still changes",
-        settings.tolerance));
-    reporter.say_messages();
-}
 
 } // namespace
 
@@ -227,12 +218,14 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityF
                     static_cast<double>(stats.bytes) / static_cast<double>(std::max<uint64_t>(stats.patches, 1)),
                     stats.factor_seconds, stats.was_interrupted ? "ended after solving for" : "solved in",
                     stats.solve_seconds, stats.steps, stats.left, stats.divide_seconds));
-    say_what_is_left(stats, settings, reporter);
+    warn_of_limits(stats, settings, reporter.messages());
+    reporter.say_messages();
     reporter.event(fmt::format(
-        R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"peak_bytes":{},"steps":{},"left":{},"reached_limit":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{},"holds":{}}})",
+        R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"peak_bytes":{},"steps":{},"left":{},"reached_limit":{},"link_error":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{},"holds":{}}})",
         stats.patches, stats.shown, stats.factors, stats.bytes, peak_memory_bytes(), stats.steps,
-        json_number(stats.left), stats.reached_limit, stats.factor_seconds, stats.solve_seconds, stats.divide_seconds,
-        json_string(solved.solution.hash().hex()), stats.was_interrupted,
+        json_number(stats.left), stats.reached_limit,
+        stats.link_error > 0 ? fmt::format("{}", stats.link_error) : "null", stats.factor_seconds, stats.solve_seconds,
+        stats.divide_seconds, json_string(solved.solution.hash().hex()), stats.was_interrupted,
         stats.was_interrupted ? json_string(describe(solved.solution.extent)) : "null"));
     return solved;
 }

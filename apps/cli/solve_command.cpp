@@ -12,9 +12,11 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/radiosity_flags.h"
+#include "apps/cli/report_result.h"
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "base/write_file_atomically.h"
 #include "image/image_format.h"
 #include "session/check_integrator.h"
@@ -49,6 +51,7 @@ int solve(const SolveFlags& flags) {
                     flags.output, solution_name(flags.output), solution_name(flags.output)));
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.threads));
+    const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     Scene scene = load_scene(flags.scene, messages);
     RenderSettings shown;
@@ -67,7 +70,13 @@ int solve(const SolveFlags& flags) {
     const bool cut_short = solved.stats.was_interrupted;
     const std::string holds =
         cut_short ? fmt::format(", ended before it was whole: it holds {}", describe(solved.solution.extent)) : "";
-    reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, solved.solution.hash().hex()));
+    const std::string hash = solved.solution.hash().hex();
+    reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
+    const SolveStats& stats = solved.stats;
+    reporter.event(fmt::format(
+        R"({{"event":"done","seconds":{:.6f},"total_seconds":{:.6f},"peak_bytes":{},"hash":"{}","interrupted":{}}})",
+        stats.factor_seconds + stats.solve_seconds + stats.divide_seconds, total_time.seconds(), peak_memory_bytes(),
+        hash, cut_short));
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 

@@ -2,20 +2,39 @@
 
 #include <algorithm>
 
+#include "math/tree_sum.h"
+
 namespace pertev {
+namespace {
+
+struct Light {
+    double r = 0, g = 0, b = 0;
+};
+
+Light operator+(Light x, Light y) { return {x.r + y.r, x.g + y.g, x.b + y.b}; }
+
+} // namespace
 
 void FormFactorRow::sort() {
     // Stable: factors of one patch are added in the order in which they were found.
     std::ranges::stable_sort(factors, {}, &FormFactor::patch);
     std::size_t count = 0;
-    for (const FormFactor& next : factors) {
-        if (count > 0 && factors[count - 1].patch == next.patch) {
-            factors[count - 1].factor += next.factor;
-        } else {
-            factors[count++] = next;
-        }
+    for (std::size_t first = 0, last = 0; first < factors.size(); first = last) {
+        while (last < factors.size() && factors[last].patch == factors[first].patch) ++last;
+        const float sum = tree_sum(last - first, [&](uint64_t i) { return factors[first + i].factor; });
+        factors[count++] = {factors[first].patch, sum};
     }
     factors.resize(count);
+}
+
+Rgb gather(std::span<const FormFactor> row, const std::vector<Rgb>& radiosity) {
+    const Light light = tree_sum(row.size(), [&](uint64_t i) {
+        const auto factor = static_cast<double>(row[i].factor);
+        const Rgb sent = radiosity[row[i].patch];
+        return Light{factor * static_cast<double>(sent.r), factor * static_cast<double>(sent.g),
+                     factor * static_cast<double>(sent.b)};
+    });
+    return {static_cast<float>(light.r), static_cast<float>(light.g), static_cast<float>(light.b)};
 }
 
 } // namespace pertev

@@ -4,6 +4,7 @@
 // that are no patches, and the sum over patches j of factor_j times their radiosity.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "math/rgb.h"
@@ -27,5 +28,8 @@ struct FormFactorRow {
     /// Adds up those of one patch, and puts them in order.
     void sort();
 };
+
+/// Irradiance by what all patches send, `radiosity` [patches], W/m2. A tree_sum in double.
+Rgb gather(std::span<const FormFactor> row, const std::vector<Rgb>& radiosity);
 
 } // namespace pertev

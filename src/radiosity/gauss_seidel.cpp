@@ -1,6 +1,7 @@
 // Each patch in turn gathers what all others send by now, until a sweep changes hardly anything. The matrix is
 // diagonally dominant, so that it comes to an end.
 
+#include "math/tree_sum.h"
 #include "radiosity/radiosity_system.h"
 
 namespace pertev {
@@ -8,6 +9,13 @@ namespace {
 
 double sum_of(Rgb c) { return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b); }
 constexpr std::size_t kPatchesAtOnce = 1024; // between two looks at whether to go on
+
+/// Of a patch, or of many: what leaves it, and by how much that has changed, W.
+struct Sweep {
+    double changed = 0, all = 0;
+};
+
+Sweep operator+(Sweep a, Sweep b) { return {a.changed + b.changed, a.all + b.all}; }
 
 } // namespace
 
@@ -19,30 +27,23 @@ SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double toleran
     bool goes_on = true;
     std::vector<Rgb> radiosity(count);
     for (std::size_t i = 0; i < count; ++i) radiosity[i] = system.patches[i].exitance;
+    bool is_ended = false;
+    const auto relax = [&](uint64_t i) -> Sweep {
+        if (i % kPatchesAtOnce == kPatchesAtOnce - 1 && keep_going && !keep_going(solved.left)) is_ended = true;
+        if (is_ended) return {};
+        const SystemPatch& patch = system.patches[i];
+        solved.irradiance[i] = system.direct[i] + gather(system.row(i), radiosity);
+        const Rgb now = patch.exitance + patch.reflectance * solved.irradiance[i];
+        const auto area = static_cast<double>(patch.area);
+        const Rgb change = now - radiosity[i];
+        radiosity[i] = now;
+        return {area * sum_of({abs(change.r), abs(change.g), abs(change.b)}), area * sum_of(now)};
+    };
     do {
-        double changed = 0, all = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (i % kPatchesAtOnce == kPatchesAtOnce - 1 && keep_going && !keep_going(solved.left)) return solved;
-            const SystemPatch& patch = system.patches[i];
-            double r = 0, g = 0, b = 0;
-            for (const FormFactor& from : system.row(i)) {
-                const auto factor = static_cast<double>(from.factor);
-                const Rgb sent = radiosity[from.patch];
-                r += factor * static_cast<double>(sent.r);
-                g += factor * static_cast<double>(sent.g);
-                b += factor * static_cast<double>(sent.b);
-            }
-            const Rgb gathered = {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
-            solved.irradiance[i] = system.direct[i] + gathered;
-            const Rgb now = patch.exitance + patch.reflectance * solved.irradiance[i];
-            const auto area = static_cast<double>(patch.area);
-            const Rgb change = now - radiosity[i];
-            changed += area * sum_of({abs(change.r), abs(change.g), abs(change.b)});
-            all += area * sum_of(now);
-            radiosity[i] = now;
-        }
+        const Sweep sweep = tree_sum(count, relax); // patch by patch, in order
+        if (is_ended) return solved;
         ++solved.steps;
-        solved.left = all > 0 ? changed / all : 0;
+        solved.left = sweep.all > 0 ? sweep.changed / sweep.all : 0;
         goes_on = !keep_going || keep_going(solved.left);
     } while (goes_on && solved.left > tolerance && solved.steps < kMostSweeps);
     solved.reached_limit = goes_on && solved.left > tolerance;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "math/tree_sum.h"
+
 namespace pertev {
 namespace {
 
@@ -18,13 +20,11 @@ uint32_t pixel_within(double place, double lowest, double extent, uint32_t pixel
 HemicubePixels::HemicubePixels(uint32_t resolution) : resolution_(resolution) {
     const double pixel = 2.0 / resolution;
     std::vector<double> top, side;
-    double sum = 0;
     for (uint32_t row = 0; row < resolution; ++row) {
         for (uint32_t column = 0; column < resolution; ++column) {
             const double x = place_of_pixel(column, resolution, -1, 2), y = place_of_pixel(row, resolution, -1, 2);
             const double r = x * x + y * y + 1;
             top.push_back(pixel * pixel / (static_cast<double>(kPi) * r * r));
-            sum += top.back();
         }
     }
     for (uint32_t row = 0; row < resolution / 2; ++row) {
@@ -32,9 +32,12 @@ HemicubePixels::HemicubePixels(uint32_t resolution) : resolution_(resolution) {
             const double x = place_of_pixel(column, resolution, -1, 2), z = place_of_pixel(row, resolution / 2, 0, 1);
             const double r = x * x + z * z + 1;
             side.push_back(z * pixel * (1.0 / (resolution / 2)) / (static_cast<double>(kPi) * r * r));
-            sum += 4 * side.back();
         }
     }
+    const auto sum_of = [](const std::vector<double>& shares) {
+        return tree_sum(shares.size(), [&](uint64_t i) { return shares[i]; });
+    };
+    const double sum = sum_of(top) + 4 * sum_of(side);
     for (const double share : top) top_.push_back(static_cast<float>(share / sum));
     for (const double share : side) side_.push_back(static_cast<float>(share / sum));
 }

@@ -17,10 +17,15 @@ constexpr uint32_t kMostPasses = 24, kSweeps = 3;
 constexpr uint64_t kLinksAtOnce = 256; // whose rays are traced together
 constexpr float kRaysOfLimit = 8;      // of a link that may be wrong by as much as it is allowed to
 
+/// More links than there may be. Whether it is thrown is the same for any number of threads: links are never fewer than
+/// when they were counted.
+struct TooManyLinks {};
+
 class Refiner {
 public:
-    Refiner(const SolvedScene& scene, LinkNodes& nodes, const RadiositySettings& settings, WorkWatch& watch)
-        : scene_(scene), nodes_(nodes), watch_(watch), seed_(settings.seed),
+    Refiner(const SolvedScene& scene, LinkNodes& nodes, const RadiositySettings& settings, WorkWatch& watch,
+            uint64_t most_links)
+        : scene_(scene), nodes_(nodes), watch_(watch), seed_(settings.seed), most_links_(most_links),
           limit_(settings.link_error * nodes.mean_direct()) {}
 
     /// Divides links until each is as good as it has to be or waits for a patch to be divided: links of one size after
@@ -43,7 +48,7 @@ public:
                     const uint64_t first = chunk * kLinksAtOnce, last = std::min(first + kLinksAtOnce, open.size());
                     sort_out({open.data() + first, last - first}, factors, sorted[chunk]);
                     const uint64_t made = sorted[chunk].kept.size() + sorted[chunk].open.size();
-                    check_count(count.fetch_add(made) + made);
+                    if (count.fetch_add(made) + made > most_links_) throw TooManyLinks{};
                 }
             });
             open = {};
@@ -66,13 +71,6 @@ private:
     struct Sorted {
         std::vector<Link> kept, open;
     };
-
-    static void check_count(uint64_t count) {
-        if (count <= kMostLinks) return;
-        throw Error(
-            ErrorCode::OverLimit,
-            fmt::format("--solver hierarchical: more than {} links (a larger --link-error makes fewer)", kMostLinks));
-    }
 
     void sort_out(std::span<Link> links, LinkFactors& factors, Sorted& sorted) {
         std::vector<Link*> asked;
@@ -190,23 +188,17 @@ private:
     LinkNodes& nodes_;
     WorkWatch& watch_;
     uint32_t seed_;
+    uint64_t most_links_;
     float limit_;                 // of what a link may stand for, W/m2
     std::vector<uint8_t> wishes_; // [patches] to be divided
 };
 
-} // namespace
-
-std::size_t most_hierarchical_bytes(uint64_t patches) {
-    const uint64_t nodes = 3 * patches; // clusters, patches and what was divided into them
-    const uint64_t most = nodes < 100000 ? nodes * nodes : kMostLinks;
-    return 3 * std::min(most, kMostLinks) * sizeof(Link) + LinkNodes::most_bytes(patches, patches);
-}
-
-HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                          const RadiositySettings& settings, WorkWatch& watch) {
+HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, float patch_size,
+                                    const RadiositySettings& settings, WorkWatch& watch, uint64_t most_links) {
     LinkNodes nodes(scene, std::move(coarse), patch_size, settings, watch);
-    Refiner refiner(scene, nodes, settings, watch);
+    Refiner refiner(scene, nodes, settings, watch, most_links);
     HierarchicalSolution solution;
+    solution.link_error = settings.link_error;
     solution.without_direct = nodes.without_direct();
     std::vector<Link> links = {{nodes.root(), nodes.root()}};
     bool is_done = false;
@@ -229,6 +221,28 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
     solution.irradiance = nodes.irradiance();
     solution.tree = nodes.take_tree();
     return solution;
+}
+} // namespace
+
+std::size_t most_hierarchical_bytes(uint64_t patches) {
+    const uint64_t nodes = 3 * patches; // clusters, patches and what was divided into them
+    const uint64_t most = nodes < 100000 ? nodes * nodes : kMostLinks;
+    return 3 * std::min(most, kMostLinks) * sizeof(Link) + LinkNodes::most_bytes(patches, patches);
+}
+
+HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
+                                          const RadiositySettings& settings, WorkWatch& watch, uint64_t most_links) {
+    RadiositySettings tried = settings;
+    for (;; tried.link_error *= 2) {
+        try {
+            return solve_by_links(scene, coarse, patch_size, tried, watch, most_links);
+        } catch (const TooManyLinks&) {
+            if (tried.link_error > kLargestLinkError / 2) break;
+        }
+    }
+    throw Error(ErrorCode::OverLimit, fmt::format("--solver hierarchical: more than {} links by any --link-error (a "
+                                                  "larger --patch-size, or another --solver)",
+                                                  most_links));
 }
 
 } // namespace pertev

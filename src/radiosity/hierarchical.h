@@ -26,13 +26,18 @@ struct HierarchicalSolution {
     double without_direct = 0;  // share of the patches that direct light was not found for
     std::size_t bytes = 0;      // of links and of what stands for patches and clusters
     bool reached_limit = false; // ended by the most passes there are
+    float link_error = 0;       // that it was made by: what was asked for, or a multiple of it
 };
 
 /// `coarse`: whole triangles. They are divided until no edge is longer than `patch_size` (metres), but where the oracle
-/// asks for it alone. Once `watch` is over the solution ends where it is. Throws Error(OverLimit) where there are more
-/// than kMostLinks links.
+/// asks for it alone. Once `watch` is over the solution ends where it is. Where there would be more than `most_links`
+/// all begins anew with twice the link error, as often as it takes: the bytes are those of that error asked for at
+/// once. Throws Error(OverLimit) where no error up to kLargestLinkError has so few.
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                          const RadiositySettings& settings, WorkWatch& watch);
+                                          const RadiositySettings& settings, WorkWatch& watch,
+                                          uint64_t most_links = kMostLinks);
+
+inline constexpr float kLargestLinkError = 1e6f;
 
 /// What it holds at most, were all patches as small as they may become.
 std::size_t most_hierarchical_bytes(uint64_t patches);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "math/tree_sum.h"
 #include "radiosity/radiosity_system.h"
 
 namespace pertev {
@@ -19,13 +20,13 @@ uint64_t count_endless(const RadiositySystem& system, int k) {
     const std::size_t count = system.patches.size();
     std::vector<uint8_t> loses(count, 0), is_lit(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
-        double kept = 0;
         bool reached = system.patches[i].area > 0 && channel(system.direct[i], k) > 0;
-        for (const FormFactor& from : system.row(i)) {
-            const SystemPatch& source = system.patches[from.patch];
-            kept += static_cast<double>(from.factor) * channel(source.reflectance, k);
+        const std::span<const FormFactor> row = system.row(i);
+        const double kept = tree_sum(row.size(), [&](uint64_t j) {
+            const SystemPatch& source = system.patches[row[j].patch];
             reached = reached || channel(source.exitance, k) > 0;
-        }
+            return static_cast<double>(row[j].factor) * channel(source.reflectance, k);
+        });
         loses[i] = kept < 1 - kLeastLoss ? 1 : 0;
         is_lit[i] = reached ? 1 : 0;
     }

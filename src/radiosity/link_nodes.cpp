@@ -5,12 +5,31 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "math/tree_sum.h"
 #include "radiosity/row_maker.h"
 
 namespace pertev {
 namespace {
 
 constexpr uint32_t kDirectRays = 32; // of each quarter of a patch, and 16 to lamps
+
+struct Lit {
+    double light = 0, area = 0; // W, m2
+};
+
+Lit operator+(Lit a, Lit b) { return {a.light + b.light, a.area + b.area}; }
+
+/// What a node receives: from everywhere alike, and by direction.
+struct Received {
+    Rgb even;
+    SentLight directed;
+};
+
+Received operator+(Received a, const Received& b) {
+    a.even += b.even;
+    a.directed.add(b.directed);
+    return a;
+}
 
 } // namespace
 
@@ -70,13 +89,12 @@ Rgb LinkNodes::power(NodeCode code) const {
 }
 
 float LinkNodes::mean_direct() const {
-    double light = 0, area = 0;
-    for (std::size_t i = 0; i < direct_.size(); ++i) {
-        if (is_black(direct_[i])) continue;
-        light += static_cast<double>(tree_.patches[i].area * luminance(direct_[i]));
-        area += static_cast<double>(tree_.patches[i].area);
-    }
-    return area > 0 ? static_cast<float>(light / area) : 0.0f;
+    const Lit lit = tree_sum(direct_.size(), [&](uint64_t i) -> Lit {
+        if (is_black(direct_[i])) return {};
+        const float area = tree_.patches[i].area;
+        return {static_cast<double>(area * luminance(direct_[i])), static_cast<double>(area)};
+    });
+    return lit.area > 0 ? static_cast<float>(lit.light / lit.area) : 0.0f;
 }
 
 double LinkNodes::sweep(std::span<const Link> links) {
@@ -96,12 +114,11 @@ double LinkNodes::sweep(std::span<const Link> links) {
             cluster_received_[half].add(cluster_received_[number]);
         }
     }
-    std::vector<double> changed(faces), all(faces);
-    parallel_for(faces, 64, [&](uint64_t i) { push(tree_.roots[clusters_.faces[i]], above[i], changed[i], all[i]); });
+    std::vector<Pushed> pushed(faces);
+    parallel_for(faces, 64, [&](uint64_t i) { pushed[i] = push(tree_.roots[clusters_.faces[i]], above[i]); });
     send();
-    double change = 0, sum = 0;
-    for (std::size_t i = 0; i < faces; ++i) change += changed[i], sum += all[i];
-    return sum > 0 ? change / sum : 0;
+    const Pushed sum = tree_sum(faces, [&](uint64_t i) -> const Pushed& { return pushed[i]; });
+    return sum.all > 0 ? sum.changed / sum.all : 0;
 }
 
 void LinkNodes::gather(std::span<const Link> links) {
@@ -122,52 +139,48 @@ void LinkNodes::gather(std::span<const Link> links) {
 }
 
 void LinkNodes::receive(NodeCode receiver, std::span<const Link> links) {
-    Rgb even;
-    SentLight directed;
     const Ball& here = ball(receiver);
-    for (const Link& link : links) {
-        if (!(link.factor > 0)) continue;
-        const Ball& there = ball(link.source);
-        const bool any_cluster = is_cluster(receiver) || is_cluster(link.source);
-        if (!any_cluster) {
-            even += link.factor * sent(link.source);
-        } else if (balls_meet(here, there)) {
-            even += link.factor * power(link.source);
-        } else {
-            const Vec3 way = normalize(there.centre - here.centre);
-            const Rgb light = link.factor * power_towards(link.source, -way);
-            if (is_cluster(receiver)) {
-                directed.add(way, light);
-            } else {
-                even += light;
-            }
-        }
-    }
     if (is_cluster(receiver)) {
-        cluster_gathered_[cluster_of(receiver)] = even;
-        cluster_received_[cluster_of(receiver)] = directed;
-    } else if (is_patch(receiver)) {
-        gathered_[number_of(receiver)] = even;
-    } else {
-        quad_gathered_[receiver] = even;
+        const Received received = tree_sum(links.size(), [&](uint64_t i) -> Received {
+            const Link& link = links[i];
+            const Ball& there = ball(link.source);
+            if (!(link.factor > 0)) return {};
+            if (balls_meet(here, there)) return {link.factor * power(link.source), {}};
+            const Vec3 way = normalize(there.centre - here.centre);
+            Received of;
+            of.directed.add(way, link.factor * power_towards(link.source, -way));
+            return of;
+        });
+        cluster_gathered_[cluster_of(receiver)] = received.even;
+        cluster_received_[cluster_of(receiver)] = received.directed;
+        return;
     }
+    const Rgb received = tree_sum(links.size(), [&](uint64_t i) -> Rgb {
+        const Link& link = links[i];
+        if (!(link.factor > 0)) return {};
+        if (!is_cluster(link.source)) return link.factor * sent(link.source);
+        const Ball& there = ball(link.source);
+        if (balls_meet(here, there)) return link.factor * power(link.source);
+        return link.factor * power_towards(link.source, -normalize(there.centre - here.centre));
+    });
+    (is_patch(receiver) ? gathered_[number_of(receiver)] : quad_gathered_[receiver]) = received;
 }
 
 /// Down: what a quad gathers, all its parts receive. Up: it sends the mean of what they do.
-Rgb LinkNodes::push(PatchCode code, Rgb above, double& changed, double& all) {
+LinkNodes::Pushed LinkNodes::push(PatchCode code, Rgb above) {
     if (is_patch(code)) {
         const uint32_t i = number_of(code);
         const Patch& patch = tree_.patches[i];
         irradiance_[i] = direct_[i] + above + gathered_[i];
         const Rgb sent = patch.reflectance * irradiance_[i];
-        changed += static_cast<double>(patch.area * abs(luminance(sent) - luminance(patch_sent_[i])));
-        all += static_cast<double>(patch.area * luminance(sent));
-        return patch_sent_[i] = sent;
+        const float change = abs(luminance(sent) - luminance(patch_sent_[i]));
+        patch_sent_[i] = sent;
+        return {sent, static_cast<double>(patch.area * change), static_cast<double>(patch.area * luminance(sent))};
     }
     const Rgb received = above + quad_gathered_[code];
-    Rgb sum;
-    for (const PatchCode child : tree_.quads[code].child) sum += push(child, received, changed, all);
-    return quad_sent_[code] = 0.25f * sum;
+    Pushed sum = tree_sum(4, [&](uint64_t k) { return push(tree_.quads[code].child[k], received); });
+    quad_sent_[code] = sum.sent = 0.25f * sum.sent;
+    return sum;
 }
 
 void LinkNodes::send() {

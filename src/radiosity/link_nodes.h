@@ -103,7 +103,15 @@ private:
     bool find_direct(uint32_t patch, RowMaker& of_whole, RowMaker& of_quarter);
     void gather(std::span<const Link> links);
     void receive(NodeCode receiver, std::span<const Link> links);
-    Rgb push(PatchCode code, Rgb above, double& changed, double& all);
+    /// Of a patch, or of all in a tree of them: radiosity, W/m2, and what leaves it and has changed of that, W.
+    struct Pushed {
+        Rgb sent;
+        double changed = 0, all = 0;
+    };
+    friend Pushed operator+(const Pushed& a, const Pushed& b) {
+        return {a.sent + b.sent, a.changed + b.changed, a.all + b.all};
+    }
+    Pushed push(PatchCode code, Rgb above);
     void send();
 
     const SolvedScene& scene_;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "math/tree_sum.h"
 #include "radiosity/radiosity_settings.h"
 #include "radiosity/radiosity_system.h"
 
@@ -39,10 +40,23 @@ std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSo
         if (keep_going && !keep_going(left)) return {};
     }
     for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t column = i + 1; column < n; ++column) b[i] -= matrix[i * n + column] * b[column];
-        b[i] /= matrix[i * n + i];
+        const double *row = matrix.data() + i * n, *known = row + i + 1, *of = b.data() + i + 1;
+        const double others = tree_sum(n - i - 1, [&](uint64_t j) { return known[j] * of[j]; });
+        b[i] = (b[i] - others) / row[i];
     }
     return b;
+}
+
+/// Of lamps and of what is no patch, once over no surface: all that is known before the elimination is through.
+SolvedSystem solve_direct_light(const RadiositySystem& system) {
+    std::vector<Rgb> exitance;
+    for (const SystemPatch& patch : system.patches) exitance.push_back(patch.exitance);
+    SolvedSystem solved;
+    for (std::size_t i = 0; i < system.patches.size(); ++i) {
+        solved.irradiance.push_back(system.direct[i] + gather(system.row(i), exitance));
+    }
+    solved.left = 1;
+    return solved;
 }
 
 } // namespace
@@ -60,20 +74,18 @@ SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& k
     const std::size_t n = system.patches.size();
     check_matrix_size(n);
     SolvedSystem solved;
-    std::vector<double> radiosity[3];
+    std::vector<Rgb> radiosity(n);
     for (int k = 0; k < 3; ++k) {
-        radiosity[k] = eliminate(system, k, keep_going);
-        if (radiosity[k].empty() && n > 0) throw Error(ErrorCode::Interrupted, "interrupted");
+        const std::vector<double> found = eliminate(system, k, keep_going);
+        if (found.empty() && n > 0) return solve_direct_light(system);
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto value = static_cast<float>(found[i]);
+            (k == 0 ? radiosity[i].r : k == 1 ? radiosity[i].g : radiosity[i].b) = value;
+        }
     }
     solved.steps = n;
     for (std::size_t i = 0; i < n; ++i) {
-        double gathered[3] = {};
-        for (const FormFactor& from : system.row(i)) {
-            for (int k = 0; k < 3; ++k) gathered[k] += static_cast<double>(from.factor) * radiosity[k][from.patch];
-        }
-        solved.irradiance.push_back(system.direct[i] + Rgb{static_cast<float>(gathered[0]),
-                                                           static_cast<float>(gathered[1]),
-                                                           static_cast<float>(gathered[2])});
+        solved.irradiance.push_back(system.direct[i] + gather(system.row(i), radiosity));
     }
     return solved;
 }

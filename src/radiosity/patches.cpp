@@ -58,7 +58,10 @@ struct DividedScene {
 /// Divides `patch` `levels` times. Returns its code; kNoPatch where there is nothing on it to solve for.
 PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint32_t levels) {
     if (levels == 0) {
-        if (divided.watch != nullptr && divided.watch->is_over()) throw Error(ErrorCode::Interrupted, "interrupted");
+        if (divided.watch != nullptr && divided.watch->is_over()) {
+            throw Error(ErrorCode::Interrupted, "interrupted while surfaces were divided into patches: nothing is "
+                                                "written, as there is no light yet");
+        }
         set_surface(divided.scene, patch);
         tree.patches.push_back(patch);
         return kIsPatch | static_cast<uint32_t>(tree.patches.size() - 1);

@@ -4,7 +4,7 @@
 // E:
 //     B_i = E_i + r_i H_i,   H_i = direct_i + sum over j of F_ij B_j.
 // All solvers come to the same B; they differ in what they work on first. Each of them adds in an order that is fixed,
-// so that the bytes of the solution do not depend on the number of threads.
+// many terms in a tree (math/tree_sum.h), so that the bytes of the solution do not depend on the number of threads.
 //
 // Sources: Goral et al. 1984 (elimination); Cohen, Greenberg 1985 (Gauss-Seidel); Cohen, Chen, Wallace, Greenberg, "A
 // Progressive Refinement Approach to Fast Radiosity Image Generation", SIGGRAPH 1988, and Gortler, Cohen, Slusallek,
@@ -74,7 +74,7 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
 SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double tolerance, const KeepSolving& keep_going = {});
 /// Throws Error(OverLimit) for more than kMostMatrixPatches.
 void check_matrix_size(std::size_t patches);
-/// As check_matrix_size().
+/// As check_matrix_size(). Of an elimination that was ended the solution is direct light alone, by 0 steps.
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going = {});
 
 } // namespace pertev

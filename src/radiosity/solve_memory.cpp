@@ -123,7 +123,8 @@ void check_memory(const SolveMemory& memory, const RadiositySettings& settings, 
     for (std::size_t i = 0; i < std::min<std::size_t>(memory.parts.size(), 5); ++i) {
         list += fmt::format("\n  {:10.1f} MiB  {}", mebibytes(memory.parts[i].bytes), memory.parts[i].name);
     }
-    const char* fewer = settings.solver == RadiositySolver::Hierarchical ? "" : ", fewer --patch-rays a smaller system";
+    const char* fewer = settings.solver == RadiositySolver::Hierarchical ? ", --solver gauss-seidel a smaller system"
+                                                                         : ", fewer --patch-rays a smaller system";
     throw Error(
         ErrorCode::OutOfMemory,
         fmt::format("radiosity: may take {:.1f} MiB of this machine's memory, of which {:.1f} MiB are to be used "

@@ -19,7 +19,10 @@ namespace {
 
 constexpr uint64_t kRowsOfThread = 4; // at least, one after the other
 
-[[noreturn]] void interrupt() { throw Error(ErrorCode::Interrupted, "interrupted"); }
+[[noreturn]] void interrupt() {
+    throw Error(ErrorCode::Interrupted, "interrupted while form factors were made: nothing is written, as no light is "
+                                        "solved before all of them are there");
+}
 
 /// Makes `count` rows, each given to take(k, row), from any thread. False where the watch was over before all were
 /// made.
@@ -83,18 +86,6 @@ SolvedSystem solve(const RadiositySystem& system, const RadiositySettings& setti
     return solve_by_matrix(system, keep_going);
 }
 
-Rgb gathered(const FormFactorRow& row, const std::vector<Rgb>& radiosity) {
-    double r = 0, g = 0, b = 0;
-    for (const FormFactor& from : row.factors) {
-        const auto factor = static_cast<double>(from.factor);
-        const Rgb sent = radiosity[from.patch];
-        r += factor * static_cast<double>(sent.r);
-        g += factor * static_cast<double>(sent.g);
-        b += factor * static_cast<double>(sent.b);
-    }
-    return row.direct + Rgb{static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
-}
-
 /// Whether light changes over a patch by more than the share `contrast` of all that it shows.
 bool changes(const PatchLight& light, Rgb ambient, float contrast) {
     float least = kInfinity, most = 0;
@@ -125,7 +116,9 @@ public:
             [&](uint64_t k) {
                 return NumberedPatch{&tree.patches[parts[k]], hash_words(parts[k], level, 0x70617274u).x};
             },
-            [&](uint64_t k, const FormFactorRow& row) { irradiance[parts[k]] = gathered(row, sent_); });
+            [&](uint64_t k, const FormFactorRow& row) {
+                irradiance[parts[k]] = row.direct + gather(row.factors, sent_);
+            });
         return !parts.empty() && !watch_.is_over();
     }
 
@@ -241,6 +234,7 @@ SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const Radi
     stats.left = solution.left;
     stats.without_direct = solution.without_direct;
     stats.reached_limit = solution.reached_limit;
+    stats.link_error = solution.link_error;
     stats.bytes = solution.bytes;
     stats.solve_seconds = time.seconds();
     return {std::move(solution.tree), std::move(solution.irradiance), {}, {}};
@@ -250,7 +244,8 @@ SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const Radi
 SolvedExtent extent_of(const SolveStats& stats, RadiositySolver solver) {
     const auto share = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
     if (stats.without_direct > 0) return {SolvedPart::SomeDirectLight, share(stats.without_direct)};
-    if (solver == RadiositySolver::Hierarchical && stats.steps == 0) return {SolvedPart::DirectLight, 1};
+    const bool begins_with_direct = solver == RadiositySolver::Hierarchical || solver == RadiositySolver::Matrix;
+    if (begins_with_direct && stats.steps == 0) return {SolvedPart::DirectLight, 1};
     return {SolvedPart::SomeBounces, share(stats.left)};
 }
 
@@ -283,7 +278,9 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
     RadiositySolution& solution = solved.solution;
     solution.geometry = geometry_hash(*prepared.scene);
     solution.light = solved_light(*prepared.scene);
-    solution.made = json_of(settings);
+    RadiositySettings made = settings;
+    if (stats.link_error > 0) made.link_error = stats.link_error;
+    solution.made = json_of(made);
     solution.patches = light_corners(scene.view(), shown.tree, shown.irradiance);
     solution.roots = std::move(shown.tree.roots);
     solution.quads = std::move(shown.tree.quads);
@@ -292,6 +289,21 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
     stats.shown = solution.patches.size();
     stats.divide_seconds = divide_time.seconds();
     return solved;
+}
+
+void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages) {
+    if (stats.link_error > settings.link_error) {
+        messages.warn(fmt::format("radiosity: --link-error {} has more than {} links, which is the most there may be; "
+                                  "solved by --link-error {} (which, given at once, takes less time)",
+                                  settings.link_error, kMostLinks, stats.link_error));
+    }
+    if (!stats.reached_limit) return;
+    const bool is_ambient = settings.solver == RadiositySolver::Southwell;
+    messages.warn(fmt::format(
+        "radiosity: after {} steps, which is where it ends, {:.2g} of the light {}: more than --tolerance {} (next to "
+        "nothing absorbs it; lower reflectances, or a larger tolerance)",
+        stats.steps, stats.left, is_ambient ? "is unsent, and shown as ambient light" : "still changes",
+        settings.tolerance));
 }
 
 std::string json_of(const RadiositySettings& s) {

@@ -27,6 +27,7 @@ struct SolveStats {
     std::size_t bytes = 0; // that the system took, of the host's memory
     bool was_interrupted = false;
     bool reached_limit = false; // ended by the most steps that a solver takes, with more left than the tolerance
+    float link_error = 0;       // HierarchicalSolution's
 };
 
 struct SolvedRadiosity {
@@ -42,6 +43,9 @@ float patch_size_of(const PreparedScene& prepared, const RadiositySettings& sett
 /// make_patches and check_light_ends.
 SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
                                 const SolveProgress& progress = {});
+
+/// Warns of a solution that is less than what was asked for, whole though it is.
+void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages);
 
 /// As a JSON object: what makes the bytes of the solution.
 std::string json_of(const RadiositySettings& settings);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "math/tree_sum.h"
 #include "radiosity/radiosity_system.h"
 
 namespace pertev {
@@ -79,27 +80,43 @@ double light_of(const SystemPatch& patch, Rgb unsent) {
            (static_cast<double>(unsent.r) + static_cast<double>(unsent.g) + static_cast<double>(unsent.b));
 }
 
+/// Sums over patches of what ambient light is made of.
+struct Spread {
+    double area = 0, squared = 0;
+    double arrives[3] = {}, reflected[3] = {}; // by channel
+};
+
+Spread operator+(const Spread& a, const Spread& b) {
+    Spread sum = {a.area + b.area, a.squared + b.squared};
+    for (int k = 0; k < 3; ++k) {
+        sum.arrives[k] = a.arrives[k] + b.arrives[k];
+        sum.reflected[k] = a.reflected[k] + b.reflected[k];
+    }
+    return sum;
+}
+
 /// What unsent light would be everywhere if it were spread evenly, with all of its reflections. A patch that others
 /// cover the share s of the hemisphere of sends them s of its light, and receives s of what is spread: those that face
 /// nothing take no part in it.
 Rgb ambient_of(const RadiositySystem& system, const std::vector<Rgb>& unsent) {
-    double area = 0, squared = 0, arrives[3] = {}, reflected[3] = {};
-    for (std::size_t i = 0; i < unsent.size(); ++i) {
+    const Spread spread = tree_sum(unsent.size(), [&](uint64_t i) -> Spread {
         const SystemPatch& patch = system.patches[i];
-        double covered = 0;
-        for (const FormFactor& from : system.row(i)) covered += static_cast<double>(from.factor);
+        const std::span<const FormFactor> row = system.row(i);
+        const double covered = tree_sum(row.size(), [&](uint64_t k) { return static_cast<double>(row[k].factor); });
         const double size = static_cast<double>(patch.area) * covered;
+        const double reflecting = size * covered;
         const Rgb u = unsent[i], r = patch.reflectance;
-        area += size;
-        squared += size * covered;
-        arrives[0] += size * static_cast<double>(u.r), reflected[0] += size * covered * static_cast<double>(r.r);
-        arrives[1] += size * static_cast<double>(u.g), reflected[1] += size * covered * static_cast<double>(r.g);
-        arrives[2] += size * static_cast<double>(u.b), reflected[2] += size * covered * static_cast<double>(r.b);
-    }
+        return {size,
+                reflecting,
+                {size * static_cast<double>(u.r), size * static_cast<double>(u.g), size * static_cast<double>(u.b)},
+                {reflecting * static_cast<double>(r.r), reflecting * static_cast<double>(r.g),
+                 reflecting * static_cast<double>(r.b)}};
+    });
+    const double area = spread.area;
     if (!(area > 0)) return {};
     const auto of = [&](int k) {
-        const double absorbed = std::max(1 - reflected[k] / area, kLeastAbsorbed);
-        return static_cast<float>(arrives[k] / area / absorbed * (squared / area));
+        const double absorbed = std::max(1 - spread.reflected[k] / area, kLeastAbsorbed);
+        return static_cast<float>(spread.arrives[k] / area / absorbed * (spread.squared / area));
     };
     return {of(0), of(1), of(2)};
 }
@@ -113,18 +130,16 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
     solved.irradiance = system.direct;
     std::vector<Rgb> unsent(count);
     MostUnsent most(count);
-    double all = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const SystemPatch& patch = system.patches[i];
         unsent[i] = patch.exitance + patch.reflectance * system.direct[i];
         most.set(i, light_of(patch, unsent[i]));
-        all += light_of(patch, unsent[i]);
     }
-    const auto count_left = [&] {
-        double left = 0;
-        for (std::size_t i = 0; i < count; ++i) left += light_of(system.patches[i], unsent[i]);
-        solved.left = all > 0 ? left / all : 0;
+    const auto all_unsent = [&] {
+        return tree_sum(count, [&](uint64_t i) { return light_of(system.patches[i], unsent[i]); });
     };
+    const double all = all_unsent();
+    const auto count_left = [&] { solved.left = all > 0 ? all_unsent() / all : 0; };
     count_left();
     Receivers receivers(system);
     const uint64_t most_steps = steps > 0 ? steps : kMostSweeps * count;

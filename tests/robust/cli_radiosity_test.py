@@ -125,7 +125,9 @@ class Radiosity(CliTest):
             events, seconds = self.end(program)
             self.assertEqual(program.returncode, 75)
             self.assertLess(seconds, 1)  # a row alone takes as long
-            self.assertEqual([event["event"] for event in events], ["error"])
+            self.assertEqual([event["event"] for event in events if event["event"] != "progress"], ["error"])
+            self.assertIn("while form factors were made: nothing is written, as no light is solved before all of them",
+                          events[-1]["text"])
         self.assertEqual([name for name in self.files() if name.startswith("long")], [])
 
     def test_what_is_ended_while_links_are_made_is_kept_with_what_it_holds_and_shown_with_a_warning(self):
@@ -138,9 +140,48 @@ class Radiosity(CliTest):
         self.assertEqual(program.returncode, 75)
         (solved,) = [event for event in events if event["event"] == "radiosity_solved"]
         self.assertTrue(solved["interrupted"])
+        self.assertEqual([events[-1][key] for key in ["event", "interrupted", "hash"]], ["done", True, solved["hash"]])
         self.assertIn("light", solved["holds"])
         outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "ended.rad")
         self.assertIn("ended.rad: was ended while it was solved, and holds " + solved["holds"], outcome.stderr)
+
+    def test_what_is_ended_while_the_matrix_is_eliminated_is_its_direct_light(self):
+        program = self.start("solve", "radiosity", "cornell-box", "-o", "ended.rad", "--solver", "matrix", "--threads", "1",
+                             "--patch-size", "0.1", "--patch-rays", "16")
+        next(line for line in program.stdout if json.loads(line).get("step") == "solving")
+        events, _ = self.end(program)
+        self.assertEqual(program.returncode, 75)
+        (solved,) = [event for event in events if event["event"] == "radiosity_solved"]
+        self.assertEqual((solved["interrupted"], solved["steps"]), (True, 0))
+        self.assertIn("direct light alone", solved["holds"])
+        outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "ended.rad")
+        self.assertIn("ended.rad: was ended while it was solved, and holds " + solved["holds"], outcome.stderr)
+
+    def test_progress_says_each_step_and_the_last_object_what_came_of_it(self):
+        keys = ["event", "seconds", "step", "share", "seconds_left"]
+        for solver, steps in [("gauss-seidel", ["form factors", "solving", "dividing patches"]),
+                              ("matrix", ["form factors", "solving", "dividing patches"]),
+                              ("hierarchical", ["direct light", "links, pass 1", "dividing patches"])]:
+            outcome = self.succeed("solve", "radiosity", "cornell-box", "-o", "box.rad", "--solver", solver, "--json",
+                                   "--patch-size", "0.2", "--contrast", "0.02")
+            self.assertEqual(outcome.stderr, "")
+            told = outcome.events("progress")
+            self.assertEqual({tuple(event) for event in told}, {tuple(keys)})
+            self.assertLessEqual(set(steps), {event["step"] for event in told})
+            self.assertTrue(all(0 <= event["share"] <= 1 for event in told))
+            seconds = [event["seconds"] for event in told]
+            self.assertEqual(seconds, sorted(seconds))
+            kinds = [event["event"] for event in outcome.events() if event["event"] not in ["notice", "warning", "progress"]]
+            self.assertEqual(kinds, ["radiosity", "radiosity_solved", "output", "done"])
+            done, solved = outcome.events()[-1], outcome.events("radiosity_solved")[0]
+            self.assertEqual((done["hash"], done["interrupted"]), (solved["hash"], False))
+            self.assertLessEqual(done["seconds"], done["total_seconds"])
+            self.assertGreater(done["peak_bytes"], 2**20)
+            self.assertEqual(solved["link_error"], 0.1 if solver == "hierarchical" else None)
+        # What a picture is solved for first says so too.
+        outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--json", *COARSE)
+        self.assertIn("form factors", [event["step"] for event in outcome.events("progress")])
+        self.assertEqual(outcome.events("progress")[-1]["step"], "samples")
 
     def test_a_solution_is_not_written_under_the_name_of_a_picture(self):
         for name in ["box.png", "box.EXR"]:
@@ -159,7 +200,8 @@ class Radiosity(CliTest):
             self.assertLess(told["peak_bytes"] - before["peak_bytes"], predicted, flags)
             self.assertLessEqual(told["shown"], before["most_shown"])
             self.refuse(4, "solve", "radiosity", "cornell-box", "-o", "m.rad", *flags, "--max-memory",
-                        predicted / 2**20 - 0.01, says=["radiosity: may take", "--max-memory", "largest parts"])
+                        predicted / 2**20 - 0.01, says=["radiosity: may take", "--max-memory", "largest parts",
+                                                        "--solver gauss-seidel" if "hierarchical" in flags else "--patch-rays"])
 
     def test_a_picture_for_which_there_is_no_room_is_refused_before_its_scene_is_solved(self):
         outcome = self.refuse(4, "render", "cornell-box", "-o", "x.png", "--integrator", "radiosity", "--size", "4096x4096",

@@ -6,9 +6,11 @@
 
 #include "base/parallel_for.h"
 #include "radiosity/cluster_tree.h"
+#include "radiosity/hierarchical.h"
 #include "radiosity/polygon_form_factor.h"
 #include "tests/support/radiosity_scenes.h"
 #include "tests/support/random.h"
+#include "tests/support/thrown_error.h"
 #include "trace/intersect/intersect_triangle.h"
 
 using namespace pertev;
@@ -104,6 +106,53 @@ TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by
         }
     }
     CHECK(sum == doctest::Approx(known).epsilon(0.01));
+}
+
+TEST_CASE("too many links are made anew by a larger error, to the bytes of that error asked for at once") {
+    const test::PatchedScene patched(room_with_boxes(), kInfinity);
+    const auto solve = [&](float link_error, uint64_t most_links) {
+        RadiositySettings settings;
+        settings.link_error = link_error;
+        WorkWatch watch({});
+        return solve_hierarchically(patched.solved, patched.tree, 0.2f, settings, watch, most_links);
+    };
+    const HierarchicalSolution fine = solve(0.05f, kMostLinks), coarse = solve(0.4f, kMostLinks);
+    REQUIRE(fine.link_error == 0.05f);
+    REQUIRE(fine.links > 4 * coarse.links);
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        const HierarchicalSolution limited = solve(0.05f, fine.links / 2);
+        CHECK(limited.links <= fine.links / 2);
+        const float factor = limited.link_error / 0.05f;
+        CHECK((factor == 2 || factor == 4 || factor == 8));
+        const HierarchicalSolution at_once = solve(limited.link_error, kMostLinks);
+        CHECK(at_once.links == limited.links);
+        CHECK(at_once.irradiance == limited.irradiance);
+        CHECK(at_once.irradiance != fine.irradiance);
+    }
+    set_thread_count(0);
+    const auto error = test::thrown_error([&] { solve(0.05f, 0); });
+    CHECK(error->code() == ErrorCode::OverLimit);
+    CHECK(test::says(error, "--solver hierarchical: more than 0 links by any --link-error"));
+}
+
+TEST_CASE("a solution by a larger error than was asked for, or of more steps than there are, is warned of") {
+    RadiositySettings settings;
+    settings.solver = RadiositySolver::Hierarchical;
+    const auto said = [&](const SolveStats& stats) {
+        Messages messages;
+        warn_of_limits(stats, settings, messages);
+        std::string all;
+        for (const Message& message : messages.all()) all += (message.is_warning ? "warning: " : "") + message.text;
+        return all;
+    };
+    CHECK(said({.link_error = settings.link_error}).empty());
+    CHECK(
+        said({.link_error = 0.4f}) ==
+        "warning: radiosity: --link-error 0.1 has more than 67108864 links, which is the most there may be; solved by "
+        "--link-error 0.4 (which, given at once, takes less time)");
+    const std::string limit = said({.steps = 24, .left = 0.5, .reached_limit = true});
+    CHECK(limit.find("after 24 steps, which is where it ends, 0.5 of the light still changes") != std::string::npos);
 }
 
 TEST_CASE("links make the same bytes by any number of threads") {

@@ -68,6 +68,26 @@ TEST_CASE("all solvers come to the light that is known inside a sphere") {
     }
 }
 
+TEST_CASE("an elimination that is ended leaves direct light: of lamps and of what is no patch, by way of no surface") {
+    const RadiositySystem system = room_of(40, 0.8f, 2);
+    double sent = 0, area = 0;
+    for (const SystemPatch& patch : system.patches) {
+        sent += static_cast<double>(patch.area * patch.exitance.g), area += static_cast<double>(patch.area);
+    }
+    for (const int most : {1, 40, 100}) { // in the first channel, at its end, in the last
+        int asked = 0;
+        const SolvedSystem ended = solve_by_matrix(system, [&](double) { return ++asked < most; });
+        CHECK(asked == most);
+        CHECK(ended.steps == 0);
+        CHECK(ended.left == 1);
+        REQUIRE(ended.irradiance.size() == 40);
+        for (std::size_t i = 0; i < 40; ++i) {
+            CHECK(static_cast<double>(ended.irradiance[i].g - system.direct[i].g) ==
+                  doctest::Approx(sent / area).epsilon(1e-5));
+        }
+    }
+}
+
 TEST_CASE("Southwell sends from the patch with most unsent light, the first of several") {
     RadiositySystem system;
     // Four patches in a row; each sends to the next one alone. Nothing is reflected, so that each sends what it has.
