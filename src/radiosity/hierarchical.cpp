@@ -17,8 +17,8 @@ constexpr uint32_t kMostPasses = 24, kSweeps = 3;
 constexpr uint64_t kLinksAtOnce = 256; // whose rays are traced together
 constexpr float kRaysOfLimit = 8;      // of a link that may be wrong by as much as it is allowed to
 
-/// More links than there may be. Whether it is thrown is the same for any number of threads: links are never fewer than
-/// when they were counted.
+/// More links than there may be. Whether it is thrown is the same for any number of threads: what a round makes is
+/// added up, and its sum does not depend on the order.
 struct TooManyLinks {};
 
 class Refiner {
@@ -48,7 +48,8 @@ public:
                     const uint64_t first = chunk * kLinksAtOnce, last = std::min(first + kLinksAtOnce, open.size());
                     sort_out({open.data() + first, last - first}, factors, sorted[chunk]);
                     const uint64_t made = sorted[chunk].kept.size() + sorted[chunk].open.size();
-                    if (count.fetch_add(made) + made > most_links_) throw TooManyLinks{};
+                    // Once the watch is over no more are made, and what there is has to be kept.
+                    if (count.fetch_add(made) + made > most_links_ && !watch_.is_over()) throw TooManyLinks{};
                 }
             });
             open = {};
@@ -238,6 +239,7 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
             return solve_by_links(scene, coarse, patch_size, tried, watch, most_links);
         } catch (const TooManyLinks&) {
             if (tried.link_error > kLargestLinkError / 2) break;
+            watch.set_note(fmt::format(", anew by --link-error {}", 2 * tried.link_error));
         }
     }
     throw Error(ErrorCode::OverLimit, fmt::format("--solver hierarchical: more than {} links by any --link-error (a "

@@ -4,7 +4,8 @@
 // E:
 //     B_i = E_i + r_i H_i,   H_i = direct_i + sum over j of F_ij B_j.
 // All solvers come to the same B; they differ in what they work on first. Each of them adds in an order that is fixed,
-// many terms in a tree (math/tree_sum.h), so that the bytes of the solution do not depend on the number of threads.
+// what is there at once in a tree (math/tree_sum.h), so that the bytes of the solution do not depend on the number of
+// threads.
 //
 // Sources: Goral et al. 1984 (elimination); Cohen, Greenberg 1985 (Gauss-Seidel); Cohen, Chen, Wallace, Greenberg, "A
 // Progressive Refinement Approach to Fast Radiosity Image Generation", SIGGRAPH 1988, and Gortler, Cohen, Slusallek,

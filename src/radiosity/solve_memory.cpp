@@ -93,7 +93,8 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     const SceneView& view = scene.view();
     SolveMemory memory;
     const float patch_size = patch_size_of(prepared, settings);
-    memory.patches = count_patches(view, patch_size);
+    const uint64_t all = count_patches(view, patch_size);
+    memory.patches = all;
     if (settings.solver == RadiositySolver::Hierarchical) {
         memory.patches = std::min<uint64_t>(memory.patches, kMostPatches); // it divides what it has to
     } else {
@@ -106,13 +107,18 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     }
     const auto many = static_cast<uint64_t>(std::max(threads, 1));
     const Parts showing_them = showing(settings, counts, many);
-    const Parts solving = settings.solver == RadiositySolver::Hierarchical
-                              ? Parts{{"links", most_hierarchical_bytes(counts.patches)},
-                                      {"patches", 2 * tree_bytes(counts.patches, counts.triangles)}}
-                              : solving_rows(settings, counts, many);
+    const bool is_linked = settings.solver == RadiositySolver::Hierarchical;
+    const Parts solving = is_linked ? Parts{{"links", most_hierarchical_bytes(counts.patches)},
+                                            {"patches", 2 * tree_bytes(counts.patches, counts.triangles)}}
+                                    : solving_rows(settings, counts, many);
     memory.parts = sum_of(solving) > sum_of(showing_them) ? solving : showing_them;
     memory.parts.push_back({"scene", scene.bytes()});
     memory.bytes = sum_of(memory.parts);
+    if (is_linked && all <= kMostPatches) {
+        RadiositySettings rows = settings;
+        rows.solver = RadiositySolver::GaussSeidel;
+        memory.by_rows = std::max(sum_of(solving_rows(rows, counts, many)), sum_of(showing_them)) + scene.bytes();
+    }
     std::ranges::stable_sort(memory.parts, std::ranges::greater{}, &SolveMemory::Part::bytes);
     return memory;
 }
@@ -123,8 +129,10 @@ void check_memory(const SolveMemory& memory, const RadiositySettings& settings, 
     for (std::size_t i = 0; i < std::min<std::size_t>(memory.parts.size(), 5); ++i) {
         list += fmt::format("\n  {:10.1f} MiB  {}", mebibytes(memory.parts[i].bytes), memory.parts[i].name);
     }
-    const char* fewer = settings.solver == RadiositySolver::Hierarchical ? ", --solver gauss-seidel a smaller system"
-                                                                         : ", fewer --patch-rays a smaller system";
+    const char* fewer = ", fewer --patch-rays a smaller system";
+    if (settings.solver == RadiositySolver::Hierarchical) {
+        fewer = memory.by_rows > 0 && memory.by_rows <= limit ? ", and --solver gauss-seidel takes less" : "";
+    }
     throw Error(
         ErrorCode::OutOfMemory,
         fmt::format("radiosity: may take {:.1f} MiB of this machine's memory, of which {:.1f} MiB are to be used "

@@ -22,6 +22,8 @@ struct SolveMemory {
     uint64_t shown = 0;      // when they have been divided, at most
     std::vector<Part> parts; // that are there while most memory is taken
     std::size_t bytes = 0;   // all of them
+    std::size_t by_rows =
+        0; // in place of links: `bytes` by RadiositySolver::GaussSeidel; 0: no links, or too many rows
 };
 
 /// For solve_radiosity by `threads` threads. Throws as SolvedScene and check_patch_count.

@@ -225,10 +225,10 @@ SolvedPatches solve_rows(const SolvedScene& scene, float patch_size, const Radio
 }
 
 SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const RadiositySettings& settings,
-                          WorkWatch& watch, SolveStats& stats) {
+                          WorkWatch& watch, uint64_t most_links, SolveStats& stats) {
     const Stopwatch time;
-    HierarchicalSolution solution =
-        solve_hierarchically(scene, make_patches(scene.view(), kInfinity, &watch), patch_size, settings, watch);
+    HierarchicalSolution solution = solve_hierarchically(scene, make_patches(scene.view(), kInfinity, &watch),
+                                                         patch_size, settings, watch, most_links);
     stats.factors = solution.links;
     stats.steps = solution.passes;
     stats.left = solution.left;
@@ -238,6 +238,12 @@ SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const Radi
     stats.bytes = solution.bytes;
     stats.solve_seconds = time.seconds();
     return {std::move(solution.tree), std::move(solution.irradiance), {}, {}};
+}
+
+/// Whether rows were solved to the end, whatever was asked for meanwhile.
+bool is_whole(const SolveStats& stats, const RadiositySettings& settings) {
+    return settings.solver != RadiositySolver::Hierarchical && stats.steps > 0 &&
+           stats.left <= static_cast<double>(settings.tolerance);
 }
 
 /// Of a solution that was ended before its patches were divided.
@@ -252,18 +258,19 @@ SolvedExtent extent_of(const SolveStats& stats, RadiositySolver solver) {
 } // namespace
 
 SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
-                                const SolveProgress& progress) {
+                                const SolveProgress& progress, uint64_t most_links) {
     WorkWatch watch(progress);
     const SolvedScene scene(prepared);
     const float patch_size = patch_size_of(prepared, settings);
     SolvedRadiosity solved;
     SolveStats& stats = solved.stats;
     SolvedPatches shown = settings.solver == RadiositySolver::Hierarchical
-                              ? solve_links(scene, patch_size, settings, watch, stats)
+                              ? solve_links(scene, patch_size, settings, watch, most_links, stats)
                               : solve_rows(scene, patch_size, settings, watch, stats);
     stats.patches = shown.tree.patches.size();
     SolvedExtent extent;
-    if (watch.is_over()) extent = extent_of(stats, settings.solver);
+    const bool is_solved = is_whole(stats, settings);
+    if (watch.is_over() && !is_solved) extent = extent_of(stats, settings.solver);
     const Stopwatch divide_time;
     if (settings.subdivisions > 0 && !watch.is_over()) {
         const PatchTree sources = shown.tree;
@@ -273,7 +280,7 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
             if (!divider.divide(shown.tree, shown.irradiance, level)) break;
         }
     }
-    stats.was_interrupted = watch.is_over();
+    stats.was_interrupted = watch.is_over() && !(is_solved && settings.subdivisions == 0);
     if (stats.was_interrupted && extent.part == SolvedPart::All) extent.part = SolvedPart::SomeDivided;
     RadiositySolution& solution = solved.solution;
     solution.geometry = geometry_hash(*prepared.scene);
@@ -294,8 +301,9 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
 void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages) {
     if (stats.link_error > settings.link_error) {
         messages.warn(fmt::format("radiosity: --link-error {} has more than {} links, which is the most there may be; "
-                                  "solved by --link-error {} (which, given at once, takes less time)",
-                                  settings.link_error, kMostLinks, stats.link_error));
+                                  "{} by --link-error {} (which, given at once, takes less time)",
+                                  settings.link_error, kMostLinks,
+                                  stats.was_interrupted ? "ended while it was solved" : "solved", stats.link_error));
     }
     if (!stats.reached_limit) return;
     const bool is_ambient = settings.solver == RadiositySolver::Southwell;

@@ -40,9 +40,9 @@ float patch_size_of(const PreparedScene& prepared, const RadiositySettings& sett
 
 /// The same bytes for any number of threads. Where `progress` returns false before there are form factors
 /// Error(Interrupted) is thrown; later the solution has what has been solved by then. Throws as SolvedScene,
-/// make_patches and check_light_ends.
+/// make_patches and check_light_ends. `most_links`: of solve_hierarchically.
 SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
-                                const SolveProgress& progress = {});
+                                const SolveProgress& progress = {}, uint64_t most_links = kMostLinks);
 
 /// Warns of a solution that is less than what was asked for, whole though it is.
 void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages);

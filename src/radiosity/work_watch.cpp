@@ -5,7 +5,7 @@
 namespace pertev {
 
 void WorkWatch::begin(std::string what, uint64_t pieces, double first, double last) {
-    what_ = std::move(what);
+    what_ = std::move(what) + note_;
     pieces_ = pieces;
     first_ = first, last_ = last;
     done_ = 0;

@@ -25,6 +25,8 @@ public:
     /// `pieces` of `what` are to be done from now on, between `first` and `last` of the whole. Tells at once. No other
     /// thread is at work then.
     void begin(std::string what, uint64_t pieces, double first = 0, double last = 1);
+    /// Follows what is done, from the next begin() on. No other thread is at work then.
+    void set_note(std::string note) { note_ = std::move(note); }
     void done(uint64_t pieces = 1) { done_.fetch_add(pieces, std::memory_order_relaxed); }
     void set_share(double share) { share_.store(share, std::memory_order_relaxed); }
 
@@ -38,7 +40,7 @@ private:
     void tell();
 
     SolveProgress progress_;
-    std::string what_;
+    std::string what_, note_;
     uint64_t pieces_ = 0;
     double first_ = 0, last_ = 1;
     std::atomic<uint64_t> done_ = 0;

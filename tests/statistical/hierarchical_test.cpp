@@ -3,6 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "base/parallel_for.h"
 #include "radiosity/cluster_tree.h"
@@ -132,8 +137,38 @@ TEST_CASE("too many links are made anew by a larger error, to the bytes of that 
     }
     set_thread_count(0);
     const auto error = test::thrown_error([&] { solve(0.05f, 0); });
+    REQUIRE(error);
     CHECK(error->code() == ErrorCode::OverLimit);
     CHECK(test::says(error, "--solver hierarchical: more than 0 links by any --link-error"));
+}
+
+TEST_CASE("what is made anew by a larger error says so, and its solution has that error") {
+    const test::PatchedScene patched(room_with_boxes(), kInfinity);
+    RadiositySettings settings;
+    settings.solver = RadiositySolver::Hierarchical;
+    settings.patch_size = 0.2f, settings.subdivisions = 0;
+    settings.link_error = 0.05f;
+    std::set<std::string> told;
+    const auto tell = [&](const char* what, double) { return told.insert(what), true; };
+    const uint64_t most = solve_radiosity(patched.prepared, settings, {}).stats.factors / 2;
+    const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, tell, most);
+    REQUIRE(solved.stats.link_error >= 0.1f);
+    CHECK(solved.solution.made.find(fmt::format(R"("link_error":{},)", solved.stats.link_error)) != std::string::npos);
+    CHECK(told.contains("links, pass 1"));
+    CHECK(told.contains(fmt::format("links, pass 1, anew by --link-error {}", solved.stats.link_error)));
+}
+
+TEST_CASE("links that are ended are not made anew, however many there are") {
+    const test::PatchedScene patched(room_with_boxes(), kInfinity);
+    RadiositySettings settings;
+    settings.solver = RadiositySolver::Hierarchical;
+    settings.patch_size = 0.2f, settings.subdivisions = 0;
+    settings.link_error = 0.05f;
+    const auto until_links = [](const char* what, double) { return std::string_view(what) != "links, pass 1"; };
+    const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, until_links, 0);
+    CHECK(solved.stats.was_interrupted);
+    CHECK(solved.stats.link_error == settings.link_error);
+    CHECK(solved.solution.extent.part == SolvedPart::DirectLight);
 }
 
 TEST_CASE("a solution by a larger error than was asked for, or of more steps than there are, is warned of") {
