@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -156,19 +155,6 @@ TEST_CASE("what is made anew by a larger error says so, and its solution has tha
     CHECK(solved.solution.made.find(fmt::format(R"("link_error":{},)", solved.stats.link_error)) != std::string::npos);
     CHECK(told.contains("links, pass 1"));
     CHECK(told.contains(fmt::format("links, pass 1, anew by --link-error {}", solved.stats.link_error)));
-}
-
-TEST_CASE("links that are ended are not made anew, however many there are") {
-    const test::PatchedScene patched(room_with_boxes(), kInfinity);
-    RadiositySettings settings;
-    settings.solver = RadiositySolver::Hierarchical;
-    settings.patch_size = 0.2f, settings.subdivisions = 0;
-    settings.link_error = 0.05f;
-    const auto until_links = [](const char* what, double) { return std::string_view(what) != "links, pass 1"; };
-    const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, until_links, 0);
-    CHECK(solved.stats.was_interrupted);
-    CHECK(solved.stats.link_error == settings.link_error);
-    CHECK(solved.solution.extent.part == SolvedPart::DirectLight);
 }
 
 TEST_CASE("a solution by a larger error than was asked for, or of more steps than there are, is warned of") {
