@@ -12,8 +12,8 @@ hashes_in() { # event; of the picture, and of its layers and of the denoised pic
     sed -n 's/.*"event":"'"$1"'".*"hash":"\([0-9a-f]*\)","layers_hash":\([^,]*\),"denoised_hash":\([^,]*\),.*/\1 \2 \3/p' |
         sed 's/ null//g; s/"//g; s/ /+/g'
 }
-hash_of() { # device, spp, scene and its flags
-    local device=$1 spp=$2
+hash_of() { # spp, device, scene and its flags
+    local spp=$1 device=$2
     shift 2
     "$pertev" render "$@" --device "$device" --spp "$spp" --size 640x360 -o "$work/$device.exr" --json 2>&1 | hashes_in done
 }
@@ -24,19 +24,38 @@ sequence_of() { # device, scene and its flags; of the frames' hashes, of which e
     [ "$(wc -l <<<"$frames")" = 4 ] && md5sum <<<"$frames" | cut -c1-32
 }
 
+# The hash of the 31st frame of each sequence that docs/real_time.md has figures of.
+frame_of() { # device, scene and its flags
+    local device=$1
+    shift
+    "$pertev" bench sequence "$@" --device "$device" --size 320x240 -q --json 2>&1 |
+        sed -n 's/.*"last_frame":"\([0-9a-f]*\)".*/\1/p'
+}
+# Light that arrives at a place: all that is said of it, to the last digit.
+light_at() { "$pertev" measure "$@" --json -q 2>&1 | grep '"event":"measure"' | sed 's/"seconds":[0-9.e+-]*//; s/"device":"[^"]*"//'; }
+
+verdict_of() { # what the CPU gave, what CUDA gave; sets verdict
+    verdict=same
+    [ -n "$1" ] && [ "$1" = "$2" ] || { verdict=DIFFERENT; status=1; }
+}
+each_row() { # what is compared, and the command that gives it of a device and a row; rows of a name and arguments on stdin
+    local what=$1 name arguments cpu cuda
+    shift
+    while read -r name arguments; do
+        # shellcheck disable=SC2086 # the arguments are words
+        cpu=$("$@" cpu $arguments) cuda=$("$@" cuda $arguments)
+        verdict_of "$cpu" "$cuda"
+        printf '%-16s %s  cpu %s  cuda %s  %s\n' "$name" "$what" "${cpu:-failed}" "${cuda:-failed}" "$verdict"
+    done
+}
+
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 here=$(cd "$(dirname "$0")" && pwd)
 python3 "$here/make_moving_box.py" "$work/box.gltf"
 python3 "$here/make_moving_box.py" "$work/mirror_box.gltf" --mirror
 for spp in "${counts[@]}"; do
-    while read -r name arguments; do
-        # shellcheck disable=SC2086 # the arguments are words
-        cpu=$(hash_of cpu "$spp" $arguments) cuda=$(hash_of cuda "$spp" $arguments)
-        verdict=same
-        [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
-        printf '%-16s %5s spp  cpu %s  cuda %s  %s\n' "$name" "$spp" "${cpu:-failed}" "${cuda:-failed}" "$verdict"
-    done <<LIST
+    each_row "$(printf '%5s spp' "$spp")" hash_of "$spp" <<LIST
 cornell-box cornell-box
 sponza $scenes/crytek-sponza/sponza.obj
 sibenik $scenes/sibenik/sibenik.obj
@@ -86,43 +105,21 @@ blurred-cast $scenes/sibenik/sibenik.obj --integrator cast --camera-path $here/.
 LIST
 done
 
-# Light that arrives at a place: all that is said of it, to the last digit.
-light_at() { "$pertev" measure "$@" --json -q 2>&1 | grep '"event":"measure"' | sed 's/"seconds":[0-9.e+-]*//; s/"device":"[^"]*"//'; }
 for scene in cornell-box "$scenes/sibenik/sibenik.obj"; do
     place=(--at 0.278,0,0.28 --normal 0,1,0)
     cpu=$(light_at "$scene" "${place[@]}" --device cpu) cuda=$(light_at "$scene" "${place[@]}" --device cuda)
-    verdict=same
-    [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
+    verdict_of "$cpu" "$cuda"
     printf '%-16s measured at a place  %s  %s\n' "$(basename "$scene")" "$(md5sum <<<"$cpu" | cut -c1-8)" "$verdict"
 done
 
 # Four frames of each sequence, with all that a file holds of them.
-while read -r name arguments; do
-    # shellcheck disable=SC2086 # the arguments are words
-    cpu=$(sequence_of cpu $arguments) cuda=$(sequence_of cuda $arguments)
-    verdict=same
-    [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
-    printf '%-16s frames 0-3  cpu %s  cuda %s  %s\n' "$name" "${cpu:-failed}" "${cuda:-failed}" "$verdict"
-done <<LIST
+each_row "frames 0-3" sequence_of <<LIST
 sequence-layers $work/box.gltf --fps 4 --spp 4 --lpe seen=LE --lpe others=L.+E --aov motion
 sequence-denoised $work/box.gltf --fps 4 --spp 4 --denoise svgf
 sequence-real-time $work/box.gltf --fps 4 --real-time --aov albedo,depth
 LIST
 
-# The hash of the 31st frame of each sequence that docs/real_time.md has figures of.
-frame_of() {
-    local device=$1
-    shift
-    "$pertev" bench sequence "$@" --device "$device" --size 320x240 -q --json 2>&1 |
-        sed -n 's/.*"last_frame":"\([0-9a-f]*\)".*/\1/p'
-}
-while read -r name arguments; do
-    # shellcheck disable=SC2086 # the arguments are words
-    cpu=$(frame_of cpu $arguments) cuda=$(frame_of cuda $arguments)
-    verdict=same
-    [ -n "$cpu" ] && [ "$cpu" = "$cuda" ] || { verdict=DIFFERENT; status=1; }
-    printf '%-16s frame 30  cpu %s  cuda %s  %s\n' "$name" "${cpu:-failed}" "${cuda:-failed}" "$verdict"
-done <<LIST
+each_row "frame 30" frame_of <<LIST
 sponza-flight $scenes/crytek-sponza/sponza.obj --camera-path $here/../bench/sequences/sponza_flight.json --frames 0-30
 sibenik-turn $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --frames 0-30
 helmet-turn $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --turntable 120 --frames 0-30
