@@ -29,8 +29,8 @@ SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double toleran
     for (std::size_t i = 0; i < count; ++i) radiosity[i] = system.patches[i].exitance;
     bool is_ended = false;
     const auto relax = [&](uint64_t i) -> Sweep {
-        if (is_ended) return {};
-        if (i % kPatchesAtOnce == kPatchesAtOnce - 1 && keep_going && !keep_going(solved.left)) is_ended = true;
+        const bool asks = !is_ended && i % kPatchesAtOnce == kPatchesAtOnce - 1;
+        if (asks && keep_going && !keep_going(solved.left)) is_ended = true;
         if (is_ended) return {};
         const SystemPatch& patch = system.patches[i];
         solved.irradiance[i] = system.direct[i] + gather(system.row(i), radiosity);
