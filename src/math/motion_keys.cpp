@@ -80,6 +80,8 @@ double dot(const std::array<double, 4>& a, const Vec4& b) {
            a[3] * static_cast<double>(b.w);
 }
 
+RigidMotion at_key(const MotionKey& key, Vec3 pivot) { return motion_of(key.turn, pivot, key.place); }
+
 /// Of one thing, at times 0, 1 / segments, ..., 1.
 Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Transform>> places) {
     const Vec3 middle = thing.box.centre();
@@ -111,9 +113,7 @@ bool is_near(const PlacedBox& thing, const Motion& fitted, uint32_t segments, do
     const RigidMotion now = motion_at(fitted.keys.data(), segments, fitted.pivot, static_cast<float>(time));
     const std::optional<Transform> one[] = {wanted};
     const Motion exact = motion_through(thing, one); // the nearest rigid one
-    const RigidMotion target = exact.keys.empty()
-                                   ? RigidMotion{}
-                                   : motion_at(std::array{exact.keys[0], exact.keys[0]}.data(), 1, exact.pivot, 0.0f);
+    const RigidMotion target = exact.keys.empty() ? RigidMotion{} : at_key(exact.keys[0], exact.pivot);
     double size = 0, off = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Bounds3& b = thing.box;
@@ -177,7 +177,7 @@ Bounds3 swept_bounds(const MotionKeys& motions, uint32_t motion, const Bounds3& 
     double bulge = 0;
     DoubleVec3 least = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, most = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (uint32_t k = 0; k <= motions.segments; ++k) {
-        const RigidMotion at = motion_at(keys + k, 1, pivot, 0.0f);
+        const RigidMotion at = at_key(keys[k], pivot);
         const Matrix turn = {to_double(at.row0), to_double(at.row1), to_double(at.row2)};
         const DoubleVec3 centre = add(times(turn, from_pivot), to_double(at.place));
         const auto reach = [&](DoubleVec3 row) {

@@ -48,13 +48,9 @@ struct RigidMotion {
     }
 };
 
-/// Of one thing. `keys` stand at the times 0, 1 / segments, ..., 1.
-HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 pivot, float time) {
-    const float at = time * static_cast<float>(segments);
-    const uint32_t first = static_cast<uint32_t>(to_int(at, 0, static_cast<int>(segments) - 1));
-    const float f = at - static_cast<float>(first);
-    const MotionKey &a = keys[first], &b = keys[first + 1];
-    const Vec4 q = (1.0f - f) * a.turn + f * b.turn;
+/// At the time of a key. `turn`: of any length but 0.
+HD inline RigidMotion motion_of(Vec4 turn, Vec3 pivot, Vec3 place) {
+    const Vec4 q = turn;
     // Twice over the squared length: the rows below are then those of the unit quaternion.
     const float s = 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
     const float xx = s * q.x * q.x, yy = s * q.y * q.y, zz = s * q.z * q.z;
@@ -64,7 +60,16 @@ HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 p
             {xy + zw, 1.0f - (xx + zz), yz - xw},
             {xz - yw, yz + xw, 1.0f - (xx + yy)},
             pivot,
-            (1.0f - f) * a.place + f * b.place};
+            place};
+}
+
+/// Of one thing. `keys`, at least two, stand at the times 0, 1 / segments, ..., 1.
+HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 pivot, float time) {
+    const float at = time * static_cast<float>(segments);
+    const uint32_t first = static_cast<uint32_t>(to_int(at, 0, static_cast<int>(segments) - 1));
+    const float f = at - static_cast<float>(first);
+    const MotionKey &a = keys[first], &b = keys[first + 1];
+    return motion_of((1.0f - f) * a.turn + f * b.turn, pivot, (1.0f - f) * a.place + f * b.place);
 }
 
 /// The motion of one thing; without keys it stands still.

@@ -142,6 +142,9 @@ TEST_CASE("the swept box holds every place that a body takes") {
                                                                corner & 4 ? box.box.hi.z : box.box.lo.z}));
         }
         const Bounds3 swept = swept_bounds(keys, 0, rest);
+        MotionKeys with_another = keys; // what stands behind the last key is not its own
+        with_another.keys.push_back({{kInfinity, 0, 0, 0}, {kInfinity, 0, 0}});
+        CHECK(swept_bounds(with_another, 0, rest) == swept);
         bool holds_all = true;
         for (int i = 0; i < 4000; ++i) {
             const Vec3 p = {random.within(rest.lo.x, rest.hi.x), random.within(rest.lo.y, rest.hi.y),
