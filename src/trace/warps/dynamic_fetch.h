@@ -27,7 +27,6 @@
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 #include "trace/warps/kernel_limits.h"
-#include "trace/warps/persistent.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {
@@ -62,6 +61,13 @@ template <class Scene>
 inline constexpr int kBlocksWanted = 1;
 template <class Tree>
 inline constexpr int kBlocksWanted<SingleTree<Tree>> = 8;
+
+/// The next `wanted` indices of a pool, for the warp whose lanes are all here: the first of them.
+__device__ inline uint32_t fetch_from_pool(uint32_t* pool, uint32_t wanted) {
+    uint32_t first = 0;
+    if (threadIdx.x % 32 == 0) first = atomicAdd(pool, wanted);
+    return __shfl_sync(0xffffffffu, first, 0);
+}
 
 template <class Walk, bool kAny, class Scene, class Rays, class Counter>
 __global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)

@@ -1,11 +1,10 @@
 #pragma once
 
-// Persistent threads: as many warps as the GPU holds at once, each of which takes 32 indices at a time from one counter
-// until none is left. A stage runs as it does under launch() (device/launch.h); only who runs which index differs.
+// Persistent threads: as many warps as the GPU holds at once, whose lanes take indices from one counter, together 32 at a
+// time, until none is left. A stage runs as it does under launch() (device/launch.h); only who runs which index differs.
 // Included by the .cu files that instantiate it, and by nothing else (see device/launch_body.h).
 //
-// Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.2 (one lane fetches
-// for its warp).
+// Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.2.
 
 #include <cstdint>
 
@@ -19,23 +18,19 @@ namespace pertev {
 
 #if PERTEV_HAS_KERNELS
 
-/// The next `wanted` indices of a pool, for the warp whose lanes are all here: the first of them.
-__device__ inline uint32_t fetch_from_pool(uint32_t* pool, uint32_t wanted) {
-    uint32_t first = 0;
-    if (threadIdx.x % 32 == 0) first = atomicAdd(pool, wanted);
-    return __shfl_sync(0xffffffffu, first, 0);
-}
-
+/// Each lane takes an index by itself: the compiler makes one addition of those of the lanes that are here. No lane
+/// relies on another one: a warp's lanes may come back from a stage apart. ptxas 13.0 takes for granted that they meet
+/// again, and leaves out the waiting of __syncwarp() and of the votes; but where it keeps a convergence barrier in a
+/// register across a call (BMOV in SASS), they do not always. An index that lane 0 fetched for all was then read where
+/// no lane 0 was, and the kernel did not end.
 template <class Stage>
 __global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage, WorkCount work, uint32_t* pool) {
     const uint32_t count = work.value();
-    for (;;) {
-        const uint32_t first = fetch_from_pool(pool, 32);
-        if (first >= count) return;
-        const uint32_t i = first + threadIdx.x % 32;
+    uint32_t i;
+    do {
+        i = atomicAdd(pool, 1u);
         if (i < count) stage(i);
-        __syncwarp();
-    }
+    } while (!__all_sync(0xffffffffu, i >= count));
 }
 
 #endif
