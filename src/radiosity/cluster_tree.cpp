@@ -13,7 +13,8 @@ int longest_axis(Vec3 size) { return size.x >= size.y ? (size.x >= size.z ? 0 : 
 
 class ClusterMaker {
 public:
-    ClusterMaker(std::span<const Ball> balls, std::span<const Vec3> normals) : balls_(balls), normals_(normals) {
+    ClusterMaker(std::span<const Ball> balls, std::span<const Vec3> normals, std::span<const int> levels)
+        : balls_(balls), normals_(normals), levels_(levels) {
         for (uint32_t i = 0; i < balls.size(); ++i) order_.push_back(i);
     }
 
@@ -42,9 +43,15 @@ private:
     uint32_t part(uint32_t first, uint32_t count) {
         const auto begin = order_.begin() + first, end = begin + count;
         Bounds3 places, normals;
+        int lowest = levels_[*begin], highest = lowest;
         for (auto i = begin; i != end; ++i) {
             places.extend(balls_[*i].centre);
             normals.extend(normals_[*i]);
+            lowest = std::min(lowest, levels_[*i]), highest = std::max(highest, levels_[*i]);
+        }
+        if (lowest != highest) {
+            const auto is_left = [&](uint32_t i) { return 2 * levels_[i] < lowest + highest; };
+            return static_cast<uint32_t>(std::stable_partition(begin, end, is_left) - begin);
         }
         const Vec3 spread = normals.size();
         if (max_component(spread) > kAlike) {
@@ -64,6 +71,7 @@ private:
 
     std::span<const Ball> balls_;
     std::span<const Vec3> normals_;
+    std::span<const int> levels_;
     std::vector<uint32_t> order_;
     std::vector<Cluster> clusters_;
 };
@@ -101,9 +109,10 @@ Ball ball_round(const Ball& a, const Ball& b) {
     return {a.centre + ((radius - a.radius) / distance) * way, radius};
 }
 
-ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls, std::span<const Vec3> normals) {
+ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls, std::span<const Vec3> normals,
+                          std::span<const int> levels) {
     ClusterTree tree;
-    ClusterMaker maker(balls, normals);
+    ClusterMaker maker(balls, normals, levels);
     if (!faces.empty()) maker.make(0, static_cast<uint32_t>(faces.size()));
     for (const uint32_t i : maker.order()) tree.faces.push_back(faces[i]);
     tree.clusters = maker.take();

@@ -1,9 +1,9 @@
 #pragma once
 
-// Faces of a scene in groups of near ones that face about the same way, in a binary tree: so that what is far away
-// sends its light as one, and neither side of a wall has part in the light of the other. What a group sends in a
-// direction is known by three sums over its patches, of A B, A B n and A B n n: the first terms of the clamped cosine's
-// series.
+// Faces of a scene in groups of near ones that are about equally lit and face about the same way, in a binary tree: so
+// that what is far away sends its light as one, and neither side of a wall has part in the light of the other. What a
+// group sends in a direction is known by three sums over its patches, of A B, A B n and A B n n: the first terms of the
+// clamped cosine's series.
 //
 // Sources: Smits, Arvo, Greenberg, "A Clustering Algorithm for Radiosity in Complex Environments", SIGGRAPH 1994; the
 // series: Ramamoorthi, Hanrahan, "An Efficient Representation for Irradiance Environment Maps", SIGGRAPH 2001.
@@ -49,8 +49,11 @@ struct ClusterTree {
     std::vector<uint32_t> faces;
 };
 
-/// Over `faces`, with a ball and a normal (unit) each. Groups whose normals differ much are parted by them, others are
-/// halved across their longest side; of faces that lie alike the lower number comes first.
-ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls, std::span<const Vec3> normals);
+/// Over `faces`, with a ball, a normal (unit) and a level of light each. Groups of more than one level are parted by
+/// it: light for what is lit would else be lost on what lies behind it, as the inner sides of a pillar's other walls
+/// do. Others whose normals differ much are parted by these, the rest is halved across its longest side; of faces that
+/// lie alike the lower number comes first.
+ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls, std::span<const Vec3> normals,
+                          std::span<const int> levels);
 
 } // namespace pertev

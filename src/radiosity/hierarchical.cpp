@@ -228,7 +228,8 @@ HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, 
 std::size_t most_hierarchical_bytes(uint64_t patches) {
     const uint64_t nodes = 3 * patches; // clusters, patches and what was divided into them
     const uint64_t most = nodes < 100000 ? nodes * nodes : kMostLinks;
-    return 3 * std::min(most, kMostLinks) * sizeof(Link) + LinkNodes::most_bytes(patches, patches);
+    const std::size_t links = 3 * std::min(most, kMostLinks) * sizeof(Link);
+    return std::max(links, LinkNodes::most_first_bytes(patches)) + LinkNodes::most_bytes(patches, patches);
 }
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,

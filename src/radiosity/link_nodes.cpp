@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/parallel_for.h"
@@ -12,12 +13,19 @@ namespace pertev {
 namespace {
 
 constexpr uint32_t kDirectRays = 32; // of each quarter of a patch, and 16 to lamps
+constexpr uint32_t kFirstBounces = 12;
 
 struct Lit {
     double light = 0, area = 0; // W, m2
 };
 
 Lit operator+(Lit a, Lit b) { return {a.light + b.light, a.area + b.area}; }
+
+/// How light a triangle side is: by fours of the mean.
+int light_level(float light, double mean) {
+    const double fours = 0.5 * std::logb(static_cast<double>(light) / mean);
+    return static_cast<int>(std::floor(std::clamp(fours, -6.0, 1.0)));
+}
 
 /// What a node receives: from everywhere alike, and by direction.
 struct Received {
@@ -39,16 +47,20 @@ LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_siz
       tree_(std::move(coarse)) {
     PERTEV_CHECK(tree_.quads.empty());
     add_patches();
+    spread_first_light();
+    const double mean = mean_of_lit(irradiance_);
     std::vector<uint32_t> faces;
     std::vector<Ball> balls;
     std::vector<Vec3> normals;
+    std::vector<int> levels;
     for (uint32_t face = 0; face < tree_.roots.size(); ++face) {
         if (tree_.roots[face] == kNoPatch) continue;
         faces.push_back(face);
         balls.push_back(shape(tree_.roots[face]).ball);
         normals.push_back(shape(tree_.roots[face]).normal);
+        levels.push_back(mean > 0 ? light_level(luminance(irradiance_[number_of(tree_.roots[face])]), mean) : 0);
     }
-    clusters_ = make_clusters(faces, balls, normals);
+    clusters_ = make_clusters(faces, balls, normals, levels);
     area_before_ = {0};
     for (const uint32_t face : clusters_.faces) {
         area_before_.push_back(area_before_.back() + static_cast<double>(shape(tree_.roots[face]).area));
@@ -57,7 +69,19 @@ LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_siz
     cluster_received_.resize(clusters_.clusters.size());
     cluster_gathered_.resize(clusters_.clusters.size());
     most_sent_.resize(clusters_.clusters.size());
-    sweep({});
+    pass_on();
+}
+
+void LinkNodes::spread_first_light() {
+    const std::size_t count = tree_.patches.size();
+    for (uint32_t k = 0; k < kFirstBounces; ++k) {
+        parallel_for(count, 64, [&](uint64_t i) { gathered_[i] = pertev::gather(first_rows_[i], patch_sent_); });
+        for (std::size_t i = 0; i < count; ++i) {
+            irradiance_[i] = direct_[i] + gathered_[i];
+            patch_sent_[i] = tree_.patches[i].reflectance * irradiance_[i];
+        }
+    }
+    first_rows_ = {};
 }
 
 NodeCode LinkNodes::code_of_cluster(uint32_t number) const {
@@ -88,17 +112,21 @@ Rgb LinkNodes::power(NodeCode code) const {
     return is_cluster(code) ? cluster_sent_[cluster_of(code)].all : shape(code).area * sent(code);
 }
 
-float LinkNodes::mean_direct() const {
-    const Lit lit = tree_sum(direct_.size(), [&](uint64_t i) -> Lit {
-        if (is_black(direct_[i])) return {};
+double LinkNodes::mean_of_lit(std::span<const Rgb> light) const {
+    const Lit lit = tree_sum(light.size(), [&](uint64_t i) -> Lit {
+        if (is_black(light[i])) return {};
         const float area = tree_.patches[i].area;
-        return {static_cast<double>(area * luminance(direct_[i])), static_cast<double>(area)};
+        return {static_cast<double>(area * luminance(light[i])), static_cast<double>(area)};
     });
-    return lit.area > 0 ? static_cast<float>(lit.light / lit.area) : 0.0f;
+    return lit.area > 0 ? lit.light / lit.area : 0;
 }
 
 double LinkNodes::sweep(std::span<const Link> links) {
     gather(links);
+    return pass_on();
+}
+
+double LinkNodes::pass_on() {
     const std::size_t faces = clusters_.faces.size();
     // A cluster's number is less than those of its halves.
     std::vector<Rgb> above(faces);
@@ -248,6 +276,7 @@ void LinkNodes::add_patches() {
     const RadiositySettings whole = {.rays = 2 * kDirectRays, .seed = seed_},
                             quarter = {.rays = kDirectRays, .seed = seed_};
     const RowMakers of_whole(scene_, tree_, whole, &watch_), of_quarter(scene_, tree_, quarter, &watch_);
+    if (tree_.quads.empty()) first_rows_.resize(tree_.patches.size());
     watch_.begin("direct light", stale_.size());
     std::atomic<uint64_t> found{0};
     parallel_for_ranges(stale_.size(), 8, [&](uint64_t begin, uint64_t end) {
@@ -271,14 +300,17 @@ bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_qu
     const uint32_t parts = can_divide(kIsPatch | number) ? 4 : 1;
     Rgb sum;
     float least = kInfinity, most = 0;
-    FormFactorRow row;
+    FormFactorRow row, first;
     for (uint32_t k = 0; k < parts; ++k) {
         Patch part = patch;
         if (parts > 1) part.corners = patch.corners.child(k);
         const uint32_t key = hash_words(number, static_cast<uint32_t>(tree_.quads.size()), k, 0x64697265u).x;
         (parts > 1 ? of_quarter : of_whole).make(part, key, row);
         Rgb light = row.direct;
-        for (const FormFactor& from : row.factors) light += from.factor * tree_.patches[from.patch].exitance;
+        for (const FormFactor& from : row.factors) {
+            light += from.factor * tree_.patches[from.patch].exitance;
+            first.factors.push_back({from.patch, from.factor / static_cast<float>(parts)});
+        }
         sum += light;
         least = min(least, luminance(light)), most = max(most, luminance(light));
     }
@@ -286,7 +318,15 @@ bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_qu
     direct_[number] = (1.0f / static_cast<float>(parts)) * sum;
     direct_spread_[number] = most - least;
     patch_sent_[number] = patch.reflectance * direct_[number];
+    if (!first_rows_.empty()) {
+        first.sort();
+        first_rows_[number].assign(first.factors.begin(), first.factors.end());
+    }
     return true;
+}
+
+std::size_t LinkNodes::most_first_bytes(uint64_t faces) {
+    return faces * (sizeof(std::vector<FormFactor>) + 4 * (kDirectRays + 16) * sizeof(FormFactor));
 }
 
 std::size_t LinkNodes::bytes() const { return most_bytes(tree_.patches.size(), clusters_.faces.size()); }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "radiosity/cluster_tree.h"
+#include "radiosity/form_factor_row.h"
 #include "radiosity/link_oracle.h"
 #include "radiosity/links.h"
 #include "radiosity/radiosity_settings.h"
@@ -58,7 +59,7 @@ public:
     Rgb power(NodeCode code) const;
 
     /// Of patches that light reaches by way of no surface, its mean. W/m2, luminance.
-    float mean_direct() const;
+    float mean_direct() const { return static_cast<float>(mean_of_lit(direct_)); }
     bool can_divide(NodeCode code) const {
         return is_cluster(code) || !is_patch(code) || shape(code).longest > patch_size_;
     }
@@ -90,6 +91,8 @@ public:
     std::size_t bytes() const;
     /// Of so many patches and triangle sides, at most.
     static std::size_t most_bytes(uint64_t patches, uint64_t faces);
+    /// And beside these while it is made, before there are links.
+    static std::size_t most_first_bytes(uint64_t faces);
 
 private:
     NodeCode now(NodeCode code) const {
@@ -100,8 +103,13 @@ private:
     std::size_t index_of(NodeCode code) const;
     std::size_t index_count() const { return clusters_.clusters.size() + tree_.quads.size() + tree_.patches.size(); }
     void add_patches();
+    /// Light by way of surfaces, before there are links: by the rays that found the direct light. About, but good for
+    /// telling what is lit from what lies in walls and pillars; links then begin with what is sent by it.
+    void spread_first_light();
+    double mean_of_lit(std::span<const Rgb> light) const; // [patches]; 0: all is black
     bool find_direct(uint32_t patch, RowMaker& of_whole, RowMaker& of_quarter);
     void gather(std::span<const Link> links);
+    double pass_on();
     void receive(NodeCode receiver, std::span<const Link> links);
     /// Of a patch, or of all in a tree of them: radiosity, W/m2, and what leaves it and has changed of that, W.
     struct Pushed {
@@ -129,8 +137,9 @@ private:
     std::vector<SentLight> cluster_sent_, cluster_received_; // the latter W/m2, by where it comes from
     std::vector<Rgb> cluster_gathered_;                      // from everywhere alike, W/m2
     std::vector<float> most_sent_;
-    std::vector<PatchCode> became_; // [patches] quads
-    std::vector<uint32_t> stale_;   // patches whose direct light is to be found
+    std::vector<PatchCode> became_;                   // [patches] quads
+    std::vector<uint32_t> stale_;                     // patches whose direct light is to be found
+    std::vector<std::vector<FormFactor>> first_rows_; // [patches] until there are links
     double without_direct_ = 0;
 };
 
