@@ -46,6 +46,7 @@ LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_siz
     : scene_(scene), view_(scene.view()), seed_(settings.seed), patch_size_(patch_size), watch_(watch),
       tree_(std::move(coarse)) {
     PERTEV_CHECK(tree_.quads.empty());
+    first_rows_.resize(tree_.patches.size());
     add_patches();
     spread_first_light();
     const double mean = mean_of_lit(irradiance_);
@@ -276,7 +277,6 @@ void LinkNodes::add_patches() {
     const RadiositySettings whole = {.rays = 2 * kDirectRays, .seed = seed_},
                             quarter = {.rays = kDirectRays, .seed = seed_};
     const RowMakers of_whole(scene_, tree_, whole, &watch_), of_quarter(scene_, tree_, quarter, &watch_);
-    if (tree_.quads.empty()) first_rows_.resize(tree_.patches.size());
     watch_.begin("direct light", stale_.size());
     std::atomic<uint64_t> found{0};
     parallel_for_ranges(stale_.size(), 8, [&](uint64_t begin, uint64_t end) {
