@@ -80,7 +80,7 @@ double dot(const std::array<double, 4>& a, const Vec4& b) {
            a[3] * static_cast<double>(b.w);
 }
 
-RigidMotion at_key(const MotionKey& key, Vec3 pivot) { return motion_of(key.turn, pivot, key.place); }
+RigidMotion at_key(const MotionKey& key, Vec3 pivot) { return rigid_motion(key.turn, pivot, key.place); }
 
 /// Of one thing, at times 0, 1 / segments, ..., 1.
 Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Transform>> places) {

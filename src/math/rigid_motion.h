@@ -48,9 +48,8 @@ struct RigidMotion {
     }
 };
 
-/// At the time of a key. `turn`: of any length but 0.
-HD inline RigidMotion motion_of(Vec4 turn, Vec3 pivot, Vec3 place) {
-    const Vec4 q = turn;
+/// `q`: the turn, a quaternion of any length but 0.
+HD inline RigidMotion rigid_motion(Vec4 q, Vec3 pivot, Vec3 place) {
     // Twice over the squared length: the rows below are then those of the unit quaternion.
     const float s = 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
     const float xx = s * q.x * q.x, yy = s * q.y * q.y, zz = s * q.z * q.z;
@@ -69,7 +68,7 @@ HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 p
     const uint32_t first = static_cast<uint32_t>(to_int(at, 0, static_cast<int>(segments) - 1));
     const float f = at - static_cast<float>(first);
     const MotionKey &a = keys[first], &b = keys[first + 1];
-    return motion_of((1.0f - f) * a.turn + f * b.turn, pivot, (1.0f - f) * a.place + f * b.place);
+    return rigid_motion((1.0f - f) * a.turn + f * b.turn, pivot, (1.0f - f) * a.place + f * b.place);
 }
 
 /// The motion of one thing; without keys it stands still.

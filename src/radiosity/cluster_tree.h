@@ -50,9 +50,9 @@ struct ClusterTree {
 };
 
 /// Over `faces`, with a ball, a normal (unit) and a level of light each. Groups of more than one level are parted by
-/// it: light for what is lit would else be lost on what lies behind it, as the inner sides of a pillar's other walls
-/// do. Others whose normals differ much are parted by these, the rest is halved across its longest side; of faces that
-/// lie alike the lower number comes first.
+/// it: of faces that lie and face alike some are seen, and others are inside of a pillar or a wall; these would take
+/// light that is meant for those. Others whose normals differ much are parted by these, the rest is halved across its
+/// longest side; of faces that lie alike the lower number comes first.
 ClusterTree make_clusters(std::span<const uint32_t> faces, std::span<const Ball> balls, std::span<const Vec3> normals,
                           std::span<const int> levels);
 

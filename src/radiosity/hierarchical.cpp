@@ -219,17 +219,18 @@ HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, 
     solution.links = links.size();
     solution.bytes = links.size() * sizeof(Link) + nodes.bytes();
     solution.reached_limit = !is_done && !watch.is_over();
-    solution.irradiance = nodes.irradiance();
+    solution.irradiance = solution.passes > 0 ? nodes.irradiance() : nodes.direct();
     solution.tree = nodes.take_tree();
     return solution;
 }
 } // namespace
 
-std::size_t most_hierarchical_bytes(uint64_t patches) {
+std::size_t most_hierarchical_bytes(uint64_t patches, uint64_t triangles) {
     const uint64_t nodes = 3 * patches; // clusters, patches and what was divided into them
     const uint64_t most = nodes < 100000 ? nodes * nodes : kMostLinks;
     const std::size_t links = 3 * std::min(most, kMostLinks) * sizeof(Link);
-    return std::max(links, LinkNodes::most_first_bytes(patches)) + LinkNodes::most_bytes(patches, patches);
+    return std::max(links, LinkNodes::most_first_bytes(std::min(patches, 2 * triangles))) +
+           LinkNodes::most_bytes(patches, patches);
 }
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,

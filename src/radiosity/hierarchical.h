@@ -40,6 +40,6 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
 inline constexpr float kLargestLinkError = 1e6f;
 
 /// What it holds at most, were all patches as small as they may become.
-std::size_t most_hierarchical_bytes(uint64_t patches);
+std::size_t most_hierarchical_bytes(uint64_t patches, uint64_t triangles);
 
 } // namespace pertev

@@ -21,10 +21,10 @@ struct Lit {
 
 Lit operator+(Lit a, Lit b) { return {a.light + b.light, a.area + b.area}; }
 
-/// How light a triangle side is: by fours of the mean.
+/// How light a triangle side is: the power of 4 that is not above light / mean, from -6 to 1.
 int light_level(float light, double mean) {
-    const double fours = 0.5 * std::logb(static_cast<double>(light) / mean);
-    return static_cast<int>(std::floor(std::clamp(fours, -6.0, 1.0)));
+    const double power = 0.5 * std::logb(static_cast<double>(light) / mean);
+    return to_int(static_cast<float>(std::floor(power)), -6, 1);
 }
 
 /// What a node receives: from everywhere alike, and by direction.
@@ -75,14 +75,14 @@ LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_siz
 
 void LinkNodes::spread_first_light() {
     const std::size_t count = tree_.patches.size();
-    for (uint32_t k = 0; k < kFirstBounces; ++k) {
+    for (uint32_t k = 0; k < kFirstBounces && !watch_.is_over(); ++k) {
         parallel_for(count, 64, [&](uint64_t i) { gathered_[i] = pertev::gather(first_rows_[i], patch_sent_); });
-        for (std::size_t i = 0; i < count; ++i) {
+        parallel_for(count, 4096, [&](uint64_t i) {
             irradiance_[i] = direct_[i] + gathered_[i];
             patch_sent_[i] = tree_.patches[i].reflectance * irradiance_[i];
-        }
+        });
     }
-    first_rows_ = {};
+    std::vector<std::vector<FormFactor>>().swap(first_rows_);
 }
 
 NodeCode LinkNodes::code_of_cluster(uint32_t number) const {
@@ -326,7 +326,8 @@ bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_qu
 }
 
 std::size_t LinkNodes::most_first_bytes(uint64_t faces) {
-    return faces * (sizeof(std::vector<FormFactor>) + 4 * (kDirectRays + 16) * sizeof(FormFactor));
+    constexpr std::size_t kOfAllocation = 16; // what an allocator adds to each
+    return faces * (sizeof(std::vector<FormFactor>) + kOfAllocation + 4 * (kDirectRays + 16) * sizeof(FormFactor));
 }
 
 std::size_t LinkNodes::bytes() const { return most_bytes(tree_.patches.size(), clusters_.faces.size()); }

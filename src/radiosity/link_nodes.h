@@ -87,6 +87,7 @@ public:
     }
 
     const std::vector<Rgb>& irradiance() const { return irradiance_; } // [patches] W/m2
+    const std::vector<Rgb>& direct() const { return direct_; }         // of it, by way of no surface
     PatchTree take_tree() { return std::move(tree_); }
     std::size_t bytes() const;
     /// Of so many patches and triangle sides, at most.

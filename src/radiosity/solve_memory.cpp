@@ -108,7 +108,7 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     const auto many = static_cast<uint64_t>(std::max(threads, 1));
     const Parts showing_them = showing(settings, counts, many);
     const bool is_linked = settings.solver == RadiositySolver::Hierarchical;
-    const Parts solving = is_linked ? Parts{{"links", most_hierarchical_bytes(counts.patches)},
+    const Parts solving = is_linked ? Parts{{"links", most_hierarchical_bytes(counts.patches, counts.triangles)},
                                             {"patches", 2 * tree_bytes(counts.patches, counts.triangles)}}
                                     : solving_rows(settings, counts, many);
     memory.parts = sum_of(solving) > sum_of(showing_them) ? solving : showing_them;

@@ -254,11 +254,11 @@ TEST_CASE("a solution's file of the version before is read, with a warning that 
 
 TEST_CASE("a solution that was ended says what it holds, in its file too, and is shown with a warning") {
     const std::filesystem::path path = test::scratch_folder() / "ended";
-    const Scene scene = lit_box();
     Messages messages;
-    const PreparedScene prepared = prepare_scene(scene, {}, messages);
     /// Ended at the `heard`th time that it tells of `during`.
-    const auto ended = [&](RadiositySolver solver, const std::string& during, int heard) {
+    const auto ended = [&](RadiositySolver solver, const std::string& during, int heard, float reflectance = 0.5f) {
+        const Scene scene = lit_box(reflectance);
+        const PreparedScene prepared = prepare_scene(scene, {}, messages);
         RadiositySettings settings = quick_settings();
         settings.solver = solver;
         if (solver != RadiositySolver::Matrix) settings.patch_size = 0.2f; // there are too many for it
@@ -282,6 +282,9 @@ TEST_CASE("a solution that was ended says what it holds, in its file too, and is
     CHECK(begun.extent == SolvedExtent{SolvedPart::SomeDirectLight, 1});
     const RadiositySolution direct = ended(RadiositySolver::Hierarchical, "links, pass 1", 1);
     CHECK(direct.extent == SolvedExtent{SolvedPart::DirectLight, 1});
+    const RadiositySolution darker = ended(RadiositySolver::Hierarchical, "links, pass 1", 1, 0.25f);
+    const auto same_light = [](const PatchLight& a, const PatchLight& b) { return a.mean == b.mean; };
+    CHECK(std::ranges::equal(direct.patches, darker.patches, same_light)); // nothing of what walls pass on
     const RadiositySolution linked = ended(RadiositySolver::Hierarchical, "links, pass 2", 1);
     CHECK(linked.extent.part == SolvedPart::SomeBounces);
     CHECK(linked.extent.left < 1);
@@ -295,6 +298,7 @@ TEST_CASE("a solution that was ended says what it holds, in its file too, and is
     const RadiositySolution divided = ended(RadiositySolver::GaussSeidel, "dividing patches", 1);
     CHECK(divided.extent == SolvedExtent{SolvedPart::SomeDivided, 0});
 
+    const Scene scene = lit_box();
     RadiositySolution whole = solution_of(scene);
     CHECK(whole.extent == SolvedExtent{});
     const Hash128 hash = whole.hash();

@@ -114,7 +114,8 @@ TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and 
     const Prepared a(test::make_furnace_scene(0.5f)), b(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     Session session(queue, a.prepared, camera_at(0), settings);
-    std::size_t bytes = 0, resident = 0;
+    std::size_t bytes = 0;
+    [[maybe_unused]] std::size_t resident = 0;
     constexpr int kCycles = 100, kWarm = 20; // of 10 changes each
     for (int cycle = 0; cycle < kCycles; ++cycle) {
         for (const float x : {0.5f, -0.5f}) {

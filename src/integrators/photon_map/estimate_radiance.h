@@ -9,7 +9,9 @@
 // radius and does not count itself: so the mean is right where photons lie evenly (Loftsgaarden, Quesenberry 1965).
 //
 // Sums within a radius are by integers, so they do not depend on the order in which a structure meets the photons; the
-// k nearest are added in their order (distance, number). So all structures give the same bytes.
+// k nearest are added in their order (distance, number). So all structures give the same bytes; and so threads may
+// share a look-up. On a GPU they do where photons crowd, as under a ball of glass: one thread would be at it long after
+// all others.
 
 #include "integrators/photon_map/gather_memory.h"
 #include "integrators/photon_map/photon_map_view.h"
@@ -24,6 +26,12 @@ struct PhotonMapsView {
     bool global_has_all = false; // the caustic map's photons too
 };
 
+/// Photons that a look-up has to look at, from which on threads share it.
+inline constexpr uint32_t kCrowd = 128;
+inline constexpr uint32_t kShares = 32;            // of such a look-up
+inline constexpr uint32_t kMostSharing = 1u << 18; // threads at once
+
+/// All lookups; but where photons crowd, and GatherView has room for that, to be shared.
 template <MaterialsKnown kKnown, PhotonSearch kSearch>
 struct EstimateRadiance {
     WalkScene scene;
@@ -35,21 +43,71 @@ struct EstimateRadiance {
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const Lookup lookup = gather.load(i);
         const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
-        // Scatterings of a photon at most: the surface itself is one more.
-        const uint32_t most = scene.settings.max_depth - lookup.scatterings - 1;
-        const Place place = {surface, -lookup.direction, normal_towards(surface, -lookup.direction), most, i};
-        Rgb light = {};
-        if (!lookup.wants_all || !maps.global_has_all) light = estimate(maps.caustic, place);
-        if (lookup.wants_all) light += estimate(maps.global, place);
-        if (!is_black(light)) add_radiance(film, lookup.pixel, lookup.throughput * light);
+        if (gather.nearest_count > 0) {
+            const Place place = place_of(lookup, surface);
+            Rgb light = {};
+            if (asks_caustic(lookup)) light = of_nearest(maps.caustic, place, i);
+            if (lookup.wants_all) light += of_nearest(maps.global, place, i);
+            return add(lookup, light);
+        }
+        if (is_crowded(lookup, surface.position)) {
+            const uint32_t at = atomic_add(&walks.counts->crowded, 1u);
+            gather.crowded[at] = i;
+            gather.shared_sums[at] = {};
+            return;
+        }
+        GatheredSums sums;
+        if (asks_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic);
+        if (lookup.wants_all) visit(maps.global, place_of(lookup, surface), sums.global);
+        add_sums(lookup, sums);
     }
+
+    /// A share of lookup `gather.crowded[at]`.
+    HD INLINE_ON_DEVICE void add_share(uint32_t at, Share share) const {
+        const Lookup lookup = gather.load(gather.crowded[at]);
+        const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
+        GatheredSums sums;
+        if (asks_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic, share);
+        if (lookup.wants_all) visit(maps.global, place_of(lookup, surface), sums.global, share);
+        GatheredSums& all = gather.shared_sums[at];
+        for (int c = 0; c < 3; ++c) {
+            atomic_add(&all.caustic[c], sums.caustic[c]);
+            atomic_add(&all.global[c], sums.global[c]);
+        }
+    }
+    /// ... once all shares are in.
+    HD void add_shared(uint32_t at) const { add_sums(gather.load(gather.crowded[at]), gather.shared_sums[at]); }
 
 private:
     struct Place {
         const Surface& surface;
         Vec3 wo, normal;
-        uint32_t most_scatterings, number;
+        uint32_t most_scatterings;
     };
+
+    HD Place place_of(const Lookup& lookup, const Surface& surface) const {
+        const Vec3 wo = -lookup.direction;
+        // Scatterings of a photon at most: the surface itself is one more.
+        return {surface, wo, normal_towards(surface, wo), scene.settings.max_depth - lookup.scatterings - 1};
+    }
+    HD bool asks_caustic(const Lookup& lookup) const { return !lookup.wants_all || !maps.global_has_all; }
+    HD bool is_crowded(const Lookup& lookup, Vec3 at) const {
+        if constexpr (kSearch != PhotonSearch::Grid) return false;
+        if (gather.crowded == nullptr) return false;
+        uint32_t count = 0;
+        if (asks_caustic(lookup) && maps.caustic.count > 0) count += count_near(maps.caustic.grid, at);
+        if (lookup.wants_all && maps.global.count > 0) count += count_near(maps.global.grid, at);
+        return count >= kCrowd;
+    }
+    HD void add(const Lookup& lookup, Rgb light) const {
+        if (!is_black(light)) add_radiance(film, lookup.pixel, lookup.throughput * light);
+    }
+    HD void add_sums(const Lookup& lookup, const GatheredSums& sums) const {
+        Rgb light = {};
+        if (asks_caustic(lookup)) light = radiance_of(maps.caustic, sums.caustic);
+        if (lookup.wants_all) light += radiance_of(maps.global, sums.global);
+        add(lookup, light);
+    }
 
     HD static Vec3 normal_towards(const Surface& surface, Vec3 wo) {
         return dot(surface.geometric_normal, wo) < 0 ? -surface.geometric_normal : surface.geometric_normal;
@@ -66,11 +124,10 @@ private:
         return (1.0f / cosine) * (f * Rgb{power.x, power.y, power.z});
     }
 
-    HD Rgb estimate(const PhotonMapView& map, const Place& place) const {
-        if (map.count == 0) return {};
-        if (gather.nearest_count > 0) return of_nearest(map, place);
-        FixedSum sums[3];
-        visit_within(structure_of<kSearch>(map), place.surface.position, map.radius, [&](const NearPoint& near) {
+    /// Adds what the photons of a share, within the radius, send on.
+    HD void visit(const PhotonMapView& map, const Place& place, FixedSum* sums, Share share = {}) const {
+        if (map.count == 0) return;
+        const auto add_light = [&](const NearPoint& near) {
             const Rgb light = sent_on(map, place, near.index);
             if (is_black(light)) return;
             if (!(max_component(light) <= kMaxSampleValue)) {
@@ -80,12 +137,20 @@ private:
             sums[0] = sums[0] + to_fixed(light.r);
             sums[1] = sums[1] + to_fixed(light.g);
             sums[2] = sums[2] + to_fixed(light.b);
-        });
-        const Rgb all = {mean_of(sums[0], 1), mean_of(sums[1], 1), mean_of(sums[2], 1)};
-        return (kInvPi / square(map.radius)) * all;
+        };
+        if constexpr (kSearch == PhotonSearch::Grid) {
+            visit_within(map.grid, place.surface.position, map.radius, add_light, share);
+        } else {
+            visit_within(structure_of<kSearch>(map), place.surface.position, map.radius, add_light);
+        }
     }
-    HD Rgb of_nearest(const PhotonMapView& map, const Place& place) const {
-        NearPoint* nearest = gather.nearest + std::size_t(place.number) * gather.nearest_count;
+    HD static Rgb radiance_of(const PhotonMapView& map, const FixedSum* sums) {
+        if (map.count == 0) return {};
+        return (kInvPi / square(map.radius)) * Rgb{mean_of(sums[0], 1), mean_of(sums[1], 1), mean_of(sums[2], 1)};
+    }
+    HD Rgb of_nearest(const PhotonMapView& map, const Place& place, uint32_t number) const {
+        if (map.count == 0) return {};
+        NearPoint* nearest = gather.nearest + std::size_t(number) * gather.nearest_count;
         uint32_t count =
             find_nearest(structure_of<kSearch>(map), place.surface.position, map.radius, gather.nearest_count, nearest);
         float radius_squared = square(map.radius);
@@ -95,6 +160,28 @@ private:
         for (uint32_t k = 0; k < count; ++k) all += sent_on(map, place, nearest[k].index);
         return (kInvPi / radius_squared) * all;
     }
+};
+
+/// Threads that share the crowded lookups: thread i takes share i % kShares of every so-manieth.
+template <MaterialsKnown kKnown>
+struct ShareLookups {
+    EstimateRadiance<kKnown, PhotonSearch::Grid> estimate;
+    uint32_t sharing; // threads, a multiple of kShares
+
+    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
+        const uint32_t crowded = estimate.walks.counts->crowded;
+        for (uint32_t at = i / kShares; at < crowded; at += sharing / kShares) {
+            estimate.add_share(at, {i % kShares, kShares});
+        }
+    }
+};
+
+/// The crowded lookups to the film.
+template <MaterialsKnown kKnown>
+struct AddSharedLookups {
+    EstimateRadiance<kKnown, PhotonSearch::Grid> estimate;
+
+    HD void operator()(uint32_t at) const { estimate.add_shared(at); }
 };
 
 } // namespace pertev

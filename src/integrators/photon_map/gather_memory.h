@@ -5,6 +5,7 @@
 
 #include "accel/nearest_points.h"
 #include "integrators/subpaths/walk_memory.h"
+#include "render/fixed_sum.h"
 
 namespace pertev {
 
@@ -24,6 +25,18 @@ struct Lookup {
     bool wants_all;              // of both maps; else of the caustic map alone
 };
 
+/// What photons of both maps send on at a place, W/sr.
+struct GatheredSums {
+    FixedSum caustic[3], global[3];
+};
+
+/// How much there is room for.
+struct GatherRoom {
+    uint32_t walks;
+    uint32_t nearest; // photons of each walk; 0: all within a radius count
+    bool can_share;   // look-ups between several threads
+};
+
 struct GatherView {
     Float4* sights;  // [walks] of a photon index_squared alone
     uint32_t* marks; // [walks] 1: of a photon, scattered otherwise than by delta lobes; of a walk from the camera, it
@@ -32,6 +45,9 @@ struct GatherView {
     Float4 *places, *directions, *throughputs;
     NearPoint* nearest; // [walks * nearest_count]
     uint32_t nearest_count;
+    // Lookups of a round near which photons crowd: several threads share each. WalkCounts::crowded is their number.
+    uint32_t* crowded = nullptr; // [walks] numbers of lookups; null: none is shared
+    GatheredSums* shared_sums;   // [walks]
 
     HD void store_sight(uint32_t walk, const Sight& sight) const {
         sights[walk] = {sight.past_mirrors.r, sight.past_mirrors.g, sight.past_mirrors.b, sight.pdf};
@@ -64,24 +80,29 @@ struct GatherView {
 };
 
 /// Places the arrays as lay_out of walk_memory.h does.
-inline std::size_t lay_out(GatherView& view, std::byte* memory, uint32_t walks, uint32_t nearest) {
+inline std::size_t lay_out(GatherView& view, std::byte* memory, const GatherRoom& room) {
     std::size_t bytes = 0;
     const auto place = [&]<class T>(T*& array, std::size_t count) {
         array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
         bytes += (count * sizeof(T) + 15) / 16 * 16;
     };
-    view.nearest_count = nearest;
+    const uint32_t walks = room.walks;
+    view.nearest_count = room.nearest;
     place(view.sights, walks);
     place(view.marks, walks);
     place(view.places, walks);
     place(view.directions, walks);
     place(view.throughputs, walks);
-    place(view.nearest, std::size_t(walks) * nearest);
+    place(view.nearest, std::size_t(walks) * room.nearest);
+    view.crowded = nullptr;
+    if (!room.can_share) return bytes;
+    place(view.crowded, walks);
+    place(view.shared_sums, walks);
     return bytes;
 }
-inline std::size_t gather_bytes(uint32_t walks, uint32_t nearest) {
+inline std::size_t bytes_of(const GatherRoom& room) {
     GatherView view;
-    return lay_out(view, nullptr, walks, nearest);
+    return lay_out(view, nullptr, room);
 }
 
 } // namespace pertev

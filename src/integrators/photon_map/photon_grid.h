@@ -41,9 +41,9 @@ struct PhotonGridView {
     const uint32_t* starts = nullptr; // [buckets + 1] in `points`
 };
 
-/// Offers `found` each photon that may be within its limit; see accel/kd_tree/point_kd_tree.h.
-template <class Found>
-HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found) {
+/// Calls visit(begin, end) for each bucket, a part of grid.points, that may hold a photon near `at`.
+template <class Visit>
+HD inline void visit_buckets(const PhotonGridView& grid, Vec3 at, Visit&& visit) {
     const PhotonCells& cells = grid.cells;
     const auto low = [&](float x) { return cells.cell(x - cells.reach); };
     const int x0 = low(at.x), y0 = low(at.y), z0 = low(at.z);
@@ -60,12 +60,31 @@ HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found) 
         for (int k = 0; k < seen_count; ++k) is_new = is_new && seen[k] != bucket;
         if (!is_new) continue;
         seen[seen_count++] = bucket;
-        const uint32_t end = grid.starts[bucket + 1];
-        for (uint32_t i = grid.starts[bucket]; i < end; ++i) {
+        visit(grid.starts[bucket], grid.starts[bucket + 1]);
+    }
+}
+
+/// Photons that a search has to look at, at most.
+HD inline uint32_t count_near(const PhotonGridView& grid, Vec3 at) {
+    uint32_t count = 0;
+    visit_buckets(grid, at, [&](uint32_t begin, uint32_t end) { count += end - begin; });
+    return count;
+}
+
+/// One of `of` equal shares of a search.
+struct Share {
+    uint32_t number = 0, of = 1;
+};
+
+/// Offers `found` each photon of a share that may be within its limit; see accel/kd_tree/point_kd_tree.h.
+template <class Found>
+HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found, Share share = {}) {
+    visit_buckets(grid, at, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin + share.number; i < end; i += share.of) {
             const Float4 point = grid.points[i];
             found.offer({squared_distance({point.x, point.y, point.z}, at), bits_of(point.w)});
         }
-    }
+    });
 }
 
 /// As those of accel/: see point_kd_tree.h.
@@ -75,9 +94,9 @@ HD inline uint32_t find_nearest(const PhotonGridView& grid, Vec3 at, float radiu
     return nearest.sort();
 }
 template <class Visit>
-HD inline void visit_within(const PhotonGridView& grid, Vec3 at, float radius, Visit&& visit) {
+HD inline void visit_within(const PhotonGridView& grid, Vec3 at, float radius, Visit&& visit, Share share = {}) {
     PointsWithin<Visit> within = {square_of_radius(radius), visit};
-    search_points(grid, at, within);
+    search_points(grid, at, within, share);
 }
 
 } // namespace pertev

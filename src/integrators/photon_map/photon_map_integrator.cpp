@@ -19,21 +19,25 @@ constexpr uint64_t kLoopRange = 256;                     // walks at least, that
 constexpr uint32_t kLeastWalks = 32;
 
 WalkRoom room_of(uint32_t walks) { return {walks, 0, 1}; }
-std::size_t bytes_in_flight(uint32_t walks, const PhotonMapSettings& map) {
-    return bytes_of(room_of(walks)) + gather_bytes(walks, map.nearest);
+/// `in_loop`: of a thread of the CPU's, which has other look-ups to do when this one is long.
+GatherRoom gather_room(uint32_t walks, const PhotonMapSettings& map, bool in_loop) {
+    return {walks, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0};
 }
-uint32_t walks_within(const PhotonMapSettings& map, std::size_t bytes, uint64_t most) {
-    const std::size_t each = bytes_in_flight(kLeastWalks, map) / kLeastWalks;
+std::size_t bytes_in_flight(uint32_t walks, const PhotonMapSettings& map, bool in_loop) {
+    return bytes_of(room_of(walks)) + bytes_of(gather_room(walks, map, in_loop));
+}
+uint32_t walks_within(const PhotonMapSettings& map, bool in_loop, std::size_t bytes, uint64_t most) {
+    const std::size_t each = bytes_in_flight(kLeastWalks, map, in_loop) / kLeastWalks;
     return static_cast<uint32_t>(std::min<uint64_t>(most, std::max<uint64_t>(bytes / each, kLeastWalks)));
 }
 /// Of the camera's or of photons, whichever are more.
 uint64_t most_walks(const PhotonMapSettings& map, uint64_t pixels, uint32_t batch) {
     return std::min<uint64_t>(std::max<uint64_t>(pixels, 2 * uint64_t(map.photons)), batch);
 }
-void lay_out_both(WalksView& walks, GatherView& gather, std::byte* memory, uint32_t count,
-                  const PhotonMapSettings& map) {
+void lay_out_both(WalksView& walks, GatherView& gather, std::byte* memory, uint32_t count, const PhotonMapSettings& map,
+                  bool in_loop) {
     lay_out(walks, memory, room_of(count));
-    lay_out(gather, memory + bytes_of(room_of(count)), count, map.nearest);
+    lay_out(gather, memory + bytes_of(room_of(count)), gather_room(count, map, in_loop));
 }
 
 WorldSphere sphere_round(const Bounds3& bounds) {
@@ -51,7 +55,8 @@ PhotonMapIntegrator::PhotonMapIntegrator(Queue& queue, const SubpathSettings& se
 std::size_t PhotonMapIntegrator::predicted_bytes(const SubpathSettings& settings, const PhotonMapSettings& map,
                                                  uint64_t pixels, uint32_t batch, bool in_loop, bool on_cuda) {
     std::size_t bytes = PhotonMaps::predicted_bytes(map, settings.max_depth, on_cuda) + kMostTargets * sizeof(Float4);
-    if (!in_loop) bytes += bytes_in_flight(walks_within(map, kMostBytes, most_walks(map, pixels, batch)), map);
+    if (!in_loop)
+        bytes += bytes_in_flight(walks_within(map, false, kMostBytes, most_walks(map, pixels, batch)), map, false);
     return bytes;
 }
 
@@ -75,13 +80,13 @@ void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer,
     find_targets();
     if (trees_of_loop() != nullptr) return;
     const uint64_t pixels = uint64_t(picture.camera.width) * picture.camera.height;
-    walks_in_flight_ = walks_within(picture_map_, kMostBytes, most_walks(picture_map_, pixels, batch_));
-    const std::size_t bytes = bytes_in_flight(walks_in_flight_, picture_map_);
+    walks_in_flight_ = walks_within(picture_map_, false, kMostBytes, most_walks(picture_map_, pixels, batch_));
+    const std::size_t bytes = bytes_in_flight(walks_in_flight_, picture_map_, false);
     if (memory_.size() < bytes) {
         memory_ = {}; // before there is more
         memory_ = {queue_, bytes, "walks of photon mapping"};
     }
-    lay_out_both(walks_, gather_, memory_.data(), walks_in_flight_, picture_map_);
+    lay_out_both(walks_, gather_, memory_.data(), walks_in_flight_, picture_map_, false);
 }
 
 void PhotonMapIntegrator::find_targets() {
@@ -143,13 +148,14 @@ void PhotonMapIntegrator::run(const PhotonJob& job, uint64_t walks, bool are_pho
 }
 
 void PhotonMapIntegrator::in_loop(const HostTrees& trees, const PhotonJob& job, uint64_t walks, bool are_photons) {
-    const uint32_t at_once = walks_within(picture_map_, kLoopBytes, kLoopWalks);
+    const uint32_t at_once = walks_within(picture_map_, true, kLoopBytes, kLoopWalks);
     std::atomic<uint64_t> bounces{0}, connections{0};
     parallel_for_ranges(walks, kLoopRange, [&](uint64_t begin, uint64_t end) {
         if (is_abandoned()) return;
-        std::vector<Float4> memory(bytes_in_flight(at_once, picture_map_) / sizeof(Float4) + 1);
+        std::vector<Float4> memory(bytes_in_flight(at_once, picture_map_, true) / sizeof(Float4) + 1);
         PhotonJob part = job;
-        lay_out_both(part.walk.walks, part.gather, reinterpret_cast<std::byte*>(memory.data()), at_once, picture_map_);
+        lay_out_both(part.walk.walks, part.gather, reinterpret_cast<std::byte*>(memory.data()), at_once, picture_map_,
+                     true);
         *part.walk.walks.counts = {};
         WalksInThread way(trees, room_of(at_once));
         for (part.walk.first = begin; part.walk.first < end; part.walk.first += at_once) {

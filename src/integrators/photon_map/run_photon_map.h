@@ -41,8 +41,16 @@ void run_photons(Way& way, const PhotonJob& job) {
 template <MaterialsKnown kKnown, class Way>
 void estimate_radiance(Way& way, const PhotonJob& job, WorkCount lookups) {
     const auto by = [&]<PhotonSearch kSearch>() {
-        way.run("estimate_radiance", lookups,
-                EstimateRadiance<kKnown, kSearch>{job.walk.scene, job.walk.walks, job.gather, job.maps, job.walk.film});
+        const EstimateRadiance<kKnown, kSearch> estimate = {job.walk.scene, job.walk.walks, job.gather, job.maps,
+                                                            job.walk.film};
+        way.run("estimate_radiance", lookups, estimate);
+        if constexpr (kSearch == PhotonSearch::Grid) {
+            if (job.gather.crowded == nullptr) return;
+            const uint32_t sharing = min(lookups.most, kMostSharing / kShares) * kShares;
+            way.run("share_lookups", sharing, ShareLookups<kKnown>{estimate, sharing});
+            way.run("add_shared_lookups", {lookups.most, &job.walk.walks.counts->crowded},
+                    AddSharedLookups<kKnown>{estimate});
+        }
     };
     switch (job.search) {
     case PhotonSearch::Grid:

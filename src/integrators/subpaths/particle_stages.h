@@ -207,7 +207,7 @@ struct CountWalks {
         if (!ends_round) return;
         counts->bounces += counts->next;
         counts->rays = counts->next;
-        counts->next = counts->vertices = 0;
+        counts->next = counts->vertices = counts->crowded = 0;
     }
 };
 
@@ -218,7 +218,7 @@ struct BeginWalks {
 
     HD void operator()(uint32_t) const {
         counts->rays = rays;
-        counts->next = counts->asked = counts->vertices = counts->pairs = 0;
+        counts->next = counts->asked = counts->vertices = counts->pairs = counts->crowded = 0;
     }
 };
 

@@ -72,6 +72,7 @@ struct WalkCounts {
     uint32_t asked;              // connections, since the last look
     uint32_t vertices;           // of this round's walks that can be joined
     uint32_t pairs;              // of these with some of those of the walks from lights
+    uint32_t crowded;            // of look-ups in a photon map, those that threads share
     uint64_t bounces, all_asked; // of all rounds
 };
 

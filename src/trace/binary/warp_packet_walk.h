@@ -2,8 +2,8 @@
 
 // A packet of a whole warp: its rays are always at the same node, which is entered if any of them enters it. The stack
 // is one, each lane keeping a copy of its links; beside them lies the lane's own entry parameter, so that every push
-// and pop of a warp is one line of memory. Meant for persistent warps (trace/warps/persistent.h), whose lanes start
-// together.
+// and pop of a warp is one line of memory. Meant for persistent warps (trace/warps/persistent.h), whose lanes mostly
+// start together.
 //
 // Source: Guenther, Popov, Seidel, Slusallek, "Realtime Ray Tracing on GPU with BVH-based Packet Traversal", IEEE RT
 // 2007 (the majority says which child is walked first); Aila, Laine, HPG 2009, section 3 (the same as persistent

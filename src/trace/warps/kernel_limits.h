@@ -8,7 +8,7 @@
 namespace pertev {
 
 inline constexpr int kWalkThreads = 128; // a block
-// Each warp asks the counter once more than there is work for; that must not pass 2^32.
+// Warps ask the counter for up to 64 indices more than there is work for, each; that must not pass 2^32.
 inline constexpr uint32_t kMaxPoolCount = 1u << 31;
 
 /// What a kernel takes, and how much of the GPU it fills.

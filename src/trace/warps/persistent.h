@@ -1,8 +1,8 @@
 #pragma once
 
-// Persistent threads: as many warps as the GPU holds at once, whose lanes take indices from one counter, together 32 at a
-// time, until none is left. A stage runs as it does under launch() (device/launch.h); only who runs which index differs.
-// Included by the .cu files that instantiate it, and by nothing else (see device/launch_body.h).
+// Persistent threads: as many warps as the GPU holds at once, whose lanes take indices from one counter, together 32 at
+// a time, until none is left. A stage runs as it does under launch() (device/launch.h); only who runs which index
+// differs. Included by the .cu files that instantiate it, and by nothing else (see device/launch_body.h).
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.2.
 
