@@ -45,7 +45,10 @@ struct GridOfPoints {
     std::vector<uint32_t> starts;
     PhotonGridView view;
 
-    GridOfPoints(const std::vector<Vec3>& from, float radius, float largest) {
+    std::vector<Float4> powers; // those that stay have that of all
+
+    GridOfPoints(const std::vector<Vec3>& from, float radius, float largest, uint32_t most_kept = 0xffffffffu,
+                 uint32_t pass = 0) {
         Queue queue = Queue::make_cpu();
         const auto count = static_cast<uint32_t>(from.size());
         std::vector<Float4> places;
@@ -57,12 +60,22 @@ struct GridOfPoints {
         Buffer<std::byte> scratch;
         sort_photons(queue, scratch, keys.data(), order.data(), sorted_keys.data(), sorted_order.data(), count, 31);
         points.resize(count);
+        powers.assign(count, {1, 1, 1, 0});
         starts.assign(cells.buckets + 1, 77);
         for (uint32_t i = 0; i <= count; ++i) {
-            FillBuckets{places.data(), sorted_keys.data(), sorted_order.data(), count,
-                        cells.buckets, points.data(),      starts.data()}(i);
+            FindBuckets{sorted_keys.data(), count, cells.buckets, starts.data()}(i);
         }
-        view = {cells, points.data(), starts.data()};
+        for (uint32_t i = 0; i < count; ++i) {
+            KeepPhotons{{places.data(), nullptr, powers.data()},
+                        sorted_keys.data(),
+                        sorted_order.data(),
+                        starts.data(),
+                        most_kept,
+                        pass,
+                        9,
+                        points.data()}(i);
+        }
+        view = {cells, points.data(), starts.data(), most_kept};
     }
 };
 
@@ -197,6 +210,7 @@ struct PhotonRun {
 private:
     void add(const PhotonMapView& map) {
         for (uint32_t i = 0; i < map.count; ++i) {
+            if (map.photons.places[i].w == 0) continue; // left out
             const Float4 power = map.photons.powers[i];
             stored = stored + to_fixed(power.x + power.y + power.z);
         }

@@ -2,7 +2,7 @@
 
 // A hash grid over photons: cubic cells a little wider than twice the radius, so that all within the radius of a place
 // lie in two cells along each axis; photons of one bucket lie side by side, in the order of their numbers. Built by
-// sorting, all of it on the device.
+// sorting, all of it on the device. Of a bucket with many some are left out (order_photons.h).
 
 #include <cstdint>
 
@@ -39,6 +39,7 @@ struct PhotonGridView {
     PhotonCells cells;
     const Float4* points = nullptr;   // by buckets: position, bits of the photon's number
     const uint32_t* starts = nullptr; // [buckets + 1] in `points`
+    uint32_t most_kept = 0xffffffffu; // of a bucket's points: the first ones
 };
 
 /// Calls visit(begin, end) for each bucket, a part of grid.points, that may hold a photon near `at`.
@@ -60,7 +61,8 @@ HD inline void visit_buckets(const PhotonGridView& grid, Vec3 at, Visit&& visit)
         for (int k = 0; k < seen_count; ++k) is_new = is_new && seen[k] != bucket;
         if (!is_new) continue;
         seen[seen_count++] = bucket;
-        visit(grid.starts[bucket], grid.starts[bucket + 1]);
+        const uint32_t begin = grid.starts[bucket];
+        visit(begin, begin + min(grid.starts[bucket + 1] - begin, grid.most_kept));
     }
 }
 

@@ -133,7 +133,8 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
     run(job, kinds * picture_map_.photons, true);
     const float shrunk = radius_of_pass(pass), largest = length(world_.centre) + world_.radius;
     job.near = max(shrunk * global_radius_, kLeastPhotonRadius);
-    job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kLeastPhotonRadius), largest);
+    job.maps =
+        maps_.build(job.near, max(shrunk * caustic_radius_, kLeastPhotonRadius), largest, pass, picture_settings_.seed);
     run(job, pixels, false);
     rays_.camera += pixels;
 }

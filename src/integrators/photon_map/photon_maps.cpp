@@ -28,12 +28,13 @@ std::size_t most_starts(uint64_t room) { return std::bit_ceil(room) + 1; }
 
 std::size_t PhotonMaps::predicted_bytes(const PhotonMapSettings& settings, uint32_t max_depth, bool on_cuda) {
     const uint64_t of_kind = room_of_kind(settings, max_depth), in_maps = room_of_maps(settings, max_depth);
-    std::size_t each = 6 * sizeof(Float4) + 2 * (sizeof(uint64_t) + sizeof(uint32_t));
+    std::size_t each = 3 * sizeof(Float4) + 2 * (sizeof(uint64_t) + sizeof(uint32_t));
     if (on_cuda) each += sizeof(uint64_t) + sizeof(uint32_t); // a copy of what is sorted, about
-    const std::size_t bytes = 2 * of_kind * each + sizeof(PhotonCounts);
+    const std::size_t bytes = 2 * of_kind * each + in_maps * 3 * sizeof(Float4) + sizeof(PhotonCounts) +
+                              (most_starts(in_maps - of_kind) + most_starts(of_kind)) * sizeof(uint32_t);
     switch (settings.search) {
     case PhotonSearch::Grid:
-        return bytes + (most_starts(in_maps - of_kind) + most_starts(of_kind)) * sizeof(uint32_t);
+        return bytes;
     case PhotonSearch::KdTree:
         return bytes + in_maps * sizeof(PointKdNode);
     case PhotonSearch::Octree:
@@ -54,14 +55,12 @@ void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth
     };
     for (int k = 0; k < 3; ++k) {
         need(stored_[k], room, "photons as they come");
-        need(ordered_[k], room, "photons");
+        need(ordered_[k], in_maps, "photons");
     }
     for (int k = 0; k < 2; ++k) {
         need(keys_[k], room, "numbers of photons");
         need(order_[k], room, "order of photons");
-        if (search_ == PhotonSearch::Grid) {
-            need(starts_[k], most_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
-        }
+        need(starts_[k], most_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
     }
     if (queue_.is_cuda()) {
         need(scratch_, sort_scratch_bytes(queue_, static_cast<uint32_t>(room)), "room for sorting photons");
@@ -91,16 +90,21 @@ StoredPhotonsView PhotonMaps::clear() {
     return {{stored_[0].data(), stored_[1].data(), stored_[2].data()}, keys_[0].data(), counts_.data()};
 }
 
-const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radius, float largest) {
+const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radius, float largest, uint32_t pass,
+                                        uint32_t seed) {
     queue_.copy_to_host(&found_, counts_.data(), sizeof found_);
     PERTEV_CHECK(found_.stored <= room_);
     const uint32_t all = found_.stored;
     const PhotonsView stored = {stored_[0].data(), stored_[1].data(), stored_[2].data()};
     launch(queue_, "number photons", all, NumberPhotons{order_[0].data()});
     sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), all, 34);
-    launch(queue_, "order photons", all, OrderPhotons{stored, ordered(), order_[1].data()});
-
     const uint32_t other = all - found_.caustic; // these come first
+    launch(queue_, "order photons", all, OrderPhotons{stored, ordered(), order_[1].data()});
+    if (global_has_all_) {
+        launch(queue_, "order photons", found_.caustic,
+               OrderPhotons{stored, ordered().from(all), order_[1].data() + other});
+    }
+
     PhotonMapsView& maps = view_;
     maps = {};
     maps.global_has_all = global_has_all_;
@@ -109,44 +113,55 @@ const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radiu
     maps.global.photons = ordered();
     maps.caustic.count = found_.caustic;
     maps.caustic.radius = caustic_radius;
-    maps.caustic.photons = ordered().from(other);
+    maps.caustic.photons = ordered().from(maps.global.count);
     PhotonMapView* const both[] = {&maps.global, &maps.caustic};
     for (int k = 0; k < 2; ++k) {
         if (both[k]->count == 0) continue;
-        if (search_ == PhotonSearch::Grid) {
-            fill_grid(*both[k], stored_[k].data(), starts_[k], largest);
-        } else {
-            build_trees(*both[k], k == 0 ? 0 : maps.global.count);
-        }
+        fill_grid(*both[k], stored_[k].data(), starts_[k], largest, pass, seed);
+        if (search_ != PhotonSearch::Grid) build_trees(*both[k], k == 0 ? 0 : maps.global.count);
     }
     return maps;
 }
 
-void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest) {
+void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest, uint32_t pass,
+                           uint32_t seed) {
     const PhotonCells cells = make_photon_cells(map.radius, largest, map.count);
     const Float4* places = map.photons.places;
     launch(queue_, "make buckets", map.count, MakeBuckets{places, cells, keys_[0].data(), order_[0].data()});
     sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), map.count,
                  std::max(static_cast<int>(std::bit_width(cells.buckets)) - 1, 1));
-    launch(queue_, "fill buckets", map.count + 1,
-           FillBuckets{places, keys_[1].data(), order_[1].data(), map.count, cells.buckets, points, starts.data()});
-    map.grid = {cells, points, starts.data()};
+    launch(queue_, "find buckets", map.count + 1,
+           FindBuckets{keys_[1].data(), map.count, cells.buckets, starts.data()});
+    launch(queue_, "keep photons", map.count,
+           KeepPhotons{map.photons, keys_[1].data(), order_[1].data(), starts.data(), kMostKept, pass, seed, points});
+    map.grid = {cells, points, starts.data(), kMostKept};
 }
 
 void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
     std::vector<Float4> places(map.count);
     queue_.copy_to_host(places.data(), map.photons.places, places.size() * sizeof(Float4));
+    std::vector<uint32_t> kept; // the grid keeps them
+    for (uint32_t i = 0; i < map.count; ++i) {
+        if (places[i].w == 0) continue;
+        places[kept.size()] = places[i];
+        kept.push_back(i);
+    }
+    places.resize(kept.size());
     if (search_ == PhotonSearch::KdTree) {
         std::vector<Vec3> points(places.size());
         std::ranges::transform(places, points.begin(), [](const Float4& p) { return Vec3{p.x, p.y, p.z}; });
-        const PointKdTree tree = build_point_kd_tree(points);
+        PointKdTree tree = build_point_kd_tree(points);
+        for (PointKdNode& node : tree.nodes) {
+            node.index_and_axis = kept[node.index()] << 2 | static_cast<uint32_t>(node.axis());
+        }
         kd_nodes_.upload_at(first, tree.nodes);
-        map.kd_tree = {kd_nodes_.data() + first, map.count};
+        map.kd_tree = {kd_nodes_.data() + first, static_cast<uint32_t>(tree.nodes.size())};
         return;
     }
     std::vector<Sphere> spheres(places.size());
     std::ranges::transform(places, spheres.begin(), [](const Float4& p) { return Sphere{{p.x, p.y, p.z}, 0}; });
-    const PointOctree tree = build_point_octree(spheres);
+    PointOctree tree = build_point_octree(spheres);
+    for (uint32_t& index : tree.indices) index = kept[index];
     const std::size_t first_node = 2 * std::size_t(first);
     PERTEV_CHECK(tree.nodes.size() <= 2 * places.size());
     octree_nodes_.upload_at(first_node, tree.nodes);

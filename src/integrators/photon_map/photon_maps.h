@@ -24,15 +24,16 @@ public:
 
     /// A pass begins: no photons. Where they go.
     StoredPhotonsView clear();
-    /// What was stored becomes maps. `largest`: |coordinate| of any place. Waits for the device.
-    const PhotonMapsView& build(float global_radius, float caustic_radius, float largest);
+    /// What was stored in pass `pass` becomes maps. `largest`: |coordinate| of any place. Waits for the device.
+    const PhotonMapsView& build(float global_radius, float caustic_radius, float largest, uint32_t pass, uint32_t seed);
     /// Of the last build().
     const PhotonCounts& counts() const { return found_; }
     const PhotonMapsView& view() const { return view_; }
 
 private:
     PhotonsView ordered() const { return {ordered_[0].data(), ordered_[1].data(), ordered_[2].data()}; }
-    void fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest);
+    void fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest, uint32_t pass,
+                   uint32_t seed);
     void build_trees(PhotonMapView& map, uint32_t first);
 
     Queue& queue_;
@@ -40,7 +41,7 @@ private:
     bool global_has_all_ = false;
     uint64_t room_ = 0;           // photons
     Buffer<Float4> stored_[3];    // of stored photons; then those of the grids: [0] of the global one, [1] of the other
-    Buffer<Float4> ordered_[3];   // in the order of their numbers
+    Buffer<Float4> ordered_[3];   // in the order of their numbers; of the global map, then of the caustic map
     Buffer<uint64_t> keys_[2];    // as they come; sorted
     Buffer<uint32_t> order_[2];   // likewise
     Buffer<uint32_t> starts_[2];  // of buckets: of the global map, of the caustic map

@@ -11,6 +11,7 @@ template void launch(Queue&, const char*, WorkCount, const BeginPhotons&);
 template void launch(Queue&, const char*, WorkCount, const NumberPhotons&);
 template void launch(Queue&, const char*, WorkCount, const OrderPhotons&);
 template void launch(Queue&, const char*, WorkCount, const MakeBuckets&);
-template void launch(Queue&, const char*, WorkCount, const FillBuckets&);
+template void launch(Queue&, const char*, WorkCount, const FindBuckets&);
+template void launch(Queue&, const char*, WorkCount, const KeepPhotons&);
 template void launch(Queue&, const char*, WorkCount, const BeginSights&);
 } // namespace pertev
