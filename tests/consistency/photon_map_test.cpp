@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <tuple>
+
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
 #include "tests/support/options.h"
@@ -30,12 +32,16 @@ RenderSettings photon_settings(PhotonGather gather = PhotonGather::Final, uint32
 } // namespace
 
 TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how many are in flight, or the structure") {
-    for (const auto& [gather, nearest] : {std::pair(PhotonGather::Final, 0u), std::pair(PhotonGather::Direct, 0u),
-                                          std::pair(PhotonGather::Direct, 20u)}) {
+    // By a radius of 2 m all photons are in a few buckets, and crowd.
+    for (const auto& [gather, nearest, radius] :
+         {std::tuple(PhotonGather::Final, 0u, 0.3f), std::tuple(PhotonGather::Direct, 0u, 2.0f),
+          std::tuple(PhotonGather::Direct, 20u, 0.3f)}) {
         CAPTURE(static_cast<int>(gather));
         CAPTURE(nearest);
+        CAPTURE(radius);
         const Scene scene = test::make_mixed_scene();
         RenderSettings settings = photon_settings(gather, nearest);
+        settings.photon_map.radius = radius;
         const test::CheckedPicture reference = test::check_one_picture(scene, settings);
         CHECK(reference.rays.bounce > 4 * 6000);
         CHECK(reference.rays.shadow > 37 * 21);
