@@ -3,6 +3,7 @@
 // One equation of a radiosity system: what a patch receives. Its irradiance is what comes from outside, from lights
 // that are no patches, and the sum over patches j of factor_j times their radiosity.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +16,8 @@ struct FormFactor {
     uint32_t patch; // that light comes from
     float factor;   // F from the row's patch to it: the share of the hemisphere, by cosine, that it covers
 };
+
+inline constexpr std::size_t kOfAllocation = 16; // bytes that an allocator adds to each row that is kept
 
 /// By ascending patch, each once; together 1 at most.
 struct FormFactorRow {

@@ -326,7 +326,6 @@ bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_qu
 }
 
 std::size_t LinkNodes::most_first_bytes(uint64_t faces) {
-    constexpr std::size_t kOfAllocation = 16; // what an allocator adds to each
     return faces * (sizeof(std::vector<FormFactor>) + kOfAllocation + 4 * (kDirectRays + 16) * sizeof(FormFactor));
 }
 

@@ -16,7 +16,6 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kOfAllocation = 16; // what an allocator adds to each
 using Parts = std::vector<SolveMemory::Part>;
 
 struct Counts {

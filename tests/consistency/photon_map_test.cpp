@@ -4,12 +4,13 @@
 
 #include <doctest/doctest.h>
 
-#include <tuple>
+#include <utility>
 
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/room_with_ball.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -32,16 +33,12 @@ RenderSettings photon_settings(PhotonGather gather = PhotonGather::Final, uint32
 } // namespace
 
 TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how many are in flight, or the structure") {
-    // By a radius of 2 m all photons are in a few buckets, and crowd.
-    for (const auto& [gather, nearest, radius] :
-         {std::tuple(PhotonGather::Final, 0u, 0.3f), std::tuple(PhotonGather::Direct, 0u, 2.0f),
-          std::tuple(PhotonGather::Direct, 20u, 0.3f)}) {
+    for (const auto& [gather, nearest] : {std::pair(PhotonGather::Final, 0u), std::pair(PhotonGather::Direct, 0u),
+                                          std::pair(PhotonGather::Direct, 20u)}) {
         CAPTURE(static_cast<int>(gather));
         CAPTURE(nearest);
-        CAPTURE(radius);
         const Scene scene = test::make_mixed_scene();
         RenderSettings settings = photon_settings(gather, nearest);
-        settings.photon_map.radius = radius;
         const test::CheckedPicture reference = test::check_one_picture(scene, settings);
         CHECK(reference.rays.bounce > 4 * 6000);
         CHECK(reference.rays.shadow > 37 * 21);
@@ -54,6 +51,27 @@ TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how man
             if (!test::cuda_requested()) continue;
             Queue gpu = test::make_cuda_queue();
             test::check_same(test::checked_picture(gpu, scene, settings), reference);
+        }
+    }
+}
+
+TEST_CASE("pictures by photons that crowd do not depend on them either, with plain surfaces and others") {
+    Queue queue = Queue::make_cpu();
+    for (const Material& ball : {test::white(0.6f), test::of_roughness(MaterialKind::Dielectric, 0)}) {
+        const Scene scene = test::room_with_ball(ball, test::white(0.6f), false);
+        for (const auto& [gather, nearest] : {std::pair(PhotonGather::Final, 0u), std::pair(PhotonGather::Direct, 0u),
+                                              std::pair(PhotonGather::Direct, 20u)}) {
+            CAPTURE(static_cast<int>(gather));
+            CAPTURE(nearest);
+            RenderSettings settings = photon_settings(gather, nearest);
+            settings.samples = 2;
+            settings.photon_map.photons = 12000;
+            settings.photon_map.radius = 2; // all photons are in a few buckets
+            const test::CheckedPicture reference = test::check_one_picture(scene, settings);
+            for (const PhotonSearch search : {PhotonSearch::KdTree, PhotonSearch::Octree}) {
+                settings.photon_map.search = search;
+                test::check_same(test::checked_picture(queue, scene, settings), reference);
+            }
         }
     }
 }
@@ -101,10 +119,13 @@ TEST_CASE("memory of photon mapping is said beforehand") {
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     for (const PhotonSearch search : {PhotonSearch::Grid, PhotonSearch::KdTree, PhotonSearch::Octree}) {
         for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
-            RenderSettings settings = photon_settings(PhotonGather::Final, 10);
-            settings.body = body;
-            settings.photon_map.search = search;
-            test::check_predicted_bytes(prepared, settings, true);
+            for (const auto& [gather, nearest] :
+                 {std::pair(PhotonGather::Final, 10u), std::pair(PhotonGather::Direct, 0u)}) {
+                RenderSettings settings = photon_settings(gather, nearest);
+                settings.body = body;
+                settings.photon_map.search = search;
+                test::check_predicted_bytes(prepared, settings, true);
+            }
         }
     }
 }

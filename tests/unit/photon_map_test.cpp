@@ -94,9 +94,10 @@ struct PhotonRun {
     PhotonEnergy energy{};
     PhotonCounts counts{};
     FixedSum stored{}; // the powers of all photons in the maps, the three colours together
+    uint32_t left_out = 0;
 
     PhotonRun(const Scene& scene, uint32_t max_depth, uint32_t photons, bool in_loop = true,
-              PhotonGather gather = PhotonGather::Final) {
+              PhotonGather gather = PhotonGather::Final, float radius = 0, uint32_t nearest = 0) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
         Queue queue = Queue::make_cpu();
@@ -107,8 +108,9 @@ struct PhotonRun {
         const PictureView picture = {device.view(),
                                      make_camera_rays(test::camera_down({0, 0.1f, 0}, 0.2f),
                                                       filter.set(PixelFilter::Box, 0.5f), 8, 8, prepared.centre)};
-        PhotonMapIntegrator integrator(queue, {.max_depth = max_depth}, {.photons = photons, .gather = gather}, in_loop,
-                                       1u << 20);
+        PhotonMapIntegrator integrator(queue, {.max_depth = max_depth},
+                                       {.photons = photons, .radius = radius, .nearest = nearest, .gather = gather},
+                                       in_loop, 1u << 20);
         integrator.begin(picture, tracer, 1);
         integrator.tell_energy(&energy);
         Film film(queue, 8, 8, 0);
@@ -124,7 +126,10 @@ struct PhotonRun {
 private:
     void add(const PhotonMapView& map) {
         for (uint32_t i = 0; i < map.count; ++i) {
-            if (map.photons.places[i].w == 0) continue; // left out
+            if (map.photons.places[i].w == 0) {
+                ++left_out;
+                continue;
+            }
             const Float4 power = map.photons.powers[i];
             stored = stored + to_fixed(power.x + power.y + power.z);
         }
@@ -183,6 +188,7 @@ TEST_CASE(
         if (&scene != scenes + 1) { // who comes in at that glass's open sides is taken to be in other stuff
             CHECK(run.stored + run.energy.left_none == run.energy.arrived);
         }
+        CHECK(run.left_out == 0);
         CHECK(run.counts.stored > 100);
         CHECK(joules(run.stored) > 0);
         // The other body moves the very same photons, and other maps hold them too.
@@ -196,6 +202,18 @@ TEST_CASE(
             CHECK(again.counts.caustic == run.counts.caustic);
         }
     }
+}
+
+TEST_CASE("of photons that crowd some are left out with their power on the others, and none where the nearest count") {
+    const Scene scene = test::room_with_ball(test::white(0.6f), test::white(0.6f), false);
+    const PhotonRun all(scene, 6, 12000), some(scene, 6, 12000, true, PhotonGather::Direct, 2),
+        nearest(scene, 6, 12000, true, PhotonGather::Direct, 2, 20);
+    CHECK(all.left_out == 0);
+    CHECK(some.left_out > 1000);
+    CHECK(some.left_out < some.counts.stored);
+    CHECK(joules(some.stored) == doctest::Approx(joules(all.stored)).epsilon(0.03));
+    CHECK(nearest.left_out == 0);
+    CHECK(nearest.stored == all.stored);
 }
 
 TEST_CASE("photons carry what the lights send, and leave what a closed room keeps") {

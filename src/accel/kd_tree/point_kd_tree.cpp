@@ -38,7 +38,7 @@ public:
             return x < y || (x == y && a < b);
         };
         std::nth_element(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(left), ids.end(), is_before);
-        nodes_[at] = {points_[ids[left]], ids[left] << 2 | static_cast<uint32_t>(axis)};
+        nodes_[at] = kd_node(points_[ids[left]], ids[left], axis);
         const auto build_left = [&] { build(ids.first(left), 2 * at + 1); };
         const auto build_right = [&] { build(ids.subspan(left + 1), 2 * at + 2); };
         if (ids.size() >= kParallelSubtree) return parallel_invoke(build_left, build_right);

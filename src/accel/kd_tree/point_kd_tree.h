@@ -27,6 +27,9 @@ struct alignas(16) PointKdNode {
     HD int axis() const { return static_cast<int>(index_and_axis & 3); }
 };
 static_assert(sizeof(PointKdNode) == 16);
+inline PointKdNode kd_node(Vec3 position, uint32_t index, int axis) {
+    return {position, index << 2 | static_cast<uint32_t>(axis)};
+}
 
 struct PointKdTree {
     std::vector<PointKdNode> nodes;

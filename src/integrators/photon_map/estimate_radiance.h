@@ -10,8 +10,8 @@
 //
 // Sums within a radius are by integers, so they do not depend on the order in which a structure meets the photons; the
 // k nearest are added in their order (distance, number). So all structures give the same bytes; and so threads may
-// share a look-up. On a GPU they do where photons crowd, as under a ball of glass: one thread would be at it long after
-// all others.
+// share a look-up in a grid. Where all stages run over all walks they do where photons crowd, as under a ball of glass:
+// one thread of a GPU would be at it long after all others.
 
 #include "integrators/photon_map/gather_memory.h"
 #include "integrators/photon_map/photon_map_view.h"
@@ -31,7 +31,7 @@ inline constexpr uint32_t kCrowd = 128;
 inline constexpr uint32_t kShares = 32;            // of such a look-up
 inline constexpr uint32_t kMostSharing = 1u << 18; // threads at once
 
-/// All lookups; but where photons crowd, and GatherView has room for that, to be shared.
+/// All lookups; those near which photons crowd are left to be shared, where GatherView has room for that.
 template <MaterialsKnown kKnown, PhotonSearch kSearch>
 struct EstimateRadiance {
     WalkScene scene;
@@ -162,7 +162,8 @@ private:
     }
 };
 
-/// Threads that share the crowded lookups: thread i takes share i % kShares of every so-manieth.
+/// Threads that share the crowded lookups: thread i takes share i % kShares of lookups i / kShares,
+/// i / kShares + sharing / kShares, ...
 template <MaterialsKnown kKnown>
 struct ShareLookups {
     EstimateRadiance<kKnown, PhotonSearch::Grid> estimate;

@@ -2,7 +2,8 @@
 
 // From photons as they come to maps: the photons in the order of (path, scatterings), which no device or thread has a
 // say in, and the buckets of the hash grid over them. Where photons crowd, as in the focus of a caustic, a look-up
-// would take long for more of them than it needs: of a bucket no more than kMostKept stay, with the power of all.
+// would take long for more of them than it needs: of a bucket no more than kMostKept stay, with the power of all. Dim
+// light in the same bucket is noisier for that.
 //
 // Source: Suykens, Willems, "Density Control for Photon Maps", EGWR 2000, which gives the power of a photon that is
 // left out to its neighbours; here chance chooses, so that the mean is that of all.
@@ -62,9 +63,9 @@ struct FindBuckets {
     }
 };
 
-/// Puts photons into their buckets. Of n in one that has more than `most`, those stay at whose rank r the whole part of
-/// (r * most + offset) / n grows, `offset` drawn evenly from 0 to n - 1: `most` of them, spread evenly over the
-/// numbers, each with the chance most / n. Their power is made up for the others'.
+/// Puts photons into their buckets. Of n in one that has more than `most`, those of rank r stay for which the whole
+/// part of (r * most + offset) / n is less than that for r + 1, `offset` drawn evenly from 0 to n - 1: `most` of them,
+/// spread evenly over the numbers, each with the chance most / n. Their power is made up for the others'.
 struct KeepPhotons {
     PhotonsView photons; // of the map alone; places' last number becomes 1 of those that stay, else 0
     const uint64_t* sorted_keys;
@@ -95,7 +96,7 @@ struct KeepPhotons {
     }
 
 private:
-    static constexpr uint32_t kDrawsOffset = 0x6b656570; // what else draws by three words does not draw by this
+    static constexpr uint32_t kDrawsOffset = 0x6b656570; // no other draw has this word
 };
 
 /// Sorts `keys` of so many bits, 1 to 63, each with its number in `order`, of which order[i] is i; equal keys stay in

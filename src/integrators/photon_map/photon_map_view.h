@@ -12,8 +12,8 @@ namespace pertev {
 
 struct PhotonMapView {
     PhotonsView photons; // in the order of (path, scatterings)
-    uint32_t count = 0;
-    float radius = 0; // metres, of the present pass
+    uint32_t count = 0;  // with those that are left out
+    float radius = 0;    // metres, of the present pass
     PhotonGridView grid;
     PointKdTreeView kd_tree;
     PointOctreeView octree;

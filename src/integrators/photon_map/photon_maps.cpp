@@ -47,6 +47,7 @@ void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth
     const uint64_t of_kind = room_of_kind(settings, max_depth), room = 2 * of_kind;
     const uint64_t in_maps = room_of_maps(settings, max_depth);
     search_ = settings.search;
+    most_kept_ = settings.nearest > 0 ? 0xffffffffu : kMostKept; // the nearest are to be those of all
     global_has_all_ = global_has_all(settings);
     const auto need = [&]<class T>(Buffer<T>& buffer, std::size_t count, const char* name) {
         if (buffer.size() >= count) return;
@@ -133,8 +134,8 @@ void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>&
     launch(queue_, "find buckets", map.count + 1,
            FindBuckets{keys_[1].data(), map.count, cells.buckets, starts.data()});
     launch(queue_, "keep photons", map.count,
-           KeepPhotons{map.photons, keys_[1].data(), order_[1].data(), starts.data(), kMostKept, pass, seed, points});
-    map.grid = {cells, points, starts.data(), kMostKept};
+           KeepPhotons{map.photons, keys_[1].data(), order_[1].data(), starts.data(), most_kept_, pass, seed, points});
+    map.grid = {cells, points, starts.data(), most_kept_};
 }
 
 void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
@@ -151,9 +152,7 @@ void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
         std::vector<Vec3> points(places.size());
         std::ranges::transform(places, points.begin(), [](const Float4& p) { return Vec3{p.x, p.y, p.z}; });
         PointKdTree tree = build_point_kd_tree(points);
-        for (PointKdNode& node : tree.nodes) {
-            node.index_and_axis = kept[node.index()] << 2 | static_cast<uint32_t>(node.axis());
-        }
+        for (PointKdNode& node : tree.nodes) node = kd_node(node.position, kept[node.index()], node.axis());
         kd_nodes_.upload_at(first, tree.nodes);
         map.kd_tree = {kd_nodes_.data() + first, static_cast<uint32_t>(tree.nodes.size())};
         return;

@@ -39,6 +39,7 @@ private:
     Queue& queue_;
     PhotonSearch search_ = PhotonSearch::Grid;
     bool global_has_all_ = false;
+    uint32_t most_kept_ = 0;      // of a bucket's photons
     uint64_t room_ = 0;           // photons
     Buffer<Float4> stored_[3];    // of stored photons; then those of the grids: [0] of the global one, [1] of the other
     Buffer<Float4> ordered_[3];   // in the order of their numbers; of the global map, then of the caustic map

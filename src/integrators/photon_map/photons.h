@@ -35,7 +35,9 @@ HD inline Vec3 unpack_normal(uint32_t bits) {
 HD inline uint64_t photon_key(uint32_t path, uint32_t scatterings) { return uint64_t(path) << 8 | scatterings; }
 
 struct PhotonsView {
-    Float4 *places, *ways, *powers; // position; wi, bits of the normal; power, bits of the scatterings
+    // Position, in a map then 1, or 0 of one that is left out (order_photons.h); wi, bits of the normal; power, bits of
+    // the scatterings.
+    Float4 *places, *ways, *powers;
 
     HD void store(std::size_t at, const Photon& photon) const {
         const Vec3 p = photon.position, wi = photon.wi;
