@@ -84,6 +84,7 @@ bidirectional $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator bidi
 photon_map $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator photon_map
 photon_map-direct $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator photon_map --gather direct --nearest 50
 photon_map-sky $scenes/crytek-sponza/sponza.obj --integrator photon_map --photon-search kd-tree --max-depth 6
+photon_map-crowded caustic --integrator photon_map --max-depth 8
 irradiance_cache cornell-box --integrator irradiance_cache
 irradiance_cache-mirror $scenes/cornell-box-mcguire/CornellBox-Mirror.obj --integrator irradiance_cache --accuracy 0.5
 irradiance_cache-records $scenes/sibenik/sibenik.obj --integrator irradiance_cache --show-records --max-depth 6

@@ -1,4 +1,4 @@
-// pertev info SCENE|IMAGE: what a file holds.
+// pertev info FILE: what a scene, a picture or a radiosity solution holds.
 
 #include <algorithm>
 #include <concepts>
@@ -19,6 +19,7 @@
 #include "image/picture_hash.h"
 #include "image/read_exr.h"
 #include "image/read_image.h"
+#include "radiosity/radiosity_solution.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {
@@ -124,6 +125,19 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
     facts.add("animations", animations);
 }
 
+void describe_solution(const InfoFlags& flags, Facts& facts) {
+    const RadiositySolution solution = read_any_solution(flags.file);
+    facts.add("solution", "radiosity");
+    facts.add("triangles", solution.roots.size() / 2); // a face for each side
+    facts.add("shown", solution.patches.size());       // patches and parts of them, as solve says
+    facts.add("bytes", solution.bytes());
+    const std::string part = describe(solution.extent);
+    facts.add("holds", part.empty() ? "all light" : part);
+    facts.add("made_by", solution.made);
+    facts.add("hash", solution.hash().hex());
+    facts.add("geometry", solution.geometry.hex());
+}
+
 int info(const InfoFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
@@ -133,9 +147,11 @@ int info(const InfoFlags& flags) {
         describe_image(flags, facts, messages);
     } else if (is_scene_name(flags.file)) {
         describe_scene(flags, facts, messages);
+    } else if (is_solution(flags.file)) {
+        describe_solution(flags, facts);
     } else {
-        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a picture ({}) nor {}", flags.file,
-                                                     fmt::join(kPictureExtensions, " "), scene_kinds()));
+        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a picture ({}) nor {}, nor a radiosity solution",
+                                                     flags.file, fmt::join(kPictureExtensions, " "), scene_kinds()));
     }
     reporter.say_messages();
     facts.report(reporter);
@@ -145,9 +161,10 @@ int info(const InfoFlags& flags) {
 } // namespace
 
 void add_info_command(CLI::App& app, int& status) {
-    CLI::App& verb = *app.add_subcommand("info", "Say what a scene or a picture holds");
+    CLI::App& verb = *app.add_subcommand("info", "Say what a scene, a picture or a radiosity solution holds");
     const auto flags = std::make_shared<InfoFlags>();
-    verb.add_option("FILE", flags->file, "a scene (.gltf .glb .obj .ply or a built-in one) or a picture")
+    verb.add_option("FILE", flags->file,
+                    "a scene (.gltf .glb .obj .ply or a built-in one), a picture, or what solve has made")
         ->type_name("")
         ->check(file_name())
         ->required();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <span>
 
 #include <fmt/format.h>
@@ -183,7 +184,13 @@ void write_solution(const std::filesystem::path& path, const RadiositySolution& 
     write_file_atomically(path, bytes);
 }
 
-RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages) {
+bool is_solution(const std::filesystem::path& path) {
+    Header header;
+    std::ifstream file(path, std::ios::binary);
+    return file.read(reinterpret_cast<char*>(&header), sizeof header) && version_of(header) != 0;
+}
+
+RadiositySolution read_any_solution(const std::filesystem::path& path) {
     const std::vector<std::byte> file = read_file(path);
     std::span<const std::byte> bytes = file;
     Header header;
@@ -221,8 +228,13 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
         !has_light_alone(solution)) {
         refuse_file(path, "a radiosity solution that was damaged: what it holds is not what was written");
     }
+    return solution;
+}
+
+RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages) {
+    RadiositySolution solution = read_any_solution(path);
     check_scene(path, solution, scene);
-    if (!has_light) {
+    if (!solution.light) {
         messages.warn(fmt::format("{}: made by an earlier version, which did not write down what light it was solved "
                                   "for: where lights or materials have changed since, it shows those of then (pertev "
                                   "solve radiosity makes a new one)",

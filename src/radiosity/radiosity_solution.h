@@ -63,10 +63,15 @@ Hash128 geometry_hash(const Scene& scene);
 /// Throws Error(FileWrite).
 void write_solution(const std::filesystem::path& path, const RadiositySolution& solution);
 
-/// Throws Error(BadInput) that says why where there is no such file, where it is none, damaged or cut short, or where
-/// it is of another scene or of this one under other light: whatever it holds, what is returned is safe to look things
-/// up in. Of a file that does not say what light it was solved for that is a warning; of one that was ended before it
-/// was whole too.
+/// Whether the file begins as a solution's does.
+bool is_solution(const std::filesystem::path& path);
+
+/// Of any scene. Throws Error(BadInput) that says why where there is no such file, where it is none, damaged or cut
+/// short: whatever it holds, what is returned is safe to look things up in.
+RadiositySolution read_any_solution(const std::filesystem::path& path);
+
+/// The same; throws Error(BadInput) too where it is of another scene or of this one under other light. Of a file that
+/// does not say what light it was solved for that is a warning; of one that was ended before it was whole too.
 RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages);
 
 } // namespace pertev

@@ -175,6 +175,10 @@ struct SolvedPatches {
     std::vector<Rgb> unsent; // SolvedSystem's
     Rgb ambient;
 
+    /// `all` less a part of it, which rounding may have made larger.
+    static Rgb left_without(Rgb all, Rgb part) {
+        return {max(all.r - part.r, 0.0f), max(all.g - part.g, 0.0f), max(all.b - part.b, 0.0f)};
+    }
     /// What each has sent so far, W/m2.
     std::vector<Rgb> sent() const {
         std::vector<Rgb> all;
@@ -182,7 +186,7 @@ struct SolvedPatches {
         for (std::size_t i = 0; i < irradiance.size(); ++i) {
             const Patch& patch = tree.patches[i];
             all.push_back(patch.exitance + patch.reflectance * irradiance[i]);
-            if (!unsent.empty()) all[i] = all[i] - unsent[i];
+            if (!unsent.empty()) all[i] = left_without(all[i], unsent[i]);
         }
         return all;
     }

@@ -55,7 +55,10 @@ struct AcceptHit {
         return pertev::move_back(scene.motions.at(motion, time), ray);
     }
 
+    /// Whether alpha lets the candidate count.
     HD bool passes_alpha(uint32_t instance, uint32_t primitive, float u, float v) const {
+        const Opacity known = known_opacity(scene.micromaps, instance, primitive, u, v);
+        if (known != Opacity::Unknown) return known == Opacity::Opaque;
         const InstanceView& placed = scene.instances[instance];
         if (placed.has_alpha == 0) return true;
         const MaterialView& material = scene.materials[placed.material];

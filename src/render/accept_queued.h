@@ -15,9 +15,10 @@ struct TraceQuery {
     RayQueueView rays;
     // In the device's memory; null where every surface is opaque, and shown from both sides to these rays.
     const SceneView* scene = nullptr;
-    const uint32_t* passing = nullptr; // the scene's
-    const SceneView* moving = nullptr; // likewise; null where nothing moves while the shutter is open
-    bool hides_backs = false;          // rays of the camera, which pass backs that are hidden
+    const uint32_t* passing = nullptr;              // the scene's
+    const OpacityMicromapView* micromaps = nullptr; // likewise; null for rays that pass backs, which is asked first
+    const SceneView* moving = nullptr;              // likewise; null where nothing moves while the shutter is open
+    bool hides_backs = false;                       // rays of the camera, which pass backs that are hidden
 
     bool is_opaque() const { return scene == nullptr; }
 };
@@ -78,6 +79,9 @@ struct AcceptQueued {
         if (query.scene == nullptr) return true;
         // A word of 32 instances is in the cache where their views are not.
         if ((query.passing[instance / 32] >> instance % 32 & 1u) == 0) return true;
+        // Asked here, it takes no call where it knows.
+        const Opacity known = known_opacity(query.micromaps, instance, primitive, u, v);
+        if (known != Opacity::Unknown) return known == Opacity::Opaque;
         const Ray* const ray = query.rays.rays + query.rays.place(i);
         const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[query.rays.place(i)] : 0;
         if constexpr (kMayMove) {

@@ -145,6 +145,15 @@ void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
     if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it looks at
     if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
+    update_micromaps(queue, *prepared.scene, parts);
+}
+
+/// On a CPU there are none: asking textures costs less there than making micromaps.
+void SceneOnDevice::update_micromaps(Queue& queue, const Scene& scene, uint32_t parts) {
+    if (!queue.is_cuda()) return;
+    constexpr uint32_t kMadeOf = kPartShapes | kPartGeometry | kPartMaterials | kPartTextures;
+    if ((parts & (kMadeOf | kPartInstances)) != 0) micromaps_.update(queue, scene, view_, (parts & kMadeOf) != 0);
+    view_.micromaps = micromaps_.of_instances();
 }
 
 void SceneOnDevice::update_shapes(Queue& queue, const PreparedScene& prepared) {
@@ -194,14 +203,15 @@ void SceneOnDevice::update_environment(Queue& queue, const PreparedScene& prepar
     list_environment(environment, view).upload(queue, environment_, "environment");
 }
 
-std::size_t predicted_bytes(const PreparedScene& prepared) {
+std::size_t predicted_bytes(const PreparedScene& prepared, bool on_cuda) {
     const Scene& scene = *prepared.scene;
     SceneView view{};
     std::vector<MeshView> meshes;
     Instances instances;
     std::vector<MaterialView> materials;
     std::vector<TextureImageView> images;
-    return DeformingMeshes::predicted_bytes(prepared) + list_geometry(prepared, meshes, view).bytes() +
+    const std::size_t micromaps = on_cuda ? OpacityMicromaps::predicted_bytes(scene) : 0;
+    return micromaps + DeformingMeshes::predicted_bytes(prepared) + list_geometry(prepared, meshes, view).bytes() +
            list_instances(prepared, instances, view).bytes() + list_materials(scene, materials, view).bytes() +
            list_textures(scene, images, view).bytes() + list_lights(prepared.lights, view.lights).bytes() +
            list_environment(prepared.lights.environment.get(), view.lights.environment).bytes();

@@ -6,6 +6,7 @@
 
 #include "device/buffer.h"
 #include "render/deforming_meshes.h"
+#include "render/opacity/opacity_micromaps.h"
 #include "render/prepare_scene.h"
 #include "render/scene_view.h"
 
@@ -13,9 +14,9 @@ namespace pertev {
 
 /// What may change of a scene by itself. A set of them is an uint32_t.
 enum ScenePart : uint32_t {
-    kPartGeometry = 1,  // meshes
-    kPartInstances = 2, // where they are and how they move, and the world's centre; of their materials, whether they
-                        // have alpha and hide their backs
+    kPartGeometry = 1,     // meshes
+    kPartInstances = 2,    // where they are and how they move, and the world's centre; of their materials, whether they
+                           // have alpha and hide their backs
     kPartMaterials = 4,    // all else of materials; what they emit is in the lights too
     kPartTextures = 8,     // images
     kPartLights = 16,      // near and far ones, and how often each is drawn, but for the environment's own
@@ -26,27 +27,17 @@ enum ScenePart : uint32_t {
     kAllParts = 511,
 };
 
-/// Every update copies: what it is given may go away afterwards. The view, and each copy of it, is void after an
-/// update: view() has the new one. Work that was queued before an update still sees the scene as it was. All throw
-/// Error(OutOfMemory), after which the part is empty and no view may be used until it is updated again.
+/// An update copies parts of the scene (ScenePart): what it is given may go away afterwards. The view, and each copy of
+/// it, is void after an update: view() has the new one. Work that was queued before an update still sees the scene as
+/// it was. All throw Error(OutOfMemory), after which the part is empty and no view may be used until it is updated
+/// again.
 class SceneOnDevice {
 public:
     SceneOnDevice(Queue& queue, const PreparedScene& prepared);
 
     const SceneView& view() const { return view_; }
 
-    /// Several parts (ScenePart).
     void update(Queue& queue, const PreparedScene& prepared, uint32_t parts);
-
-    // One part each (ScenePart says what is in it).
-    void update_geometry(Queue& queue, const PreparedScene& prepared);
-    void update_instances(Queue& queue, const PreparedScene& prepared);
-    void update_materials(Queue& queue, const Scene& scene);
-    void update_textures(Queue& queue, const Scene& scene);
-    void update_lights(Queue& queue, const PreparedScene& prepared);
-    void update_environment(Queue& queue, const PreparedScene& prepared);
-    void update_shapes(Queue& queue, const PreparedScene& prepared); // before geometry
-    void update_poses(const PreparedScene& prepared) { deforming_.set_poses(prepared); }
 
     /// Meshes whose vertices were moved here, for trees that are fitted to them.
     std::vector<DeformedMesh> deformed(const PreparedScene& prepared) const {
@@ -57,9 +48,21 @@ public:
     const MeshView* meshes_before() const { return deforming_.is_empty() ? view_.meshes : deforming_.before(); }
 
 private:
+    // One part each (ScenePart says what is in it).
+    void update_geometry(Queue& queue, const PreparedScene& prepared);
+    void update_instances(Queue& queue, const PreparedScene& prepared);
+    void update_materials(Queue& queue, const Scene& scene);
+    void update_textures(Queue& queue, const Scene& scene);
+    void update_lights(Queue& queue, const PreparedScene& prepared);
+    void update_environment(Queue& queue, const PreparedScene& prepared);
+    void update_shapes(Queue& queue, const PreparedScene& prepared); // before geometry
+    void update_poses(const PreparedScene& prepared) { deforming_.set_poses(prepared); }
+    void update_micromaps(Queue& queue, const Scene& scene, uint32_t parts); // after all of these
+
     SceneView view_{};
     std::vector<MeshView> meshes_; // where none deforms: empty
     DeformingMeshes deforming_;
+    OpacityMicromaps micromaps_;
     Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
 };
 
@@ -67,6 +70,6 @@ private:
 MaterialsKnown materials_known(const Scene& scene);
 
 /// Bytes that SceneOnDevice asks for.
-std::size_t predicted_bytes(const PreparedScene& prepared);
+std::size_t predicted_bytes(const PreparedScene& prepared, bool on_cuda);
 
 } // namespace pertev

@@ -9,6 +9,7 @@
 #include "math/vec2.h"
 #include "math/vec3.h"
 #include "math/vec4.h"
+#include "render/opacity/micro_triangle.h"
 #include "shading/light_set.h"
 #include "shading/material_view.h"
 #include "shading/texture_lookup.h"
@@ -40,7 +41,8 @@ struct InstanceView {
 
 struct SceneView {
     const InstanceView* instances;
-    const uint32_t* passing; // a bit each, 32 a word: 1 where a ray may pass a surface of the instance
+    const uint32_t* passing;              // a bit each, 32 a word: 1 where a ray may pass a surface of the instance
+    const OpacityMicromapView* micromaps; // [instance_count]; null: none
     const MeshView* meshes;
     const MaterialView* materials;
     MaterialsKnown known; // of all of them

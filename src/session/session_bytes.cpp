@@ -45,7 +45,7 @@ std::size_t bytes_of_tracing(const PreparedScene& scene, const RenderSettings& s
     const TracerChoice tracers = tracers_of(settings, on_cuda, !scene.poses.empty());
     const bool has_loop = can_walk_on_host(tracers, on_cuda);
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
-    std::size_t bytes = predicted_bytes(scene) + deforming_tree_bytes(scene, tracers, on_cuda) +
+    std::size_t bytes = predicted_bytes(scene, on_cuda) + deforming_tree_bytes(scene, tracers, on_cuda) +
                         predicted_bytes(settings, pixels, samples, on_cuda, has_loop, scene.motions != nullptr);
     if (on_cuda) bytes += scene.structures->device_bytes(tracers);
     if (lists_tiles(settings.integrator)) {

@@ -42,6 +42,14 @@ class Radiosity(CliTest):
                                 ["--solver", "southwell", "--steps", "20"], ["--form-factors", "hemicube", "--hemicube", "16"],
                                 ["--environment", "1,1,1"], ["--lamp", "light=100lm"]]}
         self.assertEqual(len(hashes), 8)
+        # Of divided patches too, by each solver: the file is taken, and shows what is shown without one.
+        divided = [*COARSE[:-1], "1", "--contrast", "0.02"]
+        for flags in [["--solver", "southwell"], ["--solver", "southwell", "--steps", "50"], ["--solver", "matrix"], []]:
+            solved, _ = self.solve(*divided, *flags)
+            self.assertEqual(self.picture("--solution", "box.rad"), self.picture(*divided, *flags), flags)
+            facts = self.succeed("info", "box.rad", "--json").events("info")[0]
+            self.assertEqual((facts["hash"], facts["shown"], facts["holds"]), (solved["hash"], solved["shown"], "all light"))
+            self.assertIn(flags[1] if flags else "gauss-seidel", facts["made_by"])
         self.assertEqual(self.solve(*COARSE, "--threads", "1")[0]["hash"], told["hash"])
 
     def test_a_solution_is_taken_for_any_view_and_refused_under_any_other_light(self):

@@ -9,6 +9,7 @@
 
 #include "image/metrics.h"
 #include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
 #include "tests/support/room_with_ball.h"
 
 using namespace pertev;
@@ -52,6 +53,21 @@ Image cached_picture(Queue& queue, const PreparedScene& prepared, IntegratorKind
 }
 
 } // namespace
+
+TEST_CASE("a sphere in a furnace shows its albedo by irradiance caching") {
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(test::make_furnace_scene(0.7f), {}, messages);
+    Camera camera;
+    camera.world_from_camera = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
+    camera.fov_y = 0.1f; // within the sphere
+    RenderSettings settings;
+    settings.width = settings.height = 8;
+    settings.samples = 64;
+    settings.integrator = IntegratorKind::IrradianceCache;
+    Queue queue = test::queue_asked_for();
+    const Image image = render_picture(queue, prepared, camera, settings).picture;
+    for (const float value : image.pixels) CHECK(static_cast<double>(value) == doctest::Approx(0.7).epsilon(0.01));
+}
 
 TEST_CASE("irradiance caching comes to path tracing's picture as records become more and better") {
     Queue queue = test::queue_asked_for();

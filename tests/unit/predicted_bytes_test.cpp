@@ -23,8 +23,8 @@ Mesh make_triangle() {
 std::size_t bytes_of(const Scene& scene) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    const std::size_t predicted = predicted_bytes(prepared);
     Queue queue = test::queue_asked_for();
+    const std::size_t predicted = predicted_bytes(prepared, queue.is_cuda());
     const SceneOnDevice on_device(queue, prepared);
     CHECK(queue.allocated_bytes() == predicted);
     const TracerChoice choice = default_tracers(queue.is_cuda());

@@ -78,6 +78,7 @@ TraceQuery SceneTracer::query_of(RayKind kind, const RayQueueView& rays) const {
     if (scene_.any_alpha != 0 || query.hides_backs) {
         query.scene = scene_on_device_.data();
         query.passing = scene_.passing;
+        if (!query.hides_backs) query.micromaps = scene_.micromaps;
     }
     if (scene_.motions.is_there()) query.moving = scene_on_device_.data();
     return query;

@@ -1,0 +1,35 @@
+#pragma once
+
+// The opacity micromaps (render/opacity/micro_triangle.h) of a scene in a device's memory: one for each mesh under each
+// material whose alpha is a texture's. They lie on triangles, not in the world, so nothing that moves changes them.
+
+#include <cstdint>
+#include <vector>
+
+#include "device/buffer.h"
+#include "render/opacity/micro_triangle.h"
+#include "render/prepare_scene.h"
+#include "render/scene_view.h"
+
+namespace pertev {
+
+class OpacityMicromaps {
+public:
+    /// Makes them of a scene whose meshes, materials and textures lie on the device, as `view` says. `have_changed`:
+    /// whether one of those is another than at the last call; else only what is new is done, which is nothing where
+    /// each instance has the mesh and the material that it had. Throws Error(OutOfMemory), after which there are none.
+    void update(Queue& queue, const Scene& scene, const SceneView& view, bool have_changed);
+
+    /// Of each instance; null where no instance has one.
+    const OpacityMicromapView* of_instances() const { return of_instances_.data(); }
+
+    /// What they take.
+    static std::size_t predicted_bytes(const Scene& scene);
+
+private:
+    std::vector<uint64_t> made_for_; // of each instance; empty: none made
+    Buffer<uint32_t> states_;
+    Buffer<OpacityMicromapView> of_instances_;
+};
+
+} // namespace pertev
