@@ -132,7 +132,7 @@ void describe_solution(const InfoFlags& flags, Facts& facts) {
     facts.add("shown", solution.patches.size());       // patches and parts of them, as solve says
     facts.add("bytes", solution.bytes());
     const std::string part = describe(solution.extent);
-    facts.add("holds", part.empty() ? "all light" : part);
+    facts.add("holds", !solution.light ? "not said: made by an earlier version" : part.empty() ? "all light" : part);
     facts.add("made_by", solution.made);
     facts.add("hash", solution.hash().hex());
     facts.add("geometry", solution.geometry.hex());

@@ -1,5 +1,6 @@
 #include "render/scene_on_device.h"
 
+#include "base/error.h"
 #include "image/srgb_table.h"
 #include "render/part_arrays.h"
 
@@ -152,7 +153,12 @@ void SceneOnDevice::update(Queue& queue, const PreparedScene& prepared, uint32_t
 void SceneOnDevice::update_micromaps(Queue& queue, const Scene& scene, uint32_t parts) {
     if (!queue.is_cuda()) return;
     constexpr uint32_t kMadeOf = kPartShapes | kPartGeometry | kPartMaterials | kPartTextures;
-    if ((parts & (kMadeOf | kPartInstances)) != 0) micromaps_.update(queue, scene, view_, (parts & kMadeOf) != 0);
+    try {
+        if ((parts & (kMadeOf | kPartInstances)) != 0) micromaps_.update(queue, scene, view_, (parts & kMadeOf) != 0);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::OutOfMemory) throw;
+        micromaps_ = OpacityMicromaps(); // the picture is the same without
+    }
     view_.micromaps = micromaps_.of_instances();
 }
 

@@ -1,8 +1,10 @@
 // Opacity micromaps say what textures say, of every place, or that they do not know; and they know of most.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <set>
+#include <type_traits>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -100,6 +102,21 @@ struct Told {
     SceneOnDevice device;
     OpacityMicromaps maps;
     SceneView with;
+};
+
+/// The bounds of an image's alpha, in host memory.
+struct Pyramid {
+    explicit Pyramid(const TextureImageView& image) {
+        bounds.image = &image, bounds.channel = 3;
+        for (uint32_t level = 1; halved(max(image.width, image.height), level - 1) > 1; ++level) {
+            levels.emplace_back(size_t(halved(image.width, level)) * halved(image.height, level));
+            const HalveTexelBounds halve = {bounds, level, levels.back().data()};
+            for (uint32_t cell = 0; cell < levels.back().size(); ++cell) halve(cell);
+            bounds.levels[level] = levels.back().data();
+        }
+    }
+    std::vector<std::vector<ValueRange>> levels;
+    TexelBoundsView bounds = {};
 };
 
 /// Places: anywhere, on edges, corners and the lines between micro-triangles, and as far beside as a hit may be.
@@ -220,6 +237,51 @@ TEST_CASE("micromaps never say anything else than textures, whatever these are, 
     CHECK(known > places / 4);
 }
 
+TEST_CASE("what a texture gives on a micro-triangle is within the range that is said of it") {
+    test::Random random(11);
+    TextureImage fine, wide; // texels a rounding apart, some of them no number; and an image of many columns
+    fine.rgba_float = {5, 4, 4, std::vector<float>(size_t(4) * 5 * 4)};
+    for (float& value : fine.rgba_float.pixels) {
+        value = 0.75f + 0x1p-24f * static_cast<float>(random.below(9));
+        if (random.below(60) == 0) value = std::nanf("");
+    }
+    wide.rgba8 = {1u << 16, 1, std::vector<uint8_t>(size_t(4) << 16)};
+    for (uint8_t& value : wide.rgba8.pixels) value = static_cast<uint8_t>(random.bits());
+    const TextureImageView images[] = {view_of(fine), view_of(wide)};
+    const Pyramid pyramids[] = {Pyramid(images[0]), Pyramid(images[1])};
+    const uint32_t indices[] = {0, 1, 2};
+    constexpr uint32_t kLevel = 5;
+    uint64_t outside = 0, said = 0;
+    for (int round = 0; round < 200'000; ++round) {
+        const auto any_of = [&](auto... of) {
+            const std::common_type_t<decltype(of)...> all[] = {of...};
+            return all[random.below(sizeof...(of))];
+        };
+        TextureRef ref = {.image = static_cast<int32_t>(random.below(2)),
+                          .wrap_s = any_of(Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge),
+                          .wrap_t = any_of(Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge),
+                          .filter = any_of(TextureFilter::Linear, TextureFilter::Nearest),
+                          .channel = 3};
+        ref.m00 = any_of(1.0f, -0.7f, 0.01f), ref.m01 = any_of(0.0f, 0.3f);
+        ref.m02 = any_of(0.0f, 1e4f, -300.25f, -0x1p-26f), ref.m12 = any_of(0.0f, 17.5f);
+        const float size = any_of(4.0f, 0.5f, 0.01f);
+        const Vec2 at = {any_of(0.0f, -1.0f, 500 * random.unit()), any_of(0.0f, random.unit())};
+        Vec2 uv[3];
+        for (Vec2& corner : uv) corner = at + size * (random.pair() - Vec2{0.5f, 0.5f});
+        if (random.below(4) == 0) uv[1].y = uv[0].y, uv[2].x = uv[0].x;
+        const MeshView mesh = {.uv = {uv, uv}, .indices = indices};
+        const Vec2 place = some_place(random);
+        const MicroCorners corners = corners_of(kLevel, micro_triangle_of(kLevel, place.x, place.y));
+        const ValueRange range = texture_range(mesh, ref, pyramids[ref.image].bounds, {0, 1, 2}, corners);
+        const float value =
+            lookup_texture_channel(images, ref, interpolate(uv, TriangleIndices{0, 1, 2}, place.x, place.y), nullptr);
+        said += range.most < kInfinity;
+        if (!(range.least <= value && value <= range.most) && range.most < kInfinity) ++outside;
+    }
+    CHECK(outside == 0);
+    CHECK(said > 50'000);
+}
+
 TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha is one number") {
     CutOuts made;
     Mesh square;
@@ -267,6 +329,23 @@ TEST_CASE("micromaps are made again when textures, materials or meshes change, a
     maps.update(queue, made.scene, device.view(), false);
     CHECK(queue.allocation_count() == taken);
     CHECK(maps.of_instances() == first);
+    const auto opaque_places = [&] {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < 4000; ++i) {
+            const Vec2 at = some_place(made.random);
+            count += opacity_at(maps.of_instances()[0], i % 8, at.x, at.y) == Opacity::Opaque;
+        }
+        return count;
+    };
+    CHECK(opaque_places() > 400);
+    Scene clear = made.scene; // of the same sizes
+    for (TextureImage& image : clear.images) std::ranges::fill(image.rgba8.pixels, uint8_t(0));
+    {
+        const PreparedScene prepared_clear = prepare_scene(clear, {}, messages);
+        const SceneOnDevice clear_device(queue, prepared_clear);
+        maps.update(queue, clear, clear_device.view(), true);
+    }
+    CHECK(opaque_places() == 0);
     Scene other = made.scene; // another instance has the cut-out now
     std::swap(other.instances[0].material, other.instances[1].material);
     maps.update(queue, other, device.view(), false);

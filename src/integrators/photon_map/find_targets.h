@@ -52,14 +52,15 @@ struct FindSpecular {
         if (instance.is_hidden != 0 || !may_be_specular(scene.materials[instance.material])) return;
         const MeshView& mesh = scene.meshes[instance.mesh];
         const TriangleIndices corners = triangle_indices(mesh, i - scene.first_triangle[low]);
+        const auto place = [&](uint32_t corner) {
+            return transform_point(instance.world_from_local, mesh.positions[corner]);
+        };
+        const Vec3 at[3] = {place(corners.a), place(corners.b), place(corners.c)};
         Bounds3 box;
-        const Vec3 middle = 0.5f * (bounds->all.lo() + bounds->all.hi());
-        for (const uint32_t corner : {corners.a, corners.b, corners.c}) {
-            const Vec3 at = transform_point(instance.world_from_local, mesh.positions[corner]);
-            box.extend(at);
-            if (in_cells) hploc::lower(&bounds->reach, hploc::ordered(-length_squared(at - middle)));
-        }
+        for (const Vec3 corner : at) box.extend(corner);
         if (!in_cells) return extend(bounds->all, box);
+        const Vec3 middle = 0.5f * (bounds->all.lo() + bounds->all.hi());
+        for (const Vec3 corner : at) hploc::lower(&bounds->reach, hploc::ordered(-length_squared(corner - middle)));
         const Vec3 lo = bounds->all.lo(), size = bounds->all.hi() - lo;
         int first[3], last[3];
         for (int k = 0; k < 3; ++k) {

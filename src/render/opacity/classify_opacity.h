@@ -109,32 +109,34 @@ HD inline ValueRange range_of_texels(const TexelBoundsView& bounds, const TexelS
 /// Values of the one channel that `ref` reads, at places on the micro-triangle.
 HD inline ValueRange texture_range(const MeshView& mesh, const TextureRef& ref, const TexelBoundsView& bounds,
                                    TriangleIndices i, const MicroCorners& corners) {
-    Vec2 least = {kInfinity, kInfinity}, most = {-kInfinity, -kInfinity}, size = {0, 0};
+    constexpr float kMostCoordinate = 0x1p100f; // sums of these are numbers
+    // What is added up at a vertex, without its signs: a place and a corner round by less than 2^-20 of that together,
+    // and kMostBeside is 2^-20 of it at most.
+    constexpr float kRounding = 0x1p-18f;
+    Vec2 size = {0, 0};
+    const float ends[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+    for (const auto& end : ends) {
+        const Vec2 uv = texture_coordinate(mesh, ref, i, end[0], end[1]);
+        if (!(abs(uv.x) < kMostCoordinate && abs(uv.y) < kMostCoordinate)) return any_value();
+        size.x = max(size.x, abs(ref.m00 * uv.x) + abs(ref.m01 * uv.y) + abs(ref.m02));
+        size.y = max(size.y, abs(ref.m10 * uv.x) + abs(ref.m11 * uv.y) + abs(ref.m12));
+    }
+    Vec2 least = {kInfinity, kInfinity}, most = {-kInfinity, -kInfinity};
     for (const Vec2 corner : corners.at) {
         const Vec2 at = transform_uv(ref, texture_coordinate(mesh, ref, i, corner.x, corner.y));
         if (!(is_finite(at.x) && is_finite(at.y))) return any_value();
         least = {min(least.x, at.x), min(least.y, at.y)};
         most = {max(most.x, at.x), max(most.y, at.y)};
     }
-    // What is added up at a vertex, without its signs: sums round by some 2^-23 of that, and kMostBeside is of it.
-    const float ends[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-    for (const auto& end : ends) {
-        const Vec2 uv = texture_coordinate(mesh, ref, i, end[0], end[1]);
-        size.x = max(size.x, abs(ref.m00 * uv.x) + abs(ref.m01 * uv.y) + abs(ref.m02));
-        size.y = max(size.y, abs(ref.m10 * uv.x) + abs(ref.m11 * uv.y) + abs(ref.m12));
-    }
-    constexpr float kRounding = 0x1p-18f;
     const uint32_t width = bounds.image->width, height = bounds.image->height;
     const TexelInterval x = texels_between(least.x, most.x, kRounding * size.x, ref.filter, width);
     const TexelInterval y = texels_between(least.y, most.y, kRounding * size.y, ref.filter, height);
     if (!x.is_known || !y.is_known) return any_value();
-    const bool is_small = max(x.last - x.first, y.last - y.first) < static_cast<int>(kMostCells);
-    const ValueRange range =
-        is_small && ref.filter == TextureFilter::Linear
-            ? range_of_means({bounds, ref.wrap_s, ref.wrap_t}, x, y)
-            : range_of_texels(bounds, wrap_texels(x.first, x.last, ref.wrap_s, static_cast<int>(width)),
-                              wrap_texels(y.first, y.last, ref.wrap_t, static_cast<int>(height)));
+    ValueRange range = range_of_texels(bounds, wrap_texels(x.first, x.last, ref.wrap_s, static_cast<int>(width)),
+                                       wrap_texels(y.first, y.last, ref.wrap_t, static_cast<int>(height)));
     if (range.least == range.most) return range; // equal texels are mixed exactly
+    const bool is_small = max(x.last - x.first, y.last - y.first) < static_cast<int>(kMostCells);
+    if (is_small && ref.filter == TextureFilter::Linear) range = range_of_means({bounds, ref.wrap_s, ref.wrap_t}, x, y);
     const float rounding = 0x1p-20f * max(abs(range.least), abs(range.most));
     return {range.least - rounding, range.most + rounding};
 }

@@ -30,7 +30,7 @@ struct OpacityMicromapView {
 };
 
 /// How far rounding may put a place beside its triangle, in barycentrics.
-inline constexpr float kMostBeside = 0x1p-20f;
+inline constexpr float kMostBeside = 0x1p-22f;
 
 /// A micro-triangle: cell (column, row) of 2^level a side, counted along u and v, and which half of it.
 struct MicroTriangle {

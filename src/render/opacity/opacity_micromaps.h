@@ -15,9 +15,10 @@ namespace pertev {
 
 class OpacityMicromaps {
 public:
-    /// Makes them of a scene whose meshes, materials and textures lie on the device, as `view` says. `have_changed`:
-    /// whether one of those is another than at the last call; else only what is new is done, which is nothing where
-    /// each instance has the mesh and the material that it had. Throws Error(OutOfMemory), after which there are none.
+    /// Makes them of `scene`, whose meshes, materials and textures lie on the device, as `view` says: all of them.
+    /// `have_changed`: whether one of those is another than at the last call; else only what is new is done, which is
+    /// nothing where each instance has the mesh and the material that it had. Throws Error(OutOfMemory), after which
+    /// there are none.
     void update(Queue& queue, const Scene& scene, const SceneView& view, bool have_changed);
 
     /// Of each instance; null where no instance has one.
