@@ -48,7 +48,8 @@ std::string fixed_text(double value, int decimals) {
 }
 
 std::string uncertain_text(double value, double uncertainty) {
-    if (!(uncertainty > 0)) return fmt::format("{:.3g} ± 0", value);
+    constexpr double rounding = 1e-9; // of the value: what sums of equal values are rounded by is less
+    if (uncertainty <= rounding * std::abs(value)) return fmt::format("{:.3g} ± 0", value);
     const int last = exponent_of(uncertainty, 2) - 1; // power of ten of the last digit that is shown
     constexpr int most_decimals = 6;
     if (last >= 0) {

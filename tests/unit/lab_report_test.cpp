@@ -150,6 +150,7 @@ TEST_CASE("short times and slow frames keep two digits") {
     CHECK(uncertain_text(0.00001234, 0.00000056) == "1.234e-05 ± 5.6e-07");
     CHECK(uncertain_text(0.0000001, 0.00000056) == "1.0e-07 ± 5.6e-07");
     CHECK(uncertain_text(0.25, 0) == "0.25 ± 0");
+    CHECK(uncertain_text(0.107986807, 4.2e-17) == "0.108 ± 0"); // a sum's rounding
     LabReport report = small_report();
     report.structures[0].build_s = 3.9e-5;
     report.combinations[0].structure = 0;
