@@ -47,6 +47,8 @@ struct PreparedScene {
     double build_seconds = 0; // placement, trees (built or read from the cache), structures asked for at once
 };
 
+/// Of a scene that has a name: it outlives what is prepared.
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);
+PreparedScene prepare_scene(const Scene&& scene, const PrepareOptions& options, Messages& messages) = delete;
 
 } // namespace pertev

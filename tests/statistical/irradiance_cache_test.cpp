@@ -56,7 +56,8 @@ Image cached_picture(Queue& queue, const PreparedScene& prepared, IntegratorKind
 
 TEST_CASE("a sphere in a furnace shows its albedo by irradiance caching") {
     Messages messages;
-    const PreparedScene prepared = prepare_scene(test::make_furnace_scene(0.7f), {}, messages);
+    const Scene scene = test::make_furnace_scene(0.7f);
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Camera camera;
     camera.world_from_camera = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
     camera.fov_y = 0.1f; // within the sphere

@@ -138,8 +138,8 @@ TEST_CASE("a picture without a frame before it has no motion, nor has what was b
 TEST_CASE("motion vectors take the memory that is said beforehand, and have the same bytes on every device") {
     Messages messages;
     Queue cpu = Queue::make_cpu();
-    const PreparedScene prepared = prepare_scene(test::make_mixed_scene(), {}, messages);
     const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const auto motion_on = [&](Queue& queue, PathBody body) {
         Messages said;
         RenderSettings settings = motion_settings();

@@ -54,8 +54,10 @@ TEST_CASE("baked copies out of all proportion to the scene are refused, and the 
 
 TEST_CASE("many baked copies are a warning") {
     Messages few, many;
-    prepare_scene(scene_of(1u << 10, 2), {}, few);
+    const Scene of_few = scene_of(1u << 10, 2);
+    prepare_scene(of_few, {}, few);
     CHECK(few.all().empty());
-    prepare_scene(scene_of(1u << 10, 300), {}, many);
+    const Scene of_many = scene_of(1u << 10, 300);
+    prepare_scene(of_many, {}, many);
     CHECK(test::has_warning(many, {"300 instances", "307200 triangles"}));
 }
