@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/parse_values.h"
+#include "formats/parse_number.h"
 
 namespace pertev {
 namespace {
@@ -45,7 +46,7 @@ CLI::Validator number_above_zero(float high) {
 
 CLI::Validator whole_between(uint32_t low, uint32_t high) {
     const auto accepts = [low, high](const std::string& text) {
-        const auto value = whole_number_in(text);
+        const auto value = parse_whole_number(text);
         return value && *value >= low && *value <= high;
     };
     return checked(accepts, fmt::format("a whole number from {} to {}", low, high));

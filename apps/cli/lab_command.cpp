@@ -18,6 +18,7 @@
 #include "apps/cli/thesis_command.h"
 #include "apps/cli/transport_command.h"
 #include "base/error.h"
+#include "formats/parse_number.h"
 #include "lab/list_combinations.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
@@ -66,8 +67,9 @@ std::vector<WalkOptions> walk_options(const LabFlags& flags) {
 /// "1-8" or "8": first and last.
 std::pair<int, int> parse_depths(const std::string& text) {
     const std::size_t dash = text.find('-');
-    const auto last = whole_number_in(dash == std::string::npos ? text : text.substr(dash + 1));
-    const auto first = dash == std::string::npos ? std::optional<uint64_t>(1) : whole_number_in(text.substr(0, dash));
+    const auto last = parse_whole_number(dash == std::string::npos ? text : text.substr(dash + 1));
+    const auto first =
+        dash == std::string::npos ? std::optional<uint64_t>(1) : parse_whole_number(text.substr(0, dash));
     if (!first || !last || *first < 1 || *first > *last || *last > kMaxFrameDepth + 1) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--depths {}: wants a largest depth or a range such as 1-8, within 1-{}", text,

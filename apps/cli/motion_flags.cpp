@@ -102,8 +102,8 @@ std::optional<FrameSequence> frame_sequence(const RenderFlags& flags) {
         return sequence;
     }
     const std::size_t dash = flags.frames.find('-');
-    const auto first = whole_number_in(flags.frames.substr(0, dash));
-    const auto last = dash == std::string::npos ? first : whole_number_in(flags.frames.substr(dash + 1));
+    const auto first = parse_whole_number(flags.frames.substr(0, dash));
+    const auto last = dash == std::string::npos ? first : parse_whole_number(flags.frames.substr(dash + 1));
     if (!first || !last || *first > *last || *last > kMostFrames) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--frames {}: expected A-B, two whole numbers of which the second is "

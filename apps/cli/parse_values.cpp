@@ -1,7 +1,6 @@
 #include "apps/cli/parse_values.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 
 #include <fmt/format.h>
@@ -35,17 +34,10 @@ std::optional<float> number_in(std::string_view text) {
     return value && is_finite(*value) ? value : std::nullopt;
 }
 
-std::optional<uint64_t> whole_number_in(std::string_view text) {
-    uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
 std::pair<uint32_t, uint32_t> parse_size(const std::string& flag, const std::string& text) {
     const std::size_t cross = std::min(text.find('x'), text.size());
-    const auto width = whole_number_in(std::string_view(text).substr(0, cross));
-    const auto height = whole_number_in(std::string_view(text).substr(std::min(cross + 1, text.size())));
+    const auto width = parse_whole_number(std::string_view(text).substr(0, cross));
+    const auto height = parse_whole_number(std::string_view(text).substr(std::min(cross + 1, text.size())));
     if (!width || !height || *width == 0 || *height == 0) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("{} {}: expected WIDTHxHEIGHT in pixels, such as 1280x720", flag, text));

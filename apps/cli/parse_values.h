@@ -14,10 +14,8 @@
 
 namespace pertev {
 
-/// The finite number, or the whole one in decimal digits, that `text` is from its first character to its last. One too
-/// near 0 for a float is 0.
+/// The finite number that `text` is from its first character to its last. One too near 0 for a float is 0.
 std::optional<float> number_in(std::string_view text);
-std::optional<uint64_t> whole_number_in(std::string_view text);
 
 /// "1280x720": both in [1, kMaxImageSide], their product at most kMaxImagePixels.
 std::pair<uint32_t, uint32_t> parse_size(const std::string& flag, const std::string& text);

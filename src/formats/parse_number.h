@@ -1,7 +1,8 @@
 #pragma once
 
-// Decimal text to float for the text formats: correctly rounded (std::from_chars), so the same on every machine and in
-// every locale. What a float cannot hold becomes an infinity or zero, as IEEE 754 rounds it.
+// Decimal text to numbers, for the text formats and what is typed: by std::from_chars, so the same on every machine and
+// in every locale. Floats are correctly rounded; what a float cannot hold becomes an infinity or zero, as IEEE 754
+// rounds it.
 
 #include <algorithm>
 #include <charconv>
@@ -53,6 +54,16 @@ std::optional<Float> parse_whole_float(std::string_view text) {
     if (text.starts_with('+')) return std::nullopt;
     const std::optional<Float> value = parse_float<Float>(text);
     return text.empty() ? value : std::nullopt;
+}
+
+/// The number in decimal digits alone that `text` is from its first character to its last; nothing where `Unsigned`
+/// cannot hold it.
+template <class Unsigned = uint64_t>
+std::optional<Unsigned> parse_whole_number(std::string_view text) {
+    Unsigned value = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
 }
 
 } // namespace pertev

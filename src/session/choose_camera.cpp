@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "formats/parse_number.h"
 #include "math/portable_math.h"
 #include "session/survey/aim_camera.h"
 #include "session/survey/default_camera.h"
@@ -22,14 +23,6 @@ float rounded(float x, int digits) {
     const std::string text = fmt::format("{:.{}g}", x, digits);
     float value = x;
     std::from_chars(text.data(), text.data() + text.size(), value);
-    return value;
-}
-
-/// The number that `text` is from its first character to its last.
-std::optional<std::size_t> whole_number_in(const std::string& text) {
-    std::size_t value = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
     return value;
 }
 
@@ -120,7 +113,7 @@ const Camera* scene_camera(const std::string& name, const Scene& scene) {
     for (const Camera& camera : scene.cameras) {
         if (camera.name == name) return &camera;
     }
-    if (const auto number = whole_number_in(name); number && *number < scene.cameras.size()) {
+    if (const auto number = parse_whole_number(name); number && *number < scene.cameras.size()) {
         return &scene.cameras[*number];
     }
     std::string known;

@@ -1,4 +1,4 @@
-// Decimal text as a float, at both ends of what one holds.
+// Decimal text as a number, at both ends of what one holds.
 
 #include <cmath>
 #include <limits>
@@ -46,5 +46,15 @@ TEST_CASE("a whole number in text has nothing before it and nothing behind it") 
     for (const char* text : {"", " 1", "1 ", "+1", "1e-400x", "1,2", "e5", "."}) {
         CAPTURE(text);
         CHECK_FALSE(parse_whole_float(text));
+    }
+}
+
+TEST_CASE("a whole number is its digits alone, as many as its type holds") {
+    CHECK(parse_whole_number("18446744073709551615") == std::numeric_limits<uint64_t>::max());
+    CHECK(parse_whole_number<uint32_t>("007") == 7u);
+    CHECK_FALSE(parse_whole_number<uint32_t>("4294967296"));
+    for (const char* text : {"", "-1", "+1", " 1", "1 ", "1.0", "0x1", "one"}) {
+        CAPTURE(text);
+        CHECK_FALSE(parse_whole_number(text));
     }
 }

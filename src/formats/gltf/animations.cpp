@@ -1,11 +1,11 @@
 #include "formats/gltf/animations.h"
 
-#include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/parse_number.h"
 #include "scene/validate_nodes.h"
 
 namespace pertev::gltf {
@@ -92,10 +92,8 @@ std::optional<uint32_t> index_in(std::string_view pointer, std::string_view befo
         return std::nullopt;
     }
     const std::string_view digits = pointer.substr(before.size(), pointer.size() - before.size() - after.size());
-    uint32_t number = 0;
-    const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (fault != std::errc() || end != digits.data() + digits.size() || number >= count) return std::nullopt;
-    return number;
+    const std::optional<uint32_t> number = parse_whole_number<uint32_t>(digits);
+    return number && *number < count ? number : std::nullopt;
 }
 
 /// Those of the scene's cameras or lights that stand in a node for which `holds` is true.
