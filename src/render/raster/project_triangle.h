@@ -56,7 +56,7 @@ struct ProjectedTriangle {
     int32_t x[kMostCorners], y[kMostCorners]; // 1/256 pixels from the picture's upper left corner
     int count;                                // of a convex polygon's corners
     SeenPlane plane;
-    double nearest, farthest; // depth of its corners, metres
+    double nearest = 0, farthest = 0; // depth of its corners, metres
 };
 
 /// What of a triangle (or of a line, whose third corner is its second) lies in the picture, widened by the pixel
