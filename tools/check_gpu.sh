@@ -46,10 +46,17 @@ for part in "${parts[@]}"; do
         ;;
     bench)
         for job in S5 S8; do
-            run "$bin/pertev" bench render --job $job --scene "$scenes/crytek-sponza/sponza.obj" --spp 256
+            run "$bin/pertev" bench render --job $job --scene "$scenes/crytek-sponza/sponza.obj"
         done
+        box=$(mktemp --suffix=.gltf)
+        python3 "$here/../tests/images/mitsuba_to_gltf.py" "$scenes/bitterli/cornell-box/scene_mitsuba3.xml" >"$box"
+        for job in cornell-box-65 cornell-box-8; do
+            run "$bin/pertev" bench render --job $job --scene "$box"
+        done
+        rm "$box"
         run "$bin/pertev" bench
         run "$bin/pertev" bench rays --check
+        run "$bin/pertev" bench build
         ;;
     viewer) # nvJPEG is found in the bundle's lib/, too (the file libnvjpeg.so.13 of PyPI's nvidia-nvjpeg), or by LD_LIBRARY_PATH
         run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj"

@@ -1,5 +1,4 @@
-// pertev bench: how fast this machine loads, builds and renders. `bench render` runs one job that is defined so that
-// other renderers can be timed on it.
+// pertev bench: how fast this machine loads, builds and renders whole scenes as a user meets them.
 
 #include <unistd.h>
 
@@ -14,18 +13,12 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
-#include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/tracer_flags.h"
 #include "base/error.h"
-#include "base/limits.h"
 #include "base/stopwatch.h"
-#include "formats/read_scene.h"
-#include "image/picture_hash.h"
-#include "image/write_image.h"
-#include "lab/record_scenes.h"
 #include "session/choose_camera.h"
 #include "session/open_scene.h"
 #include "session/session.h"
@@ -33,112 +26,7 @@
 namespace pertev {
 namespace {
 
-struct BenchFlags {
-    std::vector<std::string> scenes;
-    std::string size = "1920x1080", output, job = "S8";
-    uint32_t samples = 0, seed = 0;
-    MachineFlags machine;
-    TracerFlags tracer;
-    ReportFlags report;
-};
-
-/// The binary trees that pictures with these settings need; what they are turned into is made by the session.
-PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue) {
-    PrepareOptions options;
-    options.builder = builder_of(tracers_of(settings, queue.is_cuda()));
-    return options;
-}
-
-/// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
-void render_anew(Session& session, uint32_t samples) {
-    throw_if_interrupted();
-    session.cut();
-    session.render(samples, [](const RenderProgress&) { return !interrupted(); });
-    throw_if_interrupted();
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// bench render --job: grey geometry under a constant sky.
-
-/// The file's triangles in a 0.7 grey that scatters to both sides, without vertex normals, under radiance 1 from
-/// everywhere; the camera is the one of rays on the record in Crytek's Sponza.
-Scene make_job_scene(const std::string& file, Messages& messages) {
-    ReadOptions options;
-    options.geometry_only = true;
-    Scene scene = read_scene(file, options, messages);
-    scene.materials.assign(1, Material{.name = "grey", .base_color = {0.7f, 0.7f, 0.7f}});
-    for (Instance& instance : scene.instances) instance.material = 0;
-    for (Mesh& mesh : scene.meshes) {
-        mesh.normals.clear();
-        mesh.tangents.clear();
-        mesh.colors.clear();
-    }
-    scene.images.clear();
-    scene.lights.clear();
-    scene.environment = Environment{};
-    return scene;
-}
-
-RenderSettings job_settings(const BenchFlags& flags) {
-    RenderSettings settings;
-    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
-    settings.samples = flags.samples > 0 ? flags.samples : 256;
-    settings.filter = PixelFilter::Box;
-    settings.path.max_depth = flags.job == "S5" ? 5 : 8;
-    settings.path.roulette = Roulette::Throughput;
-    settings.path.roulette_depth = 2;
-    settings.path.seed = flags.seed;
-    return settings;
-}
-
-int bench_job(const BenchFlags& flags) {
-    Reporter reporter(flags.report);
-    Messages& messages = reporter.messages();
-    RenderSettings settings = job_settings(flags);
-    if (!flags.output.empty()) check_image_output(flags.output, settings.width, settings.height);
-    check_bench_scene(flags.scenes.front());
-    listen_for_interrupt();
-    const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
-    settings.tracers = tracer_choice(flags.tracer, queue->is_cuda());
-    reporter.set_work(fmt::format("measuring {}", flags.scenes.front()));
-    const Stopwatch watch;
-    const Scene scene = make_job_scene(flags.scenes.front(), messages);
-    const double load_s = watch.seconds();
-    throw_if_interrupted();
-    const PreparedScene prepared = prepare_scene(scene, trees_for(settings, *queue), messages);
-    reporter.say_messages();
-    const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
-
-    Session session(*queue, prepared, record_camera(*find_record_scene("sponza")), settings);
-    render_anew(session, 1); // clocks, caches, the driver's first launch
-    render_anew(session, settings.samples);
-    const RenderResult result = session.result();
-    const std::string hash = picture_hash(result.picture).hex();
-    if (!flags.output.empty()) {
-        write_image(flags.output, result.picture);
-        reporter.output(flags.output);
-    }
-    if (flags.report.json) {
-        reporter.event(fmt::format(
-            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"mean":{:.6f},"invalid_samples":{},"hash":"{}"}})",
-            flags.job, json_string(queue->device_name()), settings.width, settings.height, settings.samples,
-            prepared.triangles, load_s, prepared.build_seconds, result.render_seconds, samples / result.render_seconds,
-            static_cast<double>(result.rays.total()) / result.render_seconds,
-            static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), result.invalid_samples, hash));
-    } else {
-        reporter.answer(fmt::format(
-            "job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
-            "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\nmean {:.5f}, picture {}\n",
-            flags.job, queue->device_name(), settings.width, settings.height, settings.samples, prepared.triangles,
-            load_s, prepared.build_seconds, result.render_seconds, samples / result.render_seconds * 1e-6,
-            millions_a_second(result.rays.total(), result.render_seconds),
-            static_cast<double>(result.rays.total()) / samples, mean_of(result.picture), hash));
-    }
-    return 0;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// bench: whole scenes as a user meets them.
+constexpr const char* kSize = "1920x1080";
 
 struct SceneFigures {
     std::string scene, device;
@@ -250,11 +138,11 @@ std::vector<std::string> default_scenes() {
     return scenes;
 }
 
-int bench_scenes(const BenchFlags& flags) {
+int bench_scenes(const PictureFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     RenderSettings settings;
-    std::tie(settings.width, settings.height) = parse_size("--size", flags.size);
+    std::tie(settings.width, settings.height) = parse_size("--size", flags.size.value_or(kSize));
     const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
     for (const std::string& scene : scenes) check_bench_scene(scene);
     listen_for_interrupt();
@@ -281,50 +169,17 @@ int bench_scenes(const BenchFlags& flags) {
     return 0;
 }
 
-void add_shared_flags(CLI::App& verb, BenchFlags& flags) {
-    verb.add_option("--size", flags.size, "of the picture")->type_name("WIDTHxHEIGHT")->capture_default_str();
-    verb.add_option("--spp", flags.samples, "samples a pixel")
-        ->type_name("N")
-        ->check(whole_between(1, kMaxSamplesPerPixel));
-    add_machine_flags(verb, flags.machine);
-    add_tracer_flags(verb, flags.tracer, "Tracing");
-    add_report_flags(verb, flags.report);
-}
-
 } // namespace
 
 void add_bench_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("bench", "Measure loading, building and rendering on this machine");
-    const auto flags = std::make_shared<BenchFlags>();
+    const auto flags = std::make_shared<PictureFlags>();
     verb.add_option("--scene", flags->scenes,
                     "a scene file or a built-in scene; may be given again\n(Sponza and Sibenik under PERTEV_SCENES)")
         ->type_name("FILE")
         ->allow_extra_args(false);
-    add_shared_flags(verb, *flags);
-
-    CLI::App& job = *verb.add_subcommand("render", "One job that other renderers can be timed on");
-    const auto job_flags = std::make_shared<BenchFlags>();
-    job.add_option(
-           "--job", job_flags->job,
-           "S5 or S8: grey geometry under a constant sky, at most 5 or 8 scatterings, Russian roulette from the "
-           "second")
-        ->type_name("NAME")
-        ->check(one_of({"S5", "S8"}))
-        ->capture_default_str();
-    job.add_option("--scene", job_flags->scenes, "the mesh, Crytek's Sponza")
-        ->type_name("FILE")
-        ->required()
-        ->expected(1);
-    job.add_option("--seed", job_flags->seed, "of the random numbers")
-        ->type_name("N")
-        ->check(whole_between(0, UINT32_MAX))
-        ->capture_default_str();
-    job.add_option("-o,--output", job_flags->output, "keep the picture")->type_name("FILE");
-    add_shared_flags(job, *job_flags);
-    job.callback([&job, job_flags, &status] {
-        refuse_flags_before(job);
-        status = bench_job(*job_flags);
-    });
+    add_picture_flags(verb, *flags, kSize, "64 in CUDA, 4 on the CPU");
+    add_bench_render_command(verb, status);
     add_bench_rays_command(verb, status);
     add_bench_frames_command(verb, status);
     add_bench_noise_command(verb, status);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "base/error.h"
@@ -57,6 +58,29 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
         benched->settings.radiosity = radiosity_look(flags.radiosity, benched->prepared, flags.seed, reporter);
     }
     return benched;
+}
+
+void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& sizes, const std::string& samples) {
+    verb.add_option("--size", flags.size, fmt::format("of the picture ({})", sizes))->type_name("WIDTHxHEIGHT");
+    verb.add_option("--spp", flags.samples, fmt::format("samples a pixel ({})", samples))
+        ->type_name("N")
+        ->check(whole_between(1, kMaxSamplesPerPixel));
+    add_machine_flags(verb, flags.machine);
+    add_tracer_flags(verb, flags.tracer, "Tracing");
+    add_report_flags(verb, flags.report);
+}
+
+PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue) {
+    PrepareOptions options;
+    options.builder = builder_of(tracers_of(settings, queue.is_cuda()));
+    return options;
+}
+
+void render_anew(Session& session, uint32_t samples) {
+    throw_if_interrupted();
+    session.cut();
+    session.render(samples, [](const RenderProgress&) { return !interrupted(); });
+    throw_if_interrupted();
 }
 
 void refuse_flags_before(const CLI::App& verb) {

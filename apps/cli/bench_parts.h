@@ -6,12 +6,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/cli/render_flags.h"
+#include "apps/cli/reporter.h"
 #include "device/queue.h"
 #include "render/prepare_scene.h"
+#include "session/session.h"
 
 namespace CLI {
 class App;
@@ -52,15 +56,35 @@ struct BenchedScene {
 /// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
 std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Reporter& reporter);
 
+/// What benchmarks of whole pictures take.
+struct PictureFlags {
+    std::vector<std::string> scenes;
+    std::optional<std::string> size; // none: the benchmark's own, as of `samples` 0
+    uint32_t samples = 0;            // of a pixel
+    MachineFlags machine;
+    TracerFlags tracer;
+    ReportFlags report;
+};
+
+/// All but --scene. `sizes` and `samples`: what they are where none are named, for people.
+void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& sizes, const std::string& samples);
+
+/// The binary trees that pictures with these settings need; what they are turned into is made by the session.
+PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue);
+
+/// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
+void render_anew(Session& session, uint32_t samples);
+
 /// Throws Error(BadInput) for a flag of `bench` itself before the name of this verb of it, which would not see it.
 void refuse_flags_before(const CLI::App& verb);
 
 /// `bench rays`, a verb of `bench`.
 void add_bench_rays_command(CLI::App& bench, int& status);
-/// `bench build`, `bench frames`, `bench noise` and `bench sequence`, likewise.
+/// `bench build`, `bench frames`, `bench noise`, `bench render` and `bench sequence`, likewise.
 void add_bench_build_command(CLI::App& bench, int& status);
 void add_bench_frames_command(CLI::App& bench, int& status);
 void add_bench_noise_command(CLI::App& bench, int& status);
+void add_bench_render_command(CLI::App& bench, int& status);
 void add_bench_sequence_command(CLI::App& bench, int& status);
 
 } // namespace pertev

@@ -1,5 +1,6 @@
 // pertev bench rays: how many rays a second the walk of pictures traces, on sets of rays that other tracers can be
-// timed on (docs/ray_sets.md). What the record says of the same sets stands beside. On a CPU the same tree is walked
+// timed on (docs/ray_sets.md). What the record says of the same sets stands beside, and our rate over the best public
+// tracer's where both are of the same rays on the same card (lab/stored_figures.h). On a CPU the same tree is walked
 // with one ray after the other, where pictures go by packets and flights of rays (trace/wide/trace_many.h).
 
 #include <algorithm>
@@ -22,6 +23,7 @@
 #include "lab/measure_rays.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
+#include "lab/stored_figures.h"
 #include "render/prepare_scene.h"
 
 namespace pertev {
@@ -42,7 +44,14 @@ struct SetFigures {
     RunTimes times;
     WorkSummary work;
     double hit_share = 0;
-    const RecordedSet* record = nullptr; // of another tracer, where there is one
+    const RecordScene* record = nullptr; // seen by its own camera; null: none of the record
+    std::size_t number = 0;              // of the set
+    uint64_t triangles = 0;              // of the scene
+
+    double rays_per_second() const { return times.median > 0 ? static_cast<double>(rays) / times.median : 0.0; }
+    Ratio ratio() const {
+        return ratio_of(RaysRun{device, record, number, triangles, rays, hit_share, rays_per_second()});
+    }
 };
 
 /// A scene of the record by its name, else a built-in scene or a file.
@@ -110,21 +119,22 @@ std::string beside(double value, const char* format, bool is_there, const char* 
 }
 
 void print(const SetFigures& f, bool is_checked, Reporter& reporter) {
-    const RecordedSet none{};
-    const RecordedSet& r = f.record != nullptr ? *f.record : none;
     const bool has = f.record != nullptr;
-    const double rate = millions_a_second(f.rays, f.times.median);
+    const RecordedSet r = has ? f.record->sets[f.number] : RecordedSet{};
+    const double best = has ? best_rays_per_second(*f.record, f.number) : 0.0;
+    const double rate = f.rays_per_second() * 1e-6;
+    const Ratio ratio = f.ratio();
     if (reporter.json()) {
         const std::string record =
             has ? fmt::format(R"({{"hit_share":{},"nodes":{},"triangles":{},"best_rays_per_second":{:.0f}}})",
-                              r.hit_share, r.nodes, r.triangles, r.best_rays_per_second)
+                              r.hit_share, r.nodes, r.triangles, best)
                 : "null";
         reporter.event(fmt::format(
-            R"({{"event":"rays","scene":{},"set":"{}","device":{},"rays":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"checked":{},"record":{}}})",
+            R"({{"event":"rays","scene":{},"set":"{}","device":{},"rays":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"checked":{},"record":{},{}}})",
             json_string(f.scene), f.set, json_string(f.device), f.rays,
-            beside(rate * 1e6, "{:.0f}", f.rays > 0, "null"), json_number(f.times.median), json_number(f.times.least),
-            json_number(f.times.greatest), f.times.runs, f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes,
-            f.work.most_triangles, is_checked, record));
+            beside(f.rays_per_second(), "{:.0f}", f.rays > 0, "null"), json_number(f.times.median),
+            json_number(f.times.least), json_number(f.times.greatest), f.times.runs, f.hit_share, f.work.nodes,
+            f.work.triangles, f.work.most_nodes, f.work.most_triangles, is_checked, record, ratios_json({&ratio, 1})));
         return;
     }
     if (f.rays == 0) {
@@ -132,17 +142,27 @@ void print(const SetFigures& f, bool is_checked, Reporter& reporter) {
             fmt::format("{:11} {:8} {:8} empty: no ray before it hit anything\n", f.scene, f.set, 0));
     }
     reporter.answer(fmt::format(
-        "{:11} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} "
-        "{:>6}\n",
-        f.scene, f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest),
-        millions_a_second(f.rays, f.times.least), f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes,
-        beside(r.best_rays_per_second * 1e-6, "{:.0f}", has), beside(r.hit_share, "{:.3f}", has),
-        beside(r.nodes, "{:.1f}", has), beside(r.triangles, "{:.1f}", has)));
+        "{:11} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} {:>6} {:>6}\n", f.scene,
+        f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest), millions_a_second(f.rays, f.times.least),
+        f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes, beside(best * 1e-6, "{:.0f}", has),
+        ratio_cell(ratio), beside(r.hit_share, "{:.3f}", has), beside(r.nodes, "{:.1f}", has),
+        beside(r.triangles, "{:.1f}", has)));
 }
 
-/// `header` is printed before the first row, and is empty after it.
+/// Of ratios to the best public tracers, where there are any; `scene` is "" of all scenes together.
+void print_summary(const std::string& scene, std::span<const double> ratios, Reporter& reporter) {
+    if (ratios.empty()) return;
+    const auto [mean, least] = summarize(ratios);
+    reporter.event(fmt::format(R"({{"event":"ratios","scene":{},"sets":{},"ratio_to_best":{:.4f},"least":{:.4f}}})",
+                               scene.empty() ? "null" : json_string(scene), ratios.size(), mean, least));
+    reporter.answer(
+        fmt::format("{}: {:.2f} times the best public tracer, the geometric mean of {} sets; the least {:.2f}\n",
+                    scene.empty() ? "all" : scene, mean, ratios.size(), least));
+}
+
+/// `header` is printed before the first row, and is empty after it. Ratios to the best public tracers go to `all`.
 void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, std::string& header,
-                 Reporter& reporter) {
+                 std::vector<double>& all, Reporter& reporter) {
     Messages& messages = reporter.messages();
     reporter.set_work(fmt::format("{}: making sets of rays", name));
     Stopwatch watch;
@@ -167,15 +187,19 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
                              frame.height));
     const RecordScene* const record = find_record_scene(name);
     const bool is_moved = !flags.camera.eye.empty() || !flags.camera.target.empty() || flags.camera.fov_deg > 0;
+    std::vector<double> ratios;
     for (std::size_t i = 0; i < sets.size(); ++i) {
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
         SetFigures figures = measure(queue, sets[i], flags, prepared);
         figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
-        if (record != nullptr && !is_moved) figures.record = &record->sets[i];
+        figures.record = is_moved ? nullptr : record, figures.number = i, figures.triangles = prepared.triangles;
         reporter.answer(std::exchange(header, ""));
         print(figures, flags.check, reporter);
+        if (const auto ratio = figures.ratio().value) ratios.push_back(*ratio);
         sets[i].rays = {}; // a quarter of a gigabyte on the record
     }
+    print_summary(name, ratios, reporter);
+    all.insert(all.end(), ratios.begin(), ratios.end());
     if (flags.check) {
         reporter.answer(fmt::format("{}: checked, each hit is that of the binary walk on the CPU, to the bit\n", name));
     }
@@ -190,13 +214,17 @@ int bench_rays(const RaysFlags& flags) {
     for (const std::string& scene : scenes) check_record_scene(scene);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
-    std::string header =
-        fmt::format("{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in "
-                    "the binary tree,\nnodes of the dearest ray; at the right the record, on an H200\n{:11} "
-                    "{:8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6} {:>6} {:>6}\n",
-                    queue->device_name(), "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
-                    "tri", "most", "best", "hits", "nodes", "tri");
-    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, header, reporter);
+    std::string header = fmt::format(
+        "{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in the binary tree,\n"
+        "nodes of the dearest ray; at the right the best public tracer on one {}, the ratio to it where ours is on\n"
+        "one too, and what the record says of the same rays\n{:11} {:8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} "
+        "{:>7} "
+        "{:>6} {:>6} {:>6} {:>6} {:>6}\n",
+        queue->device_name(), kFiguresDevice, "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
+        "tri", "most", "best", "ratio", "hits", "nodes", "tri");
+    std::vector<double> ratios;
+    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, header, ratios, reporter);
+    if (scenes.size() > 1) print_summary("", ratios, reporter);
     return 0;
 }
 

@@ -16,6 +16,7 @@
 #include "apps/cli/render_frames.h"
 #include "base/limits.h"
 #include "image/flip.h"
+#include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
 

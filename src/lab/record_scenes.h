@@ -1,7 +1,8 @@
 #pragma once
 
 // The record: five sets of rays (docs/ray_sets.md) that other tracers were timed on. Here are the three scenes that
-// they are traced in, with their cameras, and what was measured on them elsewhere.
+// they are traced in, with their cameras, and what tells whether rays are the same. How fast others were is in
+// lab/stored_figures.h.
 
 #include <filesystem>
 #include <optional>
@@ -14,19 +15,17 @@
 namespace pertev {
 
 /// What other tracers' record says of one set of rays, 8,294,400 of them: the share that hit, nodes and triangles a ray
-/// in a binary tree, and the most rays a second that a public tracer reached on an H200. A tracer that makes the same
-/// rays in the same scene has the same hit share.
+/// in a binary tree. A tracer that makes the same rays in the same scene has the same hit share.
 struct RecordedSet {
     const char* name;
     double hit_share;
     double nodes, triangles;
-    double best_rays_per_second;
 };
 
 struct RecordScene {
     const char* name;
-    const char* file; // under the folder of public scenes; null: generated
-    uint32_t triangles;
+    const char* file;   // under the folder of public scenes; null: generated
+    uint32_t triangles; // that have an area
     Vec3 eye, target;
     float fov_y_deg;
     RecordedSet sets[5]; // in the order in which they are made

@@ -6,6 +6,8 @@ Source: Mitsuba's plugin reference (rectangle, cube, ply, diffuse, twosided, die
 The one thing to know: an area light of Mitsuba emits from its front alone, as a glTF material that is not double sided
 does here. A diffuse material of Mitsuba that is not two-sided is black from behind; here it is not, which no picture of
 a scene shows whose surfaces are closed or look inwards.
+
+As a program it writes the glTF to the standard output: mitsuba_to_gltf.py SCENE.xml
 """
 
 import base64
@@ -13,6 +15,7 @@ import json
 import math
 import pathlib
 import struct
+import sys
 import xml.etree.ElementTree as ElementTree
 
 RECTANGLE = [[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]]
@@ -214,3 +217,7 @@ def convert(source):
     camera, matrix, width, height = add_camera(scene, only(scene, "sensor", "perspective"))
     gltf.place({"name": "camera", "camera": gltf.add("cameras", camera), "matrix": matrix})
     return gltf.text(), width, height
+
+
+if __name__ == "__main__":
+    print(convert(sys.argv[1])[0])

@@ -23,6 +23,30 @@ class Bench(CliTest):
         text = self.succeed("bench", *SMALL, "--scene", "cornell-box", "--scene", "cornell-box").stdout
         self.assertRegex(text, r"(?s)^seconds: .*\nscene +device .*\ncornell-box .*\ncornell-box .*\n$")
 
+    def test_a_job_renders_what_its_settings_say_and_has_ratios_on_one_card_alone(self):
+        line = ["--scene", "cornell-box", *SMALL]
+        for job, depth in [("cornell-box-65", 64), ("cornell-box-8", 7)]:
+            made = self.succeed("bench", "render", "--job", job, *line, "--json").events("job")[0]
+            self.assertEqual((made["job"], made["width"], made["samples"], made["triangles"]), (job, 16, 1, 38))
+            self.assertEqual([made["ratio_to_" + other] for other in ("mitsuba", "cycles", "pbrt")], [None] * 3)
+            alike = self.succeed("render", "cornell-box", "-o", "x.exr", "--device", "cpu", "--size", "16x16", "--spp", "1",
+                                 "--filter", "tent", "--filter-radius", "1", "--max-depth", depth, "--json").events("done")
+            self.assertEqual(made["hash"], alike[0]["hash"])
+        text = self.succeed("bench", "render", *line).stdout
+        self.assertRegex(text, r"^job S8 on CPU: 16x16, 1 spp, 38 triangles\nload .*\n.* Msamples/s, .*\n"
+                               r"no ratios to others: .* NVIDIA H200, 1920x1080, 256 spp, 262204 triangles .*\nmean .*\n$")
+        self.refuse(2, "bench", "render", "--job", "S6", *line, says=["--job", "S5", "cornell-box-8"])
+        self.refuse(2, "bench", "render", "--size", "", "--scene", "cornell-box", says=["--size"])
+
+    def test_builds_have_ratios_on_one_card_alone(self):
+        line = ["bench", "build", "--scene", "cornell-box", "--device", "cpu", "--runs", "1"]
+        made = self.succeed(*line, "--compare", "--json").events("build")
+        self.assertEqual([of["tree"] for of in made], ["sbvh", "reinsertion", "binned", "ploc", "hploc"])
+        for of in made:
+            self.assertIsNone(of["ratio_to_optix_fast_trace"])
+            self.assertIsNone(of["ratio_to_optix_fast_build"])
+        self.assertRegex(self.succeed(*line).stdout, r"(?m)^cornell-box +hploc .* - +- +-$")
+
     def test_a_flag_before_a_verb_of_bench_ends_with_2_and_says_where_it_belongs(self):
         for flag in ["--device cuda", "--scene nowhere.obj", "--size 8x8", "--spp 1", "--threads 1", "--json", "-q"]:
             for verb in [["rays", "--count", "100"], ["render"]]:

@@ -105,10 +105,9 @@ TEST_CASE("scenes of the record have the triangles stated") {
         Messages messages;
         Scene scene = make_record_scene(record, folder, messages);
         CAPTURE(record.name);
-        const uint32_t left_out = name == "sponza" ? 1 : 0; // its one triangle without area
-        CHECK(scene.meshes[0].triangle_count() == record.triangles - left_out);
+        CHECK(scene.meshes[0].triangle_count() == record.triangles);
         validate(scene, record.name, messages);
-        CHECK(scene.meshes[0].triangle_count() == record.triangles - left_out);
+        CHECK(scene.meshes[0].triangle_count() == record.triangles);
     }
 }
 

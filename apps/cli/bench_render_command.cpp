@@ -1,0 +1,125 @@
+// pertev bench render: one job that other renderers were timed on (lab/record_jobs.h), and how many times as fast as
+// they it is done where that can be said (lab/stored_figures.h).
+
+#include <memory>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/cli/bench_parts.h"
+#include "apps/cli/choose_device.h"
+#include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/parse_values.h"
+#include "base/stopwatch.h"
+#include "image/picture_hash.h"
+#include "image/write_image.h"
+#include "lab/record_jobs.h"
+#include "lab/stored_figures.h"
+
+namespace pertev {
+namespace {
+
+struct JobFlags {
+    PictureFlags picture;
+    std::string job = "S8", output;
+    uint32_t seed = 0;
+};
+
+RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
+    RenderSettings settings = job_settings(job);
+    if (flags.picture.size) std::tie(settings.width, settings.height) = parse_size("--size", *flags.picture.size);
+    if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
+    settings.path.seed = flags.seed;
+    return settings;
+}
+
+int bench_job(const JobFlags& flags) {
+    Reporter reporter(flags.picture.report);
+    Messages& messages = reporter.messages();
+    const RecordJob& job = *find_record_job(flags.job);
+    const std::string& file = flags.picture.scenes.front();
+    RenderSettings settings = settings_of(job, flags);
+    if (!flags.output.empty()) check_image_output(flags.output, settings.width, settings.height);
+    check_bench_scene(file);
+    listen_for_interrupt();
+    const std::unique_ptr<Queue> queue = take_machine(flags.picture.machine, messages);
+    settings.tracers = tracer_choice(flags.picture.tracer, queue->is_cuda());
+    reporter.set_work(fmt::format("measuring {}", file));
+    const Stopwatch watch;
+    const Scene scene = make_job_scene(job, file, messages);
+    const double load_s = watch.seconds();
+    throw_if_interrupted();
+    const PreparedScene prepared = prepare_scene(scene, trees_for(settings, *queue), messages);
+    const Camera camera = job_camera(job, scene, aspect_of(settings.width, settings.height), messages);
+    reporter.say_messages();
+
+    Session session(*queue, prepared, camera, settings);
+    render_anew(session, 1); // clocks, caches, the driver's first launch
+    render_anew(session, settings.samples);
+    const RenderResult result = session.result();
+    const std::string hash = picture_hash(result.picture).hex();
+    if (!flags.output.empty()) {
+        write_image(flags.output, result.picture);
+        reporter.output(flags.output);
+    }
+    const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
+    const double samples_per_second = samples / result.render_seconds, mean = mean_of(result.picture);
+    const std::string device = queue->device_name();
+    const std::vector<Ratio> ratios = ratios_of(JobRun{device, &job, settings.width, settings.height, settings.samples,
+                                                       prepared.triangles, mean, samples_per_second});
+    if (flags.picture.report.json) {
+        reporter.event(fmt::format(
+            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
+            job.name, json_string(device), settings.width, settings.height, settings.samples, prepared.triangles,
+            load_s, prepared.build_seconds, result.render_seconds, samples_per_second,
+            static_cast<double>(result.rays.total()) / result.render_seconds,
+            static_cast<double>(result.rays.total()) / samples, mean, result.invalid_samples, hash,
+            ratios_json(ratios)));
+    } else {
+        reporter.answer(
+            fmt::format("job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
+                        "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\n{}\nmean {:.5f}, picture {}\n",
+                        job.name, device, settings.width, settings.height, settings.samples, prepared.triangles, load_s,
+                        prepared.build_seconds, result.render_seconds, samples_per_second * 1e-6,
+                        millions_a_second(result.rays.total(), result.render_seconds),
+                        static_cast<double>(result.rays.total()) / samples, ratios_line(ratios, job), mean, hash));
+    }
+    return 0;
+}
+
+} // namespace
+
+void add_bench_render_command(CLI::App& bench, int& status) {
+    CLI::App& verb = *bench.add_subcommand("render", "One job that other renderers were timed on");
+    const auto flags = std::make_shared<JobFlags>();
+    std::vector<std::string> names;
+    for (const RecordJob& job : record_jobs()) names.emplace_back(job.name);
+    verb.add_option(
+            "--job", flags->job,
+            "S5 or S8: grey geometry under a constant sky, at most 5 or 8\nscatterings, Russian roulette from the "
+            "second;\ncornell-box-65 or cornell-box-8: the file as it is, at most\n65 or 8 edges from the camera to "
+            "a light")
+        ->type_name("NAME")
+        ->check(one_of(std::move(names)))
+        ->capture_default_str();
+    verb.add_option("--scene", flags->picture.scenes,
+                    "the job's: Crytek's Sponza or Bitterli's Cornell box, as a\nglTF")
+        ->type_name("FILE")
+        ->required()
+        ->expected(1);
+    verb.add_option("--seed", flags->seed, "of the random numbers")
+        ->type_name("N")
+        ->check(whole_between(0, UINT32_MAX))
+        ->capture_default_str();
+    verb.add_option("-o,--output", flags->output, "keep the picture")->type_name("FILE");
+    add_picture_flags(verb, flags->picture, "the job's", "the job's");
+    verb.callback([&verb, flags, &status] {
+        refuse_flags_before(verb);
+        status = bench_job(*flags);
+    });
+}
+
+} // namespace pertev
