@@ -51,8 +51,8 @@ Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
 }
 
 struct FrameFigures {
-    RunTimes whole, reconstruction;
-    RayCounts rays; // of all frames
+    RunTimes whole, reconstruction, copy; // `copy`: of what is shown, to the host
+    RayCounts rays;                       // of all frames
     double seconds = 0;
 };
 
@@ -61,7 +61,7 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
     const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
     const RestirSettings restir = restir_settings(flags.render.reconstruction);
     const Camera first = session.camera();
-    std::vector<double> whole, reconstruction;
+    std::vector<double> whole, reconstruction, copy;
     FrameFigures figures;
     DeviceTimer timer(queue);
     const bool reconstructs = makes_frames(session.settings().integrator);
@@ -86,11 +86,13 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
         whole.push_back(timer.seconds());
         reconstruction.push_back(reconstructs ? session.frame().seconds() : 0);
+        copy.push_back(reconstructs ? session.frame().copy_seconds() : 0);
         figures.rays = figures.rays + (reconstructs ? session.frame_rays() : session.stats().rays);
         figures.seconds += whole.back();
     }
     figures.whole = summarize_runs(whole);
     figures.reconstruction = summarize_runs(reconstruction);
+    figures.copy = summarize_runs(copy);
     return figures;
 }
 
@@ -152,24 +154,24 @@ int bench_frames(const FramesFlags& flags) {
     if (reporter.json()) {
         const auto part = [&](double Likeness::*of) { return likeness ? json_number(*likeness.*of) : "null"; };
         reporter.event(fmt::format(
-            R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"reconstruction":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
+            R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"reconstruction":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"copy_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
             json_string(flags.render.scene.scene), json_string(queue->device_name()),
             json_string(flags.render.integrator), settings.width, settings.height, flags.render.max_depth, flags.frames,
             flags.still, json_of(flags.render.reconstruction), json_number(figures.whole.median),
             json_number(figures.whole.least), json_number(figures.whole.greatest),
-            json_number(figures.reconstruction.median), rays_a_second, part(&Likeness::flip),
-            part(&Likeness::flip_of_sample), part(&Likeness::rel_mse), part(&Likeness::rel_mse_of_sample),
-            part(&Likeness::mean), part(&Likeness::reference_mean), hash));
+            json_number(figures.reconstruction.median), json_number(figures.copy.median), rays_a_second,
+            part(&Likeness::flip), part(&Likeness::flip_of_sample), part(&Likeness::rel_mse),
+            part(&Likeness::rel_mse_of_sample), part(&Likeness::mean), part(&Likeness::reference_mean), hash));
         return 0;
     }
     reporter.answer(fmt::format(
         "{} on {}: {}x{}, {}, at most {} scatterings, {} frames, camera {}, ReSTIR {}\n{:.3f} ms a "
         "frame (median; {:.3f} to {:.3f}), "
-        "{:.1f} frames a second; reconstruction {:.3f} ms; {:.1f} Mrays/s; last frame {}\n",
+        "{:.1f} frames a second; reconstruction {:.3f} ms, copying to the host {:.3f}; {:.1f} Mrays/s; last frame {}\n",
         flags.render.scene.scene, queue->device_name(), settings.width, settings.height, flags.render.integrator,
         flags.render.max_depth, flags.frames, flags.still ? "still" : "moving", flags.render.reconstruction.restir,
         figures.whole.median * 1e3, figures.whole.least * 1e3, figures.whole.greatest * 1e3, 1 / figures.whole.median,
-        figures.reconstruction.median * 1e3, rays_a_second, hash));
+        figures.reconstruction.median * 1e3, figures.copy.median * 1e3, rays_a_second, hash));
     if (likeness) {
         reporter.answer(fmt::format(
             "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; relMSE {:.4f} and {:.4f}; "

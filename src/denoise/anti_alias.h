@@ -19,7 +19,11 @@ struct AntiAlias {
     Float4* shown;
     uint32_t width, height;
     bool has_history;
-    static constexpr float kNew = 0.1f; // share of the present frame
+    // Share of the present frame, and how many deviations of the colours around old ones may lie from their mean:
+    // where things stand, what each pixel adds that they have moved by, and at most or at least. Each frame that moves
+    // samples the one before between its pixels, which blurs, and highlights do not move as surfaces do.
+    static constexpr float kNew = 0.1f, kNewPerPixel = 0.1f, kNewAtMost = 0.4f;
+    static constexpr float kDeviations = 1, kDeviationsPerPixel = -0.25f, kDeviationsAtLeast = 0.5f;
 
     HD void operator()(uint32_t i) const {
         const PixelPlace at = tiled_place(i, width, height);
@@ -43,10 +47,14 @@ private:
         if (!(then.x >= 0 && then.y >= 0 && then.x < static_cast<float>(width) && then.y < static_cast<float>(height)))
             return own;
         const Rgb old = sample(then);
-        const Rgb limited = {within(old.r, around.mean.r, around.deviation.r),
-                             within(old.g, around.mean.g, around.deviation.g),
-                             within(old.b, around.mean.b, around.deviation.b)};
-        return lerp(limited, own, kNew);
+        const float x_moved = then.x - (static_cast<float>(at.x) + 0.5f),
+                    y_moved = then.y - (static_cast<float>(at.y) + 0.5f);
+        const float pixels_moved = sqrt(square(x_moved) + square(y_moved));
+        const float deviations = max(fma(kDeviationsPerPixel, pixels_moved, kDeviations), kDeviationsAtLeast);
+        const Rgb limited = {within(old.r, around.mean.r, deviations * around.deviation.r),
+                             within(old.g, around.mean.g, deviations * around.deviation.g),
+                             within(old.b, around.mean.b, deviations * around.deviation.b)};
+        return lerp(limited, own, min(fma(kNewPerPixel, pixels_moved, kNew), kNewAtMost));
     }
 
     HD Colors look_around(PixelPlace at) const {

@@ -39,7 +39,7 @@ constexpr float kTolerance = 8; // WaveletPass's
 } // namespace
 
 Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
-    : queue_(&queue), width_(width), height_(height), timer_(queue),
+    : queue_(&queue), width_(width), height_(height), timer_(queue), copy_timer_(queue),
       wide_(queue, wide_count(width, height), "reconstruction"),
       narrow_(queue, narrow_count(width, height), "reconstruction") {}
 
@@ -210,7 +210,9 @@ void Reconstruction::display(ToneMap tone_map, float exposure_stops) {
     auto* const signals = reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_);
     uint8_t* const bytes = enlarged_ ? enlarged_->room_for_bytes() : signals;
     launch(*queue_, "show_picture", pixels, ShowPicture{shown(), tone_map, exposure_scale(exposure_stops), bytes});
+    copy_timer_.start();
     display_->take(bytes);
+    copy_timer_.stop();
     queue_->wait(*display_);
 }
 

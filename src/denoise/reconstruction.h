@@ -66,6 +66,8 @@ public:
     void display(ToneMap tone_map, float exposure_stops);
     /// What the last display() brought.
     Rgba8Image displayed() const;
+    /// That bringing it to the host took, after all that made it. Waits for it.
+    double copy_seconds() const { return copy_timer_.seconds(); }
     /// Of the last picture, which was made of `frame`; of an enlarged one, `frame` is its features.
     FrameTones tones(const NoisyFrame& frame) const;
 
@@ -89,7 +91,7 @@ private:
     Queue* queue_;
     uint32_t width_, height_, frames_ = 0;
     CameraView last_camera_ = {};
-    DeviceTimer timer_;
+    DeviceTimer timer_, copy_timer_;
     Buffer<Float4> wide_; // arrays of Float4, of both histories and of signals
     Buffer<Vec2> narrow_;
     std::unique_ptr<HostCopy> display_; // none before it is asked for

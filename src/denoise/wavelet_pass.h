@@ -44,11 +44,15 @@ struct WaveletPass {
             on_rows[k] = plane.on_row(y);
         }
         const float alpha = alpha_of(own);
+        const float variance = variance_of(from.diffuse, diffuse.w, rows, columns),
+                    gloss_variance = has_gloss ? variance_of(from.gloss, gloss.w, rows, columns) : 0.0f;
+        Sum of_diffuse(diffuse, tolerance * safe_sqrt(variance));
+        Sum of_gloss(gloss, kOfGloss * safe_sqrt(gloss_variance));
+        const float bend_of_diffuse = 64.0f * trust(of_diffuse.centre, variance, 0.125f);
         // What bends reflections away, and what tells them from their neighbours by themselves.
         const float bend_of_gloss = 64.0f + 8.0f / max(alpha, 0.002f),
-                    narrow = static_cast<float>(step) / (1.0f + square(64.0f * alpha));
-        Sum of_diffuse(diffuse, tolerance * deviation_of(from.diffuse, diffuse.w, rows, columns));
-        Sum of_gloss(gloss, has_gloss ? kOfGloss * deviation_of(from.gloss, gloss.w, rows, columns) : 0.0f);
+                    trust_of_gloss = has_gloss ? trust(of_gloss.centre, gloss_variance, 0.1f) : 1.0f,
+                    narrow = trust_of_gloss * static_cast<float>(step) / (1.0f + square(64.0f * alpha));
         for (int k = 0; k < 9; ++k) {
             if (k == 4) continue;
             const int row = k / 3, column = k % 3, tap = rows[row] + columns[column];
@@ -57,7 +61,7 @@ struct WaveletPass {
             const float bend = max(1.0f - fused_dot(normal_of(there), normal), 0.0f),
                         off = plane.distance(on_columns[column] + on_rows[row], depth_of(there));
             const float kernel = row == 1 || column == 1 ? 0.5f : 0.25f; // of a tent, over that of the centre
-            of_diffuse.add(from.diffuse[tap], kernel, fma(64.0f, bend, off));
+            of_diffuse.add(from.diffuse[tap], kernel, fma(bend_of_diffuse, bend, off));
             if (has_gloss && abs(alpha_of(there) - alpha) < 0.1f + 0.2f * alpha) {
                 of_gloss.add(from.gloss[tap], kernel, fma(bend_of_gloss, bend, off) + narrow);
             }
@@ -68,6 +72,14 @@ struct WaveletPass {
 
 private:
     static constexpr float kOfGloss = 4; // tolerance
+
+    /// How much is made of what tells light apart but by its own value, from `least` to 1: the less, the more light
+    /// strays. Where a sample says little, light of neighbours that face elsewhere is nearer to the truth than its own:
+    /// else each bump of a normal map would keep its noise to itself.
+    HD static float trust(float light, float variance, float least) {
+        const float square_light = fma(light, light, 1e-12f);
+        return max(square_light / fma(2.0f, variance, square_light), least);
+    }
 
     /// exp(-x) for a fifth of its price: (1 - x / 4)^4, and 0 from 4 on.
     HD static float falloff(float x) { return square(square(max(fma(-0.25f, x, 1.0f), 0.0f))); }
@@ -123,13 +135,13 @@ private:
     };
 
     /// Of light at a pixel: variances are noisy themselves, so that over its neighbours.
-    HD float deviation_of(const Float4* signal, float own, const int* rows, const int* columns) const {
+    HD float variance_of(const Float4* signal, float own, const int* rows, const int* columns) const {
         float sum = 4.0f * own;
         for (int k = 0; k < 9; ++k) {
             if (k == 4) continue;
             sum = fma(k % 2 == 1 ? 2.0f : 1.0f, signal[rows[k / 3] + columns[k % 3]].w, sum);
         }
-        return safe_sqrt(sum * (1.0f / 16.0f));
+        return sum * (1.0f / 16.0f);
     }
 };
 
