@@ -46,6 +46,8 @@ void check_real_time_flags(const RenderFlags& flags) {
     refuse(flags.denoise != name_of(Denoise::None),
            fmt::format("--denoise {}: frames of --real-time are reconstructed already; leave out one of them",
                        flags.denoise));
+    refuse(flags.reconstruction.settings.orders_samples && flags.sampler == name_of(SamplerKind::Independent),
+           "--sample-order: samples of --sampler independent have no order");
     refuse(flags.transparent, "--transparent: frames of --real-time have no alpha");
     refuse(!flags.shutter.empty(), "--shutter: a frame of --real-time is of one moment");
     refuse(!flags.light_paths.empty(), "--lpe: light paths are not told apart in frames of --real-time");

@@ -1,6 +1,7 @@
 #include "apps/cli/reconstruction_flags.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "apps/cli/flag_checks.h"
 #include "session/settings_text.h"
@@ -63,6 +64,11 @@ ReconstructionSettings reconstruction_settings(const ReconstructionFlags& flags)
 RestirSettings restir_settings(const ReconstructionFlags& flags) {
     RestirSettings settings = flags.sharing;
     settings.light = restir_named(flags.restir).value();
+    refuse(
+        flags.settings.orders_samples && settings.light != RestirLight::Off,
+        fmt::format("--sample-order: nothing orders samples that pixels share, as --restir {} has them; leave out one "
+                    "of them",
+                    flags.restir));
     return settings;
 }
 

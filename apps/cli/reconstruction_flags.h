@@ -27,6 +27,7 @@ struct ReconstructionFlags {
 void add_reconstruction_flags(CLI::App& verb, ReconstructionFlags& flags, const std::string& group);
 /// As the flags say; with --no-reconstruction of_samples_alone.
 ReconstructionSettings reconstruction_settings(const ReconstructionFlags& flags);
+/// Throws Error(BadInput) where both ReSTIR and an order of samples are asked for.
 RestirSettings restir_settings(const ReconstructionFlags& flags);
 /// Whether there is something that frames of integrators alone have that make them (makes_frames).
 bool ask_for_frames(const ReconstructionFlags& flags);

@@ -10,7 +10,8 @@ namespace pertev {
 namespace {
 
 constexpr int kPasses = 5;
-constexpr float kTolerance = 4;                                                         // WaveletPass's
+// WaveletPass's. Bumps are as trusted as all else: of more samples their noise is less than what they show.
+constexpr float kTolerance = 4, kLeastTrust = 1;
 constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kSurfacesBeside, kOfSignals = 4; // arrays of Float4
 constexpr std::size_t kWideArrays = kOfGuide + kOfSums + kOfSignals;
 
@@ -76,8 +77,9 @@ Image PictureDenoiser::picture() {
     launch(*queue_, "smooth_guide", pixels, SmoothGuide{guide_, sums_, smooth_, packed_});
     launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
     for (int pass = 0; pass < kPasses; ++pass) {
-        launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kTolerance, has_gloss_});
+        launch(
+            *queue_, "wavelet_pass", pixels,
+            WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kTolerance, kLeastTrust, has_gloss_});
         std::swap(from, to);
     }
     launch(*queue_, "compose_samples", pixels,

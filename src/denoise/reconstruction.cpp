@@ -34,7 +34,7 @@ std::size_t narrow_count(uint32_t width, uint32_t height) {
     return 2 * pixels + std::max(pixels, 2 * LightChangeRoom::kPicture * LightChangeRoom::pixels(width, height));
 }
 
-constexpr float kTolerance = 8; // WaveletPass's
+constexpr float kTolerance = 8, kLeastTrust = 0.125f; // WaveletPass's
 
 } // namespace
 
@@ -93,7 +93,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     }
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, has_gloss});
+               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, kLeastTrust, has_gloss});
         std::swap(a, b);
     }
     room = a.diffuse;

@@ -16,9 +16,10 @@ struct WaveletPass {
     SignalsView from, to;
     CameraView camera;
     uint32_t width, height;
-    int step;        // pixels between taps
-    float tolerance; // deviations of diffuse light; taps that differ by four times as much count for nothing
-    bool has_gloss;  // AccumulateSignals'
+    int step;          // pixels between taps
+    float tolerance;   // deviations of diffuse light; taps that differ by four times as much count for nothing
+    float least_trust; // of guides where light strays, (0, 1]; 1: as anywhere else
+    bool has_gloss;    // AccumulateSignals'
 
     HD void operator()(uint32_t i) const {
         const PixelPlace at = tiled_place(i, width, height);
@@ -48,10 +49,10 @@ struct WaveletPass {
                     gloss_variance = has_gloss ? variance_of(from.gloss, gloss.w, rows, columns) : 0.0f;
         Sum of_diffuse(diffuse, tolerance * safe_sqrt(variance));
         Sum of_gloss(gloss, kOfGloss * safe_sqrt(gloss_variance));
-        const float bend_of_diffuse = 64.0f * trust(of_diffuse.centre, variance, 0.125f);
+        const float bend_of_diffuse = 64.0f * trust(of_diffuse.centre, variance);
         // What bends reflections away, and what tells them from their neighbours by themselves.
         const float bend_of_gloss = 64.0f + 8.0f / max(alpha, 0.002f),
-                    trust_of_gloss = has_gloss ? trust(of_gloss.centre, gloss_variance, 0.1f) : 1.0f,
+                    trust_of_gloss = has_gloss ? trust(of_gloss.centre, gloss_variance) : 1.0f,
                     narrow = trust_of_gloss * static_cast<float>(step) / (1.0f + square(64.0f * alpha));
         for (int k = 0; k < 9; ++k) {
             if (k == 4) continue;
@@ -73,12 +74,13 @@ struct WaveletPass {
 private:
     static constexpr float kOfGloss = 4; // tolerance
 
-    /// How much is made of what tells light apart but by its own value, from `least` to 1: the less, the more light
+    /// How much is made of what tells light apart but by its own value, from least_trust to 1: the less, the more light
     /// strays. Where a sample says little, light of neighbours that face elsewhere is nearer to the truth than its own:
     /// else each bump of a normal map would keep its noise to itself.
-    HD static float trust(float light, float variance, float least) {
+    HD float trust(float light, float variance) const {
         const float square_light = fma(light, light, 1e-12f);
-        return max(square_light / fma(2.0f, variance, square_light), least);
+        return max(least_trust,
+                   square_light / fma(2.0f, variance, square_light)); // in this order: least_trust of a NaN
     }
 
     /// exp(-x) for a fifth of its price: (1 - x / 4)^4, and 0 from 4 on.

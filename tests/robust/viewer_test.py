@@ -364,18 +364,22 @@ class Pictures(CliTest):
             self.assertLess(header["width"], 640)
             said = client.text("state", lambda s: s["input"] >= number)["rows"]
             self.assertIn(["Frames", "size chosen for", "8 a second"], said)
-            # Input comes faster than pictures: these come all the same, and none is far behind.
-            shown, end = [], time.monotonic() + 2
-            while time.monotonic() < end:
-                number = client.steer(type="orbit", dx=0.002, dy=0)
-                try:
-                    while True:
-                        message = client.receive(1 / 60)
-                        if isinstance(message, tuple):
-                            shown.append(number - message[0]["input"])
-                except TimeoutError:
-                    pass
-            self.assertGreater(len(shown), 4)
+            # Input comes faster than pictures: these come all the same, five a second where the machine has a moment for
+            # it, and none is far behind.
+            for _ in range(5):
+                shown, end = [], time.monotonic() + 2
+                while time.monotonic() < end:
+                    number = client.steer(type="orbit", dx=0.002, dy=0)
+                    try:
+                        while True:
+                            message = client.receive(1 / 60)
+                            if isinstance(message, tuple):
+                                shown.append(number - message[0]["input"])
+                    except TimeoutError:
+                        pass
+                if len(shown) >= 10:
+                    break
+            self.assertGreater(len(shown), 4 if SANITIZED else 9)
             self.assertLess(sorted(shown)[len(shown) // 2], 40)
 
 

@@ -142,6 +142,14 @@ TEST_CASE("the wavelet filter blurs, and leaves the light that there is") {
                                  {"8 passes", with_passes(8), {0.03, 0.22, 0.18}}});
 }
 
+TEST_CASE("limits of bright samples and of histories take little of the light, each alone") {
+    ReconstructionSettings fireflies = history_alone(), held = history_alone();
+    fireflies.limit_fireflies = true;
+    held.limit_history = true;
+    bound_bias(history_alone(),
+               {{"limit_fireflies", fireflies, {0.002, 0.014, 0.002}}, {"limit_history", held, {0.002, 0.014, 0.002}}});
+}
+
 TEST_CASE("anti-aliasing and a lower resolution take little of the light, each alone") {
     ReconstructionSettings smooth = with_passes(5), coarse = smooth, coarser = smooth;
     smooth.anti_alias = true;

@@ -61,6 +61,7 @@ Filtered filter_once(Wall& wall, std::vector<Float4> diffuse, std::vector<Float4
                               kStageSide,
                               step,
                               8,
+                              0.125f,
                               true};
     for (uint32_t i = 0; i < kStagePixels; ++i) pass(i);
     return out;
@@ -122,6 +123,7 @@ TEST_CASE("bumps keep light apart that is known, but not noise") {
     };
     CHECK(mixed(0.001f) == doctest::Approx(1).epsilon(1e-3));
     CHECK(mixed(kNoisy) > 1.01f);
+    CHECK(mixed(kInfinity) > 1.01f);
 }
 
 TEST_CASE("variances go by squares of the weights, and lead by their mean about a pixel") {
