@@ -52,10 +52,12 @@ struct NumberRow {
     std::string (*tell)(const ViewState&, const ViewNumbers&);
 };
 
-/// `kind_s`: what the rays of this kind took; 0 where they were not timed: then by the time of shading, too.
+/// `kind_s`: what the rays of this kind took; 0 where they were not timed: then by all the time of the frame.
 std::string rays_per_second(uint64_t rays, double kind_s, const ViewNumbers& numbers) {
     const double seconds = kind_s > 0 ? kind_s : numbers.frame->render_s;
-    return rays > 0 && seconds > 0 ? fmt::format("{:.1f} M/s", static_cast<double>(rays) / seconds * 1e-6) : "";
+    if (rays == 0 || !(seconds > 0)) return "";
+    return fmt::format("{:.1f} M/s{}", static_cast<double>(rays) / seconds * 1e-6,
+                       kind_s > 0 ? "" : " of all the time");
 }
 
 constexpr NumberRow kRows[] = {

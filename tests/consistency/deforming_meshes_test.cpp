@@ -222,7 +222,7 @@ TEST_CASE("a tree that fits have made dear is built anew, and no other") {
     Queue cpu = Queue::make_cpu();
     check_rebuilds<DeformingWide>(cpu);
     check_rebuilds<DeformingCompressed>(cpu);
-    if (!cuda_requested()) return;
+    if (!test::cuda_requested()) return;
     Queue gpu = test::make_cuda_queue();
     check_rebuilds<DeformingCompressed>(gpu);
 }
@@ -290,7 +290,7 @@ TEST_CASE("frames of bending meshes have the same bytes on every device, by ever
     CHECK(hash_of_frames(cpu, wavefront) == expected);
     wavefront.tracers = same_for_all({.structure = StructureKind::Hploc, .walk = WalkKind::Compressed});
     CHECK(hash_of_frames(cpu, wavefront) == expected);
-    if (cuda_requested()) {
+    if (test::cuda_requested()) {
         Queue cuda = test::make_cuda_queue();
         CHECK(hash_of_frames(cuda, settings) == expected);
     }
@@ -337,7 +337,7 @@ TEST_CASE("motion vectors follow skins and morph targets, and are a function of 
     CHECK(moving_pixels(0, 40) > 20); // the skinned one
     CHECK(moving_pixels(40, 56) > 20);
     CHECK(moving_pixels(62, 96) == 0); // stands still
-    if (!cuda_requested()) return;
+    if (!test::cuda_requested()) return;
     Queue cuda = test::make_cuda_queue();
     settings.tracers.reset();
     CHECK(motion_of_frame(cuda, settings, 5, 5).pixels == motion.pixels);

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "denoise/accumulate_signals.h"
 #include "denoise/anti_alias.h"
 #include "denoise/compare_light.h"
 #include "denoise/enlarge_picture.h"
@@ -135,6 +136,41 @@ TEST_CASE("variances go by squares of the weights, and lead by their mean about 
     std::vector<Float4> light = halves(1, 3, kNoisy);
     light[kLeftOfBorder].w = kExact;
     CHECK(filter_once(wall, light, light, 1).diffuse[kLeftOfBorder].x > 1.3f);
+}
+
+namespace {
+
+/// Signals of the first frame of a wall whose light is 1 everywhere, but `brightest` at one pixel.
+Filtered first_means(uint32_t pixel, float brightest, bool limits) {
+    Wall wall;
+    std::vector<Float4> light(kStagePixels, Float4{1, 1, 1, 0}), recent(kStagePixels);
+    light[pixel] = {brightest, brightest, brightest, 0};
+    Filtered means = {std::vector<Float4>(kStagePixels), std::vector<Float4>(kStagePixels)};
+    std::vector<Vec2> squares(kStagePixels);
+    const CameraView camera = stage_camera(kStageSide);
+    AccumulateSignals<false> stage = {};
+    stage.signals = {light.data(), light.data()};
+    stage.cameras = {camera, camera, kStageSide, kStageSide};
+    stage.now = {wall.guide.data(), means.diffuse.data(), means.gloss.data(), squares.data(), recent.data(), nullptr};
+    stage.longest = 32;
+    stage.limit_fireflies = limits;
+    stage.has_gloss = true;
+    for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
+    return means;
+}
+
+} // namespace
+
+TEST_CASE("a sample far brighter than all around it counts for 64 times the brightest of them, if limits are wanted") {
+    for (const uint32_t pixel : {kLeftOfBorder, 0u, kStagePixels - 1}) { // in the middle, and in corners
+        CAPTURE(pixel);
+        const Filtered limited = first_means(pixel, 1000, true);
+        CHECK(limited.diffuse[pixel].x == doctest::Approx(64));
+        CHECK(limited.gloss[pixel].y == doctest::Approx(64));
+        CHECK(limited.diffuse[pixel == 0 ? 1 : pixel - 1].x == doctest::Approx(1));
+        CHECK(first_means(pixel, 60, true).diffuse[pixel].x == doctest::Approx(60));
+        CHECK(first_means(pixel, 1000, false).diffuse[pixel].x == doctest::Approx(1000));
+    }
 }
 
 namespace {
