@@ -125,5 +125,11 @@ sponza-flight $scenes/crytek-sponza/sponza.obj --camera-path $here/../bench/sequ
 sibenik-turn $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --frames 0-30
 helmet-turn $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --turntable 120 --frames 0-30
 box-moving $work/box.gltf --frames 0-30
+sponza-di $scenes/crytek-sponza/sponza.obj --camera-path $here/../bench/sequences/sponza_flight.json --frames 0-30 --restir di
+box-gi $work/box.gltf --frames 0-30 --restir gi
+helmet-gi $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --turntable 120 --frames 0-30 --restir gi
+sibenik-scaled $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --frames 0-30 --resolution-scale 0.5
+helmet-scaled $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --turntable 120 --frames 0-30 --resolution-scale 0.5 --restir di
+box-ordered $work/box.gltf --frames 0-30 --sample-order
 LIST
 exit $status

@@ -1,6 +1,7 @@
 #include "apps/viewer/audience.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -51,7 +52,9 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
     case MessageKind::Hello:
         return "a second hello";
     case MessageKind::Ack:
-        client.pace.acknowledged(message->frame, now_s); // of one that a later one has overtaken: nothing to do
+        client.pace.acknowledged(
+            message->frame, now_s,
+            1e-3 * static_cast<double>(message->milliseconds)); // of one that a later one has overtaken: nothing to do
         changed_.notify_one();
         return {};
     case MessageKind::Ask:
@@ -145,11 +148,11 @@ bool Audience::is_anyone_there() const {
     return std::ranges::any_of(clients_, [](const auto& entry) { return entry.second.has_joined; });
 }
 
-bool Audience::is_behind() const {
+bool Audience::is_behind(double now_s) const {
     const std::lock_guard lock(mutex_);
     return latest_ != nullptr && std::ranges::any_of(clients_, [&](const auto& entry) {
                const Client& client = entry.second;
-               return client.has_joined && client.seen < latest_->number && client.pace.may_send();
+               return client.has_joined && client.seen < latest_->number && client.pace.may_send(now_s);
            });
 }
 
@@ -184,8 +187,8 @@ std::optional<SendJob> Audience::text_job(uint32_t id, Client& client) {
     return job;
 }
 
-std::optional<SendJob> Audience::picture_job(uint32_t id, Client& client) {
-    if (latest_ == nullptr || !client.pace.may_send()) return std::nullopt;
+std::optional<SendJob> Audience::picture_job(uint32_t id, Client& client, double now_s) {
+    if (latest_ == nullptr || !client.pace.may_send(now_s)) return std::nullopt;
     SendJob job;
     job.client = id;
     job.picture = latest_;
@@ -204,27 +207,43 @@ std::optional<SendJob> Audience::picture_job(uint32_t id, Client& client) {
     return job;
 }
 
-std::optional<SendJob> Audience::next_job(std::chrono::milliseconds timeout) {
-    std::unique_lock lock(mutex_);
-    std::optional<SendJob> job;
-    changed_.wait_for(lock, timeout, [&] {
-        // From the one behind the last served, round to it.
-        std::vector<uint32_t> order;
-        for (const auto& [id, client] : clients_) order.push_back(id);
-        std::ranges::rotate(order, std::ranges::upper_bound(order, last_served_));
-        for (const uint32_t id : order) {
-            Client& client = clients_[id];
-            if (!client.has_joined) continue;
-            job = text_job(id, client);
-            if (!job) job = picture_job(id, client);
-            if (job) {
-                last_served_ = id;
-                return true;
-            }
+/// From the one behind the last served, round to it.
+std::optional<SendJob> Audience::job_for_anyone(double now_s) {
+    std::vector<uint32_t> order;
+    for (const auto& [id, client] : clients_) order.push_back(id);
+    std::ranges::rotate(order, std::ranges::upper_bound(order, last_served_));
+    for (const uint32_t id : order) {
+        Client& client = clients_[id];
+        if (!client.has_joined) continue;
+        std::optional<SendJob> job = text_job(id, client);
+        if (!job) job = picture_job(id, client, now_s);
+        if (!job) continue;
+        last_served_ = id;
+        return job;
+    }
+    return std::nullopt;
+}
+
+/// When the first of the pictures that are held back may leave; infinity where there is none.
+double Audience::next_send_at_s(double now_s) const {
+    double at_s = std::numeric_limits<double>::infinity();
+    for (const auto& [id, client] : clients_) {
+        if (const double may_s = client.pace.may_send_at_s(); client.has_joined && may_s > now_s) {
+            at_s = std::min(at_s, may_s);
         }
-        return false;
-    });
-    return job;
+    }
+    return at_s;
+}
+
+std::optional<SendJob> Audience::next_job(std::chrono::milliseconds timeout, const std::function<double()>& now_s) {
+    std::unique_lock lock(mutex_);
+    const double end_s = now_s() + std::chrono::duration<double>(timeout).count();
+    while (true) {
+        const double now = now_s();
+        std::optional<SendJob> job = job_for_anyone(now);
+        if (job || now >= end_s) return job;
+        changed_.wait_for(lock, std::chrono::duration<double>(std::min(end_s, next_send_at_s(now)) - now));
+    }
 }
 
 uint32_t Audience::picture_leaves(const SendJob& job, std::size_t bytes, std::size_t total_bytes, double now_s) {

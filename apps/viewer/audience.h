@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -67,13 +68,14 @@ public:
     /// Something that was asked for, to one client; 0: to all.
     void tell(uint32_t client, const std::string& text);
     bool is_anyone_there() const;
-    /// Whether the last picture has gone to nobody yet who would take it.
-    bool is_behind() const;
+    /// Whether the last picture has gone to nobody yet who would take it now.
+    bool is_behind(double now_s) const;
 
     // For the thread that packs pictures.
 
-    /// Waits for something to be sent until the timeout is over. What it gives counts as under way.
-    std::optional<SendJob> next_job(std::chrono::milliseconds timeout);
+    /// Waits for something to be sent until the timeout is over. What it gives counts as under way. `now_s`: the clock
+    /// of the times that the others are told.
+    std::optional<SendJob> next_job(std::chrono::milliseconds timeout, const std::function<double()>& now_s);
     /// A picture, packed, leaves now. `total_bytes` of the whole file of a piece. Gives the number of the message.
     uint32_t picture_leaves(const SendJob& job, std::size_t bytes, std::size_t total_bytes, double now_s);
     /// Of the picture sent last: how long its client's link took, and how it was packed; for the panel.
@@ -100,7 +102,9 @@ private:
     };
     std::string people_text(uint32_t you) const;
     std::optional<SendJob> text_job(uint32_t id, Client& client);
-    std::optional<SendJob> picture_job(uint32_t id, Client& client);
+    std::optional<SendJob> picture_job(uint32_t id, Client& client, double now_s);
+    std::optional<SendJob> job_for_anyone(double now_s);
+    double next_send_at_s(double now_s) const;
     void people_changed();
     bool may_speak(Client& client, double now_s);
 

@@ -1,6 +1,7 @@
 #include "apps/viewer/link_pace.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace pertev {
 namespace {
@@ -8,6 +9,11 @@ namespace {
 constexpr double kLate = 0.1, kEarly = 0.04; // seconds that a picture's bytes take, beyond the way itself
 constexpr double kMemory = 0.15;             // share of the newest in the running means
 constexpr int kLowest = 30, kHighest = 92;
+// Of holding back: seconds that round trips stray by without a queue; share of what is beyond that, taken at once; what
+// is kept where nothing is; the most, in pictures of the client: more than one, or a queue would stay what it is.
+constexpr double kStray = 0.002, kStep = 0.5, kRelease = 0.98, kMostHold = 1.2;
+
+double least_of_late(double least, double value) { return least == 0 ? value : std::min(1.01 * least, value); }
 
 } // namespace
 
@@ -15,13 +21,20 @@ void LinkPace::sent(uint32_t frame, std::size_t bytes, double now_s, bool is_pie
     under_way_.push_back({frame, bytes, now_s, is_piece});
 }
 
-bool LinkPace::acknowledged(uint32_t frame, double now_s) {
+double LinkPace::may_send_at_s() const {
+    if (under_way_.empty()) return 0;
+    return under_way_.size() < kMostInFlight ? under_way_.back().at_s + hold_s_
+                                             : std::numeric_limits<double>::infinity();
+}
+
+bool LinkPace::acknowledged(uint32_t frame, double now_s, double client_s) {
     const auto found = std::ranges::find(under_way_, frame, &Sent::frame);
     if (found == under_way_.end()) return false;
     const bool is_piece = found->is_piece;
     if (!is_piece) {
         round_trip_s_ = std::max(now_s - found->at_s, 1e-6);
         learn(static_cast<double>(found->bytes), round_trip_s_);
+        hold(client_s);
     }
     // While two are under way, the second arrives a transfer's time after the first.
     const double transfer_s = std::max(now_s - std::max(found->at_s, last_ack_s_), 1e-4);
@@ -40,6 +53,13 @@ void LinkPace::learn(double bytes, double seconds) {
     seconds_ += share * (seconds - seconds_);
     bytes_squared_ += share * (bytes * bytes - bytes_squared_);
     bytes_seconds_ += share * (bytes * seconds - bytes_seconds_);
+}
+
+void LinkPace::hold(double client_s) {
+    least_round_trip_s_ = least_of_late(least_round_trip_s_, round_trip_s_);
+    least_client_s_ = least_of_late(least_client_s_, std::max(client_s, 0.0));
+    const double late_s = round_trip_s_ - least_round_trip_s_ - kStray;
+    hold_s_ = late_s > 0 ? std::min(hold_s_ + kStep * late_s, kMostHold * least_client_s_) : kRelease * hold_s_;
 }
 
 void LinkPace::adapt(double bytes) {

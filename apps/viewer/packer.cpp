@@ -53,7 +53,7 @@ Packer::~Packer() {
 void Packer::run() {
     JpegEncoder encoder(jpeg_queue_);
     while (!is_ending_) {
-        const std::optional<SendJob> job = audience_.next_job(std::chrono::milliseconds(50));
+        const std::optional<SendJob> job = audience_.next_job(std::chrono::milliseconds(50), now_s_);
         if (!job) continue;
         if (job->picture == nullptr) {
             server_.send_text(job->client, job->text);

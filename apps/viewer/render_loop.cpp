@@ -56,7 +56,7 @@ void RenderLoop::run(const std::function<bool()>& goes_on) {
         }
         if (!audience_.is_anyone_there() && saves_.empty()) continue;
         // No faster than somebody can be shown it: what is shown late is old.
-        if (audience_.is_behind() && is_moving()) {
+        if (audience_.is_behind(now_s_()) && is_moving()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             continue;
         }

@@ -2,6 +2,7 @@
 // is sent what (audience.h).
 
 #include <algorithm>
+#include <deque>
 
 #include <doctest/doctest.h>
 
@@ -20,7 +21,7 @@ double frame_time(double full_s, float scale) {
 }
 
 SendJob next(Audience& audience) {
-    const auto job = audience.next_job(std::chrono::milliseconds(0));
+    const auto job = audience.next_job(std::chrono::milliseconds(0), [] { return 0.2; });
     return job.value_or(SendJob{});
 }
 
@@ -143,13 +144,65 @@ TEST_CASE("a picture at rest takes the place of a reconstruction once its own er
 TEST_CASE("two pictures at most are under way to a client, and acknowledging one takes those before it along") {
     LinkPace pace;
     pace.sent(1, 1000, 0);
-    CHECK(pace.may_send());
+    CHECK(pace.may_send(0.01));
     pace.sent(2, 1000, 0.01);
-    CHECK_FALSE(pace.may_send());
-    CHECK_FALSE(pace.acknowledged(7, 0.02));
-    CHECK(pace.acknowledged(2, 0.03));
+    CHECK_FALSE(pace.may_send(0.02));
+    CHECK_FALSE(pace.acknowledged(7, 0.02, 0.001));
+    CHECK(pace.acknowledged(2, 0.03, 0.001));
     CHECK(pace.is_idle());
-    CHECK_FALSE(pace.acknowledged(1, 0.04));
+    CHECK_FALSE(pace.acknowledged(1, 0.04, 0.001));
+}
+
+namespace {
+
+/// A client that decodes `at_once` pictures beside each other, each in `decode_s`, a new picture every 8 ms, 2 ms of
+/// way: the median seconds from sending to drawing, and the pictures drawn a second.
+struct Shown {
+    double wait_s, rate;
+};
+Shown pictures_shown(double decode_s, std::size_t at_once) {
+    LinkPace pace;
+    std::vector<double> free_s(at_once, 0.0), waits;
+    struct Drawn {
+        uint32_t frame;
+        double at_s, began_s;
+    };
+    std::deque<Drawn> drawing;
+    uint32_t frame = 0;
+    constexpr double kStep = 0.0005, kEnd = 10;
+    double published_s = 0, sent_s = -1;
+    for (double now = 0; now < kEnd; now += kStep) {
+        while (!drawing.empty() && drawing.front().at_s <= now) {
+            const Drawn& done = drawing.front();
+            pace.acknowledged(done.frame, now, done.at_s - done.began_s);
+            drawing.pop_front();
+        }
+        if (now - published_s >= 0.008) published_s = now;
+        if (published_s <= sent_s || !pace.may_send(now)) continue;
+        sent_s = now;
+        pace.sent(++frame, 200000, now);
+        double& free = *std::ranges::min_element(free_s);
+        const double began = std::max(free, now + 0.002);
+        free = began + decode_s;
+        drawing.push_back({frame, free, began});
+        if (now > 1) waits.push_back(free - now);
+    }
+    std::ranges::sort(waits);
+    return {waits[waits.size() / 2], static_cast<double>(waits.size()) / (kEnd - 1)};
+}
+
+} // namespace
+
+TEST_CASE("pictures do not wait at a client that is slower than the renderer, and none is kept from a faster one") {
+    const Shown slow = pictures_shown(0.02, 1);
+    CHECK(slow.wait_s < 0.029); // 22 ms are its own; at once sent, the second would wait for up to 20
+    CHECK(slow.rate > 40);      // of 50
+    const Shown parallel = pictures_shown(0.012, 2);
+    CHECK(parallel.wait_s < 0.016);
+    CHECK(parallel.rate > 105); // of 125
+    const Shown fast = pictures_shown(0.004, 1);
+    CHECK(fast.wait_s < 0.008);
+    CHECK(fast.rate > 115);
 }
 
 TEST_CASE("a slow link gets smaller pictures and a fast one good ones") {
@@ -163,10 +216,10 @@ TEST_CASE("a slow link gets smaller pictures and a fast one good ones") {
         const std::size_t bytes = bytes_of(slow);
         slow.sent(i, bytes, slow_now);
         slow_now += 0.02 + static_cast<double>(bytes) / 1e5;
-        slow.acknowledged(i, slow_now);
+        slow.acknowledged(i, slow_now, 0.001);
         fast.sent(i, bytes_of(fast), fast_now);
         fast_now += 0.005;
-        fast.acknowledged(i, fast_now);
+        fast.acknowledged(i, fast_now, 0.001);
     }
     CHECK(slow.quality() <= 40);
     CHECK(slow.scale() < 1);
@@ -183,7 +236,7 @@ TEST_CASE("a far link is not taken for a slow one") {
         const auto bytes =
             static_cast<std::size_t>(1000.0 * pace.quality() * static_cast<double>(pace.scale() * pace.scale()));
         pace.sent(i, bytes, now);
-        pace.acknowledged(i, now += 0.25 + static_cast<double>(bytes) / 1e7);
+        pace.acknowledged(i, now += 0.25 + static_cast<double>(bytes) / 1e7, 0.001);
     }
     CHECK(pace.quality() >= 80);
     CHECK(pace.scale() == 1);
@@ -236,12 +289,12 @@ TEST_CASE("pieces of a still picture say nothing of how well moving ones come th
     double now = 0;
     for (uint32_t i = 1; i < 30; ++i) {
         pace.sent(i, 1000, now);
-        pace.acknowledged(i, now += 0.01);
+        pace.acknowledged(i, now += 0.01, 0.001);
     }
     const int quality = pace.quality();
     for (uint32_t i = 30; i < 40; ++i) {
         pace.sent(i, 1 << 20, now, true);
-        pace.acknowledged(i, now += 1);
+        pace.acknowledged(i, now += 1, 0.001);
     }
     CHECK(pace.quality() == quality);
 }
@@ -273,9 +326,9 @@ TEST_CASE("a client is sent nothing before its hello, then the welcome first, an
     audience.picture_leaves(next(audience), 100, 100, 0);
     for (int i = 0; i < 5; ++i) audience.publish(small_frame(), 0);
     CHECK(next(audience).client == 0); // two are under way
-    CHECK_FALSE(audience.is_behind());
+    CHECK_FALSE(audience.is_behind(0.2));
     CHECK(audience.said(1, R"({"type":"ack","frame":)" + std::to_string(first) + R"(,"ms":1})", 0.1).empty());
-    CHECK(audience.is_behind());
+    CHECK(audience.is_behind(0.2));
     CHECK(next(audience).picture->number == 7); // the newest, none of those before
 }
 
