@@ -120,14 +120,14 @@ private:
         now.squares[pixel] = {0, 0};
     }
 
-    /// In how many frames a camera that goes on as it went passes a lobe of this width: what a surface reflects to it
-    /// changes meanwhile.
+    /// In how many frames a camera that goes on as it went passes half a lobe of this width: what a surface reflects to
+    /// it changes meanwhile.
     HD float frames_of_lobe(float alpha, Float4 place) const {
         if (cameras.now.projection == Projection::Orthographic) return kInfinity;
         const Vec3 point = point_at(scene.instances, scene.meshes, place),
                    now_seen = normalize(point - cameras.now.world_from_camera.translation),
                    then_seen = normalize(point - cameras.before.world_from_camera.translation);
-        return max(alpha / max(length(now_seen - then_seen), 1e-6f), 1.0f);
+        return max(0.5f * alpha / max(length(now_seen - then_seen), 1e-6f), 1.0f);
     }
 
     HD static float ratio_of(float was, float is) { return was > 1e-12f ? is / was : 1.0f; }

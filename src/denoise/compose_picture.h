@@ -13,8 +13,8 @@ struct ComposePicture {
 
     HD void operator()(uint32_t i) const {
         Rgb light = frame.light[i].w != 0 ? rgb_of(frame.emission[i]) : Rgb{0, 0, 0};
-        light += rgb_of(signals.diffuse[i]) * divisor_of(rgb_of(frame.albedo[i]));
-        if (frame.splits_light()) light += rgb_of(signals.gloss[i]) * divisor_of(rgb_of(frame.gloss[i]));
+        light += rgb_of(signals.diffuse[i]) * diffuse_divisor(frame, i);
+        if (frame.splits_light()) light += rgb_of(signals.gloss[i]) * gloss_divisor(frame, i);
         picture[i] = with_w(shown_color(light), frame.normal[i].w);
     }
 };

@@ -40,8 +40,8 @@ struct EnlargePicture {
         Rgb seen = light.w != 0 ? rgb_of(features.emission[pixel]) : Rgb{0, 0, 0};
         if (own != kNoHit) {
             const Light at = light_at(pixel, own, normal);
-            seen += at.diffuse * divisor_of(rgb_of(features.albedo[pixel]));
-            if (coarse.has_gloss) seen += at.gloss * divisor_of(rgb_of(features.gloss[pixel]));
+            seen += at.diffuse * diffuse_divisor(features, pixel);
+            if (coarse.has_gloss) seen += at.gloss * gloss_divisor(features, pixel);
         }
         picture[pixel] = with_w(shown_color(seen), normal.w);
     }

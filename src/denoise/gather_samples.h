@@ -104,7 +104,7 @@ struct GatherFeatures {
         const Rgb met = frame.light[pixel].w != 0 ? rgb_of(frame.emission[pixel]) : Rgb{0, 0, 0};
         const SampledSurfaces::Found found = samples.found(pixel);
         if (found.object == kNoHit) return SampledSurfaces::add(sums.met[pixel], met);
-        const Rgb diffuse = divisor_of(rgb_of(frame.albedo[pixel])), gloss = divisor_of(rgb_of(frame.gloss[pixel]));
+        const Rgb diffuse = diffuse_divisor(frame, pixel), gloss = gloss_divisor(frame, pixel);
         if (samples.shows_own(pixel, found)) {
             SampledSurfaces::add(sums.diffuse_color[pixel], diffuse);
             SampledSurfaces::add(sums.gloss_color[pixel], gloss);

@@ -80,4 +80,13 @@ HD inline Rgb divisor_of(Rgb albedo) {
     return {max(albedo.r, kLeastAlbedo), max(albedo.g, kLeastAlbedo), max(albedo.b, kLeastAlbedo)};
 }
 
+/// What the diffuse signal is divided by at a pixel: what its diffuse lobes make of light as the camera sees them, so
+/// that the signal of a place is the same from wherever it is seen.
+HD inline Rgb diffuse_divisor(const NoisyFrameView& frame, uint32_t pixel) {
+    return divisor_of(frame.emission[pixel].w * rgb_of(frame.albedo[pixel]));
+}
+HD inline Rgb gloss_divisor(const NoisyFrameView& frame, uint32_t pixel) {
+    return divisor_of(rgb_of(frame.gloss[pixel]));
+}
+
 } // namespace pertev

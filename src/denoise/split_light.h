@@ -23,8 +23,7 @@ HD inline SplitLight split_light(const NoisyFrameView& frame, uint32_t pixel) {
         diffuse = frame.splits_light() ? rgb_of(frame.diffuse[pixel]) : scattered;
         gloss = frame.splits_light() ? not_negative(scattered - diffuse) : Rgb{0, 0, 0};
     }
-    return {not_negative(diffuse), gloss, divisor_of(rgb_of(frame.albedo[pixel])),
-            divisor_of(rgb_of(frame.gloss[pixel]))};
+    return {not_negative(diffuse), gloss, diffuse_divisor(frame, pixel), gloss_divisor(frame, pixel)};
 }
 
 } // namespace pertev

@@ -72,7 +72,7 @@ struct WaveletPass {
     }
 
 private:
-    static constexpr float kOfGloss = 4; // tolerance
+    static constexpr float kOfGloss = 8; // tolerance
 
     /// How much is made of what tells light apart but by its own value, from least_trust to 1: the less, the more light
     /// strays. Where a sample says little, light of neighbours that face elsewhere is nearer to the truth than its own:

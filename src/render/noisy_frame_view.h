@@ -42,7 +42,7 @@ struct NoisyFrameView {
     Float4* light = nullptr;    // rgb of the sample, W/(sr m2); w: 0 where it was invalid, and counts as black, else 1
     Float4* diffuse = nullptr;  // rgb, what of `light` the first surface scatters by its diffuse lobes. Null: all of
                                 // `light` but `emission`, in scenes that have no other lobes
-    Float4* emission = nullptr; // rgb, what of `light` the camera's ray meets itself
+    Float4* emission = nullptr; // rgb, what of `light` the camera's ray meets itself; Gloss::passage
     Float4* place = nullptr;    // bits of instance (kNoHit: nothing) and primitive, u, v
     Float4* normal = nullptr;   // unit shading normal on the camera's side; depth along the camera's axis, metres
     Float4* albedo = nullptr;   // rgb of diffuse lobes; GGX width of the sharpest other lobe, 1 without one

@@ -49,7 +49,7 @@ struct TakeBounces {
     }
 
 private:
-    /// A path that left the first surface by another lobe has all of its light outside the diffuse part.
+    /// The diffuse part has the same light by a share that was rounded.
     HD void take_out(uint32_t pixel, Rgb light) const {
         Rgb diffuse = light;
         if (film.frame.splits_light()) {

@@ -26,6 +26,7 @@ void set_default_size(RenderSettings& settings, const Camera* own) {
 
 RenderSettings settings_of_frames(RenderSettings settings) {
     settings.path.roulette_depth = std::min(settings.path.roulette_depth, 2u);
+    if (settings.path.roulette == Roulette::FourthRoot) settings.path.roulette = Roulette::NearCubeRoot;
     if (settings.frame_depth) settings.path.max_depth = std::min(settings.path.max_depth, *settings.frame_depth);
     return settings;
 }

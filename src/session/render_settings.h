@@ -66,8 +66,8 @@ PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda);
 void set_default_size(RenderSettings& settings, const Camera* own);
 
 /// `settings` as frames in real time are rendered with them: paths may end from their second vertex on, where those of
-/// pictures may from the third. That takes fewer rays for the same mean light; and there are `frame_depth` scatterings
-/// at most, which is less light.
+/// pictures may from the third, and more of them do (Roulette::NearCubeRoot). That takes fewer rays for the same mean
+/// light; and there are `frame_depth` scatterings at most, which is less light.
 RenderSettings settings_of_frames(RenderSettings settings);
 
 /// Whether both ask for the same picture of the same scene, camera and number of samples.

@@ -10,11 +10,12 @@ namespace pertev {
 struct Gloss {
     Rgb reflectance = {0, 0, 0}; // about the share of light from all around that they scatter, [0, 1]
     float alpha = 1;             // GGX width of the sharpest, [0, 1]; 1 without one
+    float passage = 1;           // share of light that they leave to the eye of what lies beneath, [0, 1]
 };
 
 HD inline Gloss operator+(Gloss a, Gloss b) {
     const Rgb sum = a.reflectance + b.reflectance;
-    return {{min(sum.r, 1.0f), min(sum.g, 1.0f), min(sum.b, 1.0f)}, min(a.alpha, b.alpha)};
+    return {{min(sum.r, 1.0f), min(sum.g, 1.0f), min(sum.b, 1.0f)}, min(a.alpha, b.alpha), a.passage * b.passage};
 }
 
 } // namespace pertev

@@ -9,6 +9,7 @@
 
 #include "formats/read_scene.h"
 #include "session/session.h"
+#include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -214,6 +215,44 @@ TEST_CASE("shared bounces at bent normals seen at grazing angles send nearly the
         CHECK(std::abs(bias.whole) < 0.01);
         CHECK(bias.of_block < 0.04);
     }
+}
+
+TEST_CASE("light beneath a layer that reflects more of it from the side does not lag behind a camera that rises") {
+    Scene scene;
+    add(scene, floor_at(0, 50),
+        {.name = "varnished",
+         .kind = MaterialKind::MetallicRoughness,
+         .base_color = grey(0.8f),
+         .metallic = 0,
+         .roughness = 0.7f});
+    scene.environment = Environment{};
+    constexpr uint32_t kTurn = 32, kTimes = 8; // frames of a turn, and turns, by other samples each
+    const auto camera_at = [](uint32_t frame) {
+        const float angle = 0.05f + 1.3f * static_cast<float>(frame) / static_cast<float>(kTurn - 1);
+        Camera camera;
+        camera.world_from_camera = look_at({0, 5 * std::sin(angle), 5 * std::cos(angle)}, {0, 0, 0}, {0, 1, 0});
+        camera.fov_y = 0.6f;
+        return camera;
+    };
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = queue_asked_for();
+    Session session(queue, prepared, camera_at(kTurn - 1), bias_settings());
+    const Image expected = mean_of_frames(session, of_samples_alone({}), {}, 0, 192);
+    Image mean = {expected.width, expected.height, 3, std::vector<float>(expected.pixels.size())};
+    for (uint32_t turn = 0; turn < kTimes; ++turn) {
+        session.cut();
+        for (uint32_t k = 0; k < kTurn; ++k) {
+            session.set_camera(camera_at(k));
+            session.render_frame(turn * kTurn + k, history_alone());
+        }
+        const Image last = session.frame().picture();
+        for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] += last.pixels[i] / kTimes;
+    }
+    const Bias bias = bias_of(mean, expected);
+    say_bias("layers", "a camera that rises", bias);
+    CHECK(std::abs(bias.whole) < 0.005);
+    CHECK(bias.of_block < 0.01);
 }
 
 TEST_CASE("with a clamp shared bounces send as much as clamped paths do") {

@@ -85,7 +85,7 @@ TEST_CASE("a depth limit of n leaves the first n scatterings, none of them lost 
 
 TEST_CASE("Russian roulette takes no light away and adds none") {
     for (const LightStrategy strategy : test::kLightStrategies) {
-        for (const Roulette roulette : {Roulette::Throughput, Roulette::FourthRoot}) {
+        for (const Roulette roulette : {Roulette::Throughput, Roulette::NearCubeRoot, Roulette::FourthRoot}) {
             CAPTURE(static_cast<int>(strategy));
             CAPTURE(static_cast<int>(roulette));
             PathSettings path;

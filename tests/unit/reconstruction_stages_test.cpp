@@ -282,9 +282,9 @@ float enlarged(const Guide& right, uint32_t fine_object = 7) {
     }
     std::vector<Float4> light(kStagePixels, Float4{0, 0, 0, 1}), black(kStagePixels, Float4{0, 0, 0, 0}),
         place(kStagePixels, Float4{float_of(fine_object), 0, 0, 0}), normal(kStagePixels, Float4{0, 0, 1, 5}),
-        white(kStagePixels, Float4{1, 1, 1, 1}), picture(kStagePixels);
+        white(kStagePixels, Float4{1, 1, 1, 1}), picture(kStagePixels), met(kStagePixels, Float4{0, 0, 0, 1});
     NoisyFrameView features;
-    features.light = light.data(), features.emission = black.data(), features.place = place.data();
+    features.light = light.data(), features.emission = met.data(), features.place = place.data();
     features.normal = normal.data(), features.albedo = white.data(), features.gloss = black.data();
     const EnlargePicture stage = {
         features,
@@ -314,12 +314,12 @@ TEST_CASE("a pixel takes enlarged light from coarse pixels of its object, normal
 
 TEST_CASE("a change of light is known where both pictures show the same surface, and spreads over that alone") {
     std::vector<Float4> light(4, Float4{2, 2, 2, 1}), black(4, Float4{0, 0, 0, 0}), white(4, Float4{1, 1, 1, 1}),
-        place(4, Float4{float_of(7), 0, 0, 0}), normal(4, Float4{0, 0, 1, 5});
+        met(4, Float4{0, 0, 0, 1}), place(4, Float4{float_of(7), 0, 0, 0}), normal(4, Float4{0, 0, 1, 5});
     std::vector<Float4> other_place = place, other_normal = normal, guide(4), was(4), is(4);
     other_place[1].x = float_of(8);
     other_normal[2].w = 9;
     NoisyFrameView after;
-    after.light = light.data(), after.emission = black.data(), after.place = place.data();
+    after.light = light.data(), after.emission = met.data(), after.place = place.data();
     after.normal = normal.data(), after.albedo = white.data(), after.gloss = black.data();
     NoisyFrameView before = after;
     before.place = other_place.data(), before.normal = other_normal.data();

@@ -22,9 +22,8 @@ struct PathQueueView {
     uint32_t* keys;     // written where some surface is blended
     Float4* throughput; // rgb, bits of (depth | rough_depth << 16)
     Float4* radiance;   // rgb, bsdf_pdf; of a path that has ended rgb, bits of the pixel
-    Float4* diffuse; // of the radiance, rgb that went through diffuse lobes of the first vertex; 1 where the path left
-                     // it by one, else 0. Null unless a frame splits light
-    float* times;    // RayQueueView's, as the keys; null unless something moves while the shutter is open
+    Float4* diffuse;    // LightSplit's; null unless a frame splits light
+    float* times;       // RayQueueView's, as the keys; null unless something moves while the shutter is open
 
     /// Of the rays at places 0, 1, ..., or back from `last`.
     RayQueueView query() const {

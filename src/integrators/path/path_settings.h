@@ -18,8 +18,8 @@ enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 
 /// Probability with which a path goes on, by its throughput's largest channel: that itself, or its fourth root, which
 /// ends fewer paths and leaves those that go on with throughputs that differ less. The better default by time to equal
-/// error (docs/performance.md).
-enum class Roulette : uint8_t { Throughput, FourthRoot };
+/// error (docs/performance.md). Its power of 5/16, made of square roots and nearly its cube root, is in between.
+enum class Roulette : uint8_t { Throughput, NearCubeRoot, FourthRoot };
 
 /// Loop is for the CPU, and for tracers that it can walk by itself (SceneTracer::host_trees); else it is Wavefront.
 enum class PathBody : uint8_t { Loop, Wavefront };

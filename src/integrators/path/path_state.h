@@ -22,7 +22,7 @@ struct PathState {
     TriangleId start;              // triangle that the ray leaves
     uint32_t depth = 0;            // scattering vertices so far
     uint32_t rough_depth = 0;      // of which not delta
-    bool is_first_diffuse = false; // the first vertex was left by a diffuse lobe
+    Rgb first_diffuse = {0, 0, 0}; // share of diffuse lobes in what the first vertex scattered, where a frame asks
     float time = kAtRest;          // of all of its rays, while the shutter is open
 };
 
@@ -40,7 +40,7 @@ struct ShadowRay {
 /// split light alone ask for it: the vertex at hand adds to a radiance of nothing, from which the diffuse part is
 /// known.
 struct LightSplit {
-    Float4 diffuse; // rgb; w: 1 where the path left its first vertex by a diffuse lobe, else 0
+    Float4 diffuse; // rgb; w: bits of PathState::first_diffuse, ten a colour
     Rgb before;
 
     /// Before a vertex.
@@ -48,14 +48,25 @@ struct LightSplit {
         diffuse = diffuse_before;
         before = path.radiance;
         path.radiance = {0, 0, 0};
-        path.is_first_diffuse = diffuse.w != 0;
+        path.first_diffuse = unpacked(bits_of(diffuse.w));
     }
     /// After it. Light that the camera's ray itself meets is not scattered.
     HD void put_back(PathState& path) {
-        if (diffuse.w != 0)
-            diffuse = {diffuse.x + path.radiance.r, diffuse.y + path.radiance.g, diffuse.z + path.radiance.b, 1};
-        diffuse.w = path.is_first_diffuse ? 1.0f : 0.0f;
+        const Rgb more = unpacked(bits_of(diffuse.w)) * path.radiance;
+        diffuse = {diffuse.x + more.r, diffuse.y + more.g, diffuse.z + more.b, float_of(packed(path.first_diffuse))};
         path.radiance = before + path.radiance;
+    }
+
+private:
+    static constexpr uint32_t kMost = 1023;
+    HD static uint32_t part(float share) {
+        return static_cast<uint32_t>(to_int(fma(share, static_cast<float>(kMost), 0.5f), 0, kMost));
+    }
+    HD static uint32_t packed(Rgb share) { return part(share.r) | part(share.g) << 10 | part(share.b) << 20; }
+    HD static Rgb unpacked(uint32_t bits) {
+        constexpr float kInv = 1.0f / static_cast<float>(kMost);
+        return kInv * Rgb{static_cast<float>(bits & kMost), static_cast<float>(bits >> 10 & kMost),
+                          static_cast<float>(bits >> 20 & kMost)};
     }
 };
 

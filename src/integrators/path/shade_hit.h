@@ -84,9 +84,8 @@ HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSetting
     shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
     if (splits_light) {
-        const Rgb share =
-            path.depth == 0 ? surface.diffuse_share(wo, light.wi) : grey(path.is_first_diffuse ? 1.0f : 0.0f);
-        shadow.diffuse = share * shadow.contribution;
+        shadow.diffuse =
+            (path.depth == 0 ? surface.diffuse_share(wo, light.wi) : path.first_diffuse) * shadow.contribution;
     }
     if (tells_bounce) shadow.sent = surface.diffuse_share(wo, light.wi) * shadow.contribution;
     events.asks_for_light(surface, wo, light.wi);
@@ -100,13 +99,9 @@ HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSetting
 }
 
 HD inline float survival_probability(Roulette roulette, float throughput) {
-    switch (roulette) {
-    case Roulette::Throughput:
-        return throughput;
-    case Roulette::FourthRoot:
-        break;
-    }
-    return sqrt(sqrt(throughput));
+    if (roulette == Roulette::Throughput) return throughput;
+    const float fourth = sqrt(sqrt(throughput));
+    return roulette == Roulette::FourthRoot ? fourth : fourth * sqrt(sqrt(fourth));
 }
 
 /// Draws where the path goes on. False when it ends here.
@@ -123,7 +118,6 @@ HD INLINE_ON_DEVICE bool scatter(const PathSettings& settings, PathState& path, 
     const Vec3 wi = sample.wi;
     events.goes_on(surface, wo, sample);
 
-    if (path.depth == 0) path.is_first_diffuse = sample.lobe_class == LobeClass::Diffuse;
     path.throughput = path.throughput * sample.weight;
     path.bsdf_pdf = sample.is_delta() ? 0.0f : sample.pdf;
     path.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
@@ -145,9 +139,9 @@ HD INLINE_ON_DEVICE bool scatter(const PathSettings& settings, PathState& path, 
     return true;
 }
 
-/// The surface that a camera ray met, for a frame. Emission follows by itself.
-HD inline void store_first_hit(const NoisyFrameView& frame, const PathState& path, const Hit& hit,
-                               const Surface& surface, Vec3 camera_axis) {
+/// The surface that a camera ray met, for a frame. Emission follows by itself, with what is returned: Gloss::passage.
+HD inline float store_first_hit(const NoisyFrameView& frame, const PathState& path, const Hit& hit,
+                                const Surface& surface, Vec3 camera_axis) {
     const Vec3 normal = surface.frame.normal;
     const float cosine = dot(normal, path.direction);
     const Vec3 seen = cosine > 0 ? -normal : normal;
@@ -156,6 +150,7 @@ HD inline void store_first_hit(const NoisyFrameView& frame, const PathState& pat
     frame.normal[path.pixel] = {seen.x, seen.y, seen.z, dot(surface.position - path.origin, camera_axis)};
     frame.albedo[path.pixel] = {surface.albedo.r, surface.albedo.g, surface.albedo.b, gloss.alpha};
     frame.gloss[path.pixel] = {gloss.reflectance.r, gloss.reflectance.g, gloss.reflectance.b, kFarAway};
+    return gloss.passage;
 }
 
 /// What a path's first bounce has met, before anything is added there. A place that nobody can share is none.
@@ -169,8 +164,8 @@ HD inline Rgb share_onwards(const FirstBounceView& left, uint32_t pixel) {
     return {share.x, share.y, share.z};
 }
 
-HD inline void store_emission(const NoisyFrameView& frame, const PathState& path) {
-    frame.emission[path.pixel] = {path.radiance.r, path.radiance.g, path.radiance.b, 0};
+HD inline void store_emission(const NoisyFrameView& frame, const PathState& path, float passage) {
+    frame.emission[path.pixel] = {path.radiance.r, path.radiance.g, path.radiance.b, passage};
 }
 
 /// A camera ray that met nothing.
@@ -216,7 +211,7 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
         if (tells_bounce && path.depth > 1) {
             left.add_sent(path.pixel, share_onwards(left, path.pixel) * (path.radiance - radiance_before));
         }
-        if (is_frame && path.depth == 0) store_emission(film.frame, path);
+        if (is_frame && path.depth == 0) store_emission(film.frame, path, 1);
         return false;
     }
     constexpr bool kMayMove = kMotion != MotionKnown::None;
@@ -225,8 +220,9 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
     Surface surface = make_surface<kKnown>(scene, hit, kMayMove ? moved.back(path.direction) : path.direction);
     if (kMayMove) moved.move(surface);
     events.meets(surface, path.depth);
+    float passage = 1;
     if (is_frame) {
-        if (path.depth == 0) store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
+        if (path.depth == 0) passage = store_first_hit(film.frame, path, hit, surface, picture.camera.axis);
         if (path.depth == 1) film.frame.gloss[path.pixel].w = hit.t;
     } else if (path.depth == 0) {
         add_first_hit(film, path.pixel, path.sample, {path.origin, path.direction}, hit, surface, picture, path.time);
@@ -243,7 +239,7 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
             add_emission(settings, path, surface.emission, light_pdf);
         }
     }
-    if (is_frame && path.depth == 0) store_emission(film.frame, path);
+    if (is_frame && path.depth == 0) store_emission(film.frame, path, passage);
     if (tells_bounce && path.depth > 1) {
         left.add_sent(path.pixel, share_onwards(left, path.pixel) * (path.radiance - radiance_before));
     }
@@ -259,6 +255,10 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }
     const bool goes_on = scatter(settings, path, surface, wo, events);
+    // Not by the lobe that was drawn: others send light that way, too, and light of glossy ones changes with the view.
+    if (splits_light && goes_on && path.depth == 1) {
+        path.first_diffuse = path.bsdf_pdf > 0 ? surface.diffuse_share(wo, path.direction) : Rgb{0, 0, 0};
+    }
     if (is_bounce && goes_on && path.bsdf_pdf > 0) { // by a delta lobe nothing can be shared
         const Rgb share = surface.diffuse_share(wo, path.direction);
         left.onwards[path.pixel] = {share.r, share.g, share.b, 0};

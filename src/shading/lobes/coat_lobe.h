@@ -19,7 +19,10 @@ struct CoatLobe {
 
     HD LobeClass lobe_class() const { return interface().lobe_class(); }
     HD float energy() const { return strength * interface().energy(); }
-    HD Gloss gloss(float cos_o) const { return {strength * fresnel_schlick(cos_o, grey(f0)), alpha}; }
+    HD Gloss gloss(float cos_o) const {
+        const Gloss whole = interface().gloss(cos_o);
+        return {strength * whole.reflectance, alpha, 1.0f - strength * (1.0f - whole.passage)};
+    }
     HD SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (interface().is_smooth()) branches.mirror = strength * fresnel_schlick(abs(wo.z), grey(f0));

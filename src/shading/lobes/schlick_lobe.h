@@ -50,7 +50,12 @@ struct SchlickLobe {
     HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
     HD LobeClass lobe_class() const { return is_smooth() ? LobeClass::Specular : LobeClass::Glossy; }
     HD float energy() const { return max_component(fresnel_schlick_average(mixed_f0())); }
-    HD Gloss gloss(float cos_o) const { return {fresnel_schlick(cos_o, mixed_f0()), alpha}; }
+    HD Gloss gloss(float cos_o) const {
+        const Average average = make_average();
+        const Albedo at_o = albedo_at(cos_o, average);
+        const Rgb f0s = mixed_f0(), once = (1.0f - at_o.lost) * (f0s + at_o.schlick * (grey(1) - f0s));
+        return {once + at_o.lost * average.more, alpha, 1.0f - at_o.coat};
+    }
     HD SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
         if (is_smooth()) branches.mirror = fresnel_schlick(abs(wo.z), mixed_f0());
