@@ -56,7 +56,10 @@ for part in "${parts[@]}"; do
         rm "$box"
         run "$bin/pertev" bench
         run "$bin/pertev" bench rays --check
-        run "$bin/pertev" bench build
+        run "$bin/pertev" bench build --compare
+        for size in 1920x1080 3840x2160; do
+            run "$bin/pertev" bench frames "$scenes/crytek-sponza/sponza.obj" --size $size
+        done
         ;;
     viewer) # nvJPEG is found in the bundle's lib/, too (the file libnvjpeg.so.13 of PyPI's nvidia-nvjpeg), or by LD_LIBRARY_PATH
         run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj"
