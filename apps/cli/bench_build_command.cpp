@@ -75,8 +75,8 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
         return sbvh_cost > 0 ? static_cast<double>(cost) / static_cast<double>(sbvh_cost) : 0.0;
     };
     if (flags.compare) {
-        for (const BvhBuilder builder :
-             {BvhBuilder::SpatialSplits, BvhBuilder::Reinsertion, BvhBuilder::Binned, BvhBuilder::Ploc}) {
+        for (const BvhBuilder builder : {BvhBuilder::SpatialSplits, BvhBuilder::SpatialReinsertion,
+                                         BvhBuilder::Reinsertion, BvhBuilder::Binned, BvhBuilder::Ploc}) {
             reporter.set_work(fmt::format("{}: building by {}", name, bvh_builder_name(builder)));
             const Stopwatch watch;
             const CompressedBvh bvh = make_compressed_bvh(build_bvh(builder, triangles));
@@ -132,7 +132,8 @@ void add_bench_build_command(CLI::App& bench, int& status) {
     verb.add_option("--runs", flags->runs, "timed (3 on the CPU, 25 in CUDA)")
         ->type_name("N")
         ->check(whole_between(1, 10000));
-    verb.add_flag("--compare", flags->compare, "build by sbvh, reinsertion, binned and ploc on the CPU too");
+    verb.add_flag("--compare", flags->compare,
+                  "build by sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU too");
     add_machine_flags(verb, flags->machine);
     add_report_flags(verb, flags->report);
     verb.callback([&verb, flags, &status] {

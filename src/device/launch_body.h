@@ -16,6 +16,14 @@ __global__ void __launch_bounds__(128) run_stage(Stage stage, WorkCount count) {
     const uint64_t i = uint64_t(blockIdx.x) * blockDim.x + threadIdx.x;
     if (i < count.value()) stage(uint32_t(i));
 }
+
+template <class Stage>
+__global__ void __launch_bounds__(Stage::kShape.threads, Stage::kShape.wanted)
+    run_whole_blocks(Stage stage, WorkCount count) {
+    const uint64_t first = uint64_t(blockIdx.x) * blockDim.x, i = first + threadIdx.x;
+    const uint32_t indices = count.value();
+    if (first < indices) stage(uint32_t(i), i < indices);
+}
 #endif
 
 #if defined(__CUDACC__)
@@ -24,9 +32,15 @@ template <class Stage>
 void launch_on_gpu(Queue& queue, const char* name, WorkCount count, const Stage& stage) {
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
-    constexpr uint32_t threads = 128;
-    const uint32_t blocks = uint32_t((uint64_t(count.most) + threads - 1) / threads);
-    run_stage<<<blocks, threads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count);
+    const auto stream = static_cast<cudaStream_t>(queue.stream());
+    const auto blocks_of = [&](uint64_t threads) { return uint32_t((uint64_t(count.most) + threads - 1) / threads); };
+    if constexpr (WholeBlockStage<Stage>) {
+        constexpr uint32_t threads = Stage::kShape.threads;
+        run_whole_blocks<<<blocks_of(threads), threads, 0, stream>>>(stage, count);
+    } else {
+        constexpr uint32_t threads = 128;
+        run_stage<<<blocks_of(threads), threads, 0, stream>>>(stage, count);
+    }
     queue.check_launch();
 }
 #endif
@@ -38,7 +52,13 @@ void launch(Queue& queue, const char* name, WorkCount count, const Stage& stage)
 #endif
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
-    parallel_for(count.value(), 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    parallel_for(count.value(), 256, [&](uint64_t i) {
+        if constexpr (WholeBlockStage<Stage>) {
+            stage(static_cast<uint32_t>(i), true);
+        } else {
+            stage(static_cast<uint32_t>(i));
+        }
+    });
 }
 
 } // namespace pertev

@@ -3,6 +3,7 @@
 // The stages of a wavefront whose light goes to layers of light-path expressions too, or whose picture is one of
 // irradiance: in place of ShadeHits, and after AddLight.
 
+#include "device/launch.h"
 #include "integrators/path/generate_path.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/shade_to_layers.h"
@@ -33,34 +34,41 @@ struct ShadeHitsToLayers {
     RoundCounts* round;
     uint32_t last; // ShadeHits'
 
-    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
-        const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
-        PathState path = paths.load(place);
-        if (kMotion != MotionKnown::None || (path.depth == 0 && picture.camera.motion.moves())) {
-            path.time = time_of(picture.camera, settings, path);
-        }
-        const Hit hit = hits.load(place);
-        const uint32_t key = path_key(path, settings.seed, true);
+    static constexpr BlockShape kShape = {128, 1};
+
+    HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
+        const RoundLists lists;
+        PathState path;
         LightPathState state = layers.begin();
-        if (layers.is_there() && path.depth > 0) state = {layered.states[place].x, layered.states[place].y};
         ShadowRay shadow;
         LayerShadow parts;
-        bool wants_shadow = false;
-        const bool goes_on = shade_hit_to_layers<kMotion>(picture, settings, film, layers, is_meter, state, path, hit,
-                                                          shadow, wants_shadow, parts);
-        uint32_t to = 0;
+        TriangleId here;
+        uint32_t key = 0;
+        bool goes_on = false, wants_shadow = false;
+        if (is_there) {
+            const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
+            path = paths.load(place);
+            if (kMotion != MotionKnown::None || (path.depth == 0 && picture.camera.motion.moves())) {
+                path.time = time_of(picture.camera, settings, path);
+            }
+            const Hit hit = hits.load(place);
+            key = path_key(path, settings.seed, true);
+            here = {hit.instance, hit.primitive};
+            if (layers.is_there() && path.depth > 0) state = {layered.states[place].x, layered.states[place].y};
+            goes_on = shade_hit_to_layers<kMotion>(picture, settings, film, layers, is_meter, state, path, hit, shadow,
+                                                   wants_shadow, parts);
+        }
+        const auto [to, ray] = take_places(lists, *round, last, is_there, goes_on, wants_shadow);
+        if (!is_there) return;
         if (goes_on) {
-            to = atomic_add(&round->next, 1u);
             next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
             if (kMotion != MotionKnown::None) next.times[to] = path.time;
             if (layers.is_there()) layered.next_states[to] = {state.red_green, state.blue};
         } else {
-            to = last - atomic_add(&round->ended, 1u);
             next.store_ended(to, path);
         }
         if (!wants_shadow) return;
-        const uint32_t ray = atomic_add(&round->shadows, 1u);
-        shadows.store<false>(ray, shadow, to, path.pixel, {hit.instance, hit.primitive}, key);
+        shadows.store<false>(ray, shadow, to, path.pixel, here, key);
         if (kMotion != MotionKnown::None) shadows.times[ray] = path.time;
         if (!layers.is_there()) return;
         layered.shadow_diffuse[ray] = {parts.diffuse.r, parts.diffuse.g, parts.diffuse.b, float_of(path.pixel)};

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "device/atomic_add.h"
+#include "device/list_places.h"
 #include "integrators/path/path_state.h"
 #include "math/float4.h"
 #include "render/ray_queue.h"
@@ -122,6 +122,20 @@ struct RoundCounts {
     uint32_t next, ended;               // of the active paths, those that go on after it and those that do not
     uint32_t all_begun;                 // 1: no path begins after it
 };
+
+/// Where a vertex stores its path for the next round, or for the film, and its shadow ray.
+struct RoundPlaces {
+    uint32_t path, shadow;
+};
+using RoundLists = BlockLists<3>;
+
+/// `last`: place of the first path that ends.
+HD inline RoundPlaces take_places(const RoundLists& lists, RoundCounts& round, uint32_t last, bool is_there,
+                                  bool goes_on, bool wants_shadow) {
+    const bool ends = is_there && !goes_on;
+    const ListPlaces<3> places = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, wants_shadow});
+    return {ends ? last - places.at[1] : places.at[0], places.at[2]};
+}
 
 /// Of all rounds of a render.
 struct RenderCounts {

@@ -3,6 +3,7 @@
 // The stages of a wavefront of paths, in the order in which path_integrator.cpp launches them. Each does for one index
 // what the CPU's loop does in one line, through the same functions.
 
+#include "device/launch.h"
 #include "integrators/path/generate_path.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/shade_hit.h"
@@ -65,35 +66,45 @@ struct ShadeHits {
     RoundCounts* round;
     uint32_t last; // place of the first fresh path, and of the first one that ends
 
-    HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
-        const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
-        PathState path = paths.load(place);
-        if (kMotion != MotionKnown::None) path.time = time_of(picture.camera, settings, path);
-        const Hit hit = hits.load(place);
-        const uint32_t key = path_key(path, settings.seed, true);
-        const TriangleId here = {hit.instance, hit.primitive};
-        ShadowRay shadow;
-        bool wants_shadow = false;
+    // Measured (docs/performance.md). Where there is much code, warps that wait for each other fetch it together.
+    static constexpr BlockShape kShape = kKnown == MaterialsKnown::PlainDiffuse ? BlockShape{128, 6}
+                                         : kKnown == MaterialsKnown::Diffuse    ? BlockShape{512, 2}
+                                         : kMayBeFrame                          ? BlockShape{512, 1}
+                                                                                : BlockShape{384, 2};
+
+    HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
+        const RoundLists lists;
         const bool splits_light = kMayBeFrame && kKnown == MaterialsKnown::Nothing && paths.diffuse != nullptr;
+        PathState path;
         LightSplit split;
-        if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
-        uint32_t to = 0;
-        const bool goes_on = shade_hit<kKnown, kMayBeFrame, kMayLeave, kMotion>(picture, settings, film, path, hit,
-                                                                                shadow, wants_shadow);
-        if (splits_light) split.put_back(path);
-        if (goes_on) {
-            to = atomic_add(&round->next, 1u);
-            next.store(to, path, settings.seed, picture.scene.any_alpha != 0);
-            if (keeps_times(next.times)) next.times[to] = path.time;
-        } else {
-            to = last - atomic_add(&round->ended, 1u);
-            next.store_ended(to, path);
+        ShadowRay shadow;
+        TriangleId here;
+        uint32_t key = 0;
+        bool goes_on = false, wants_shadow = false;
+        if (is_there) {
+            const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
+            path = paths.load(place);
+            if (kMotion != MotionKnown::None) path.time = time_of(picture.camera, settings, path);
+            const Hit hit = hits.load(place);
+            key = path_key(path, settings.seed, true);
+            here = {hit.instance, hit.primitive};
+            if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
+            goes_on = shade_hit<kKnown, kMayBeFrame, kMayLeave, kMotion>(picture, settings, film, path, hit, shadow,
+                                                                         wants_shadow);
+            if (splits_light) split.put_back(path);
         }
-        if (splits_light) next.diffuse[to] = split.diffuse;
+        const RoundPlaces places = take_places(lists, *round, last, is_there, goes_on, wants_shadow);
+        if (!is_there) return;
+        if (goes_on) {
+            next.store(places.path, path, settings.seed, picture.scene.any_alpha != 0);
+            if (keeps_times(next.times)) next.times[places.path] = path.time;
+        } else {
+            next.store_ended(places.path, path);
+        }
+        if (splits_light) next.diffuse[places.path] = split.diffuse;
         if (wants_shadow) {
-            const uint32_t ray = atomic_add(&round->shadows, 1u);
-            shadows.store<kMayLeave>(ray, shadow, to, path.pixel, here, key);
-            if (keeps_times(shadows.times)) shadows.times[ray] = path.time;
+            shadows.store<kMayLeave>(places.shadow, shadow, places.path, path.pixel, here, key);
+            if (keeps_times(shadows.times)) shadows.times[places.shadow] = path.time;
         }
     }
 
