@@ -41,7 +41,8 @@ class Bench(CliTest):
     def test_builds_have_ratios_on_one_card_alone(self):
         line = ["bench", "build", "--scene", "cornell-box", "--device", "cpu", "--runs", "1"]
         made = self.succeed(*line, "--compare", "--json").events("build")
-        self.assertEqual([of["tree"] for of in made], ["sbvh", "reinsertion", "binned", "ploc", "hploc"])
+        trees = ["sbvh", "sbvh-reinsertion", "reinsertion", "binned", "ploc", "hploc"]
+        self.assertEqual([of["tree"] for of in made], trees)
         for of in made:
             self.assertIsNone(of["ratio_to_optix_fast_trace"])
             self.assertIsNone(of["ratio_to_optix_fast_build"])

@@ -95,6 +95,18 @@ class HowPicturesAreShown(CliTest):
         self.assertTrue(100 < sum(green for _, green, _ in surfaces) / len(surfaces) < 160)
 
 
+class RecordedPictures(CliTest):
+    """Whoever changes one of them says why, and records it anew (docs/performance.md has the second one)."""
+
+    def test_the_cornell_box_has_the_bytes_that_were_recorded(self):
+        recorded = {("320x240", 4): "ac245b79834309455f77746a055129b2",
+                    ("640x360", 1): "222529ebdf8a58d54f8155a0322d65c5"}
+        for (size, spp), picture in recorded.items():
+            said = self.succeed("render", "cornell-box", "-o", "x.exr", "--size", size, "--spp", spp, "--device", "cpu",
+                                "--json")
+            self.assertEqual(said.events("done")[0]["hash"], picture)
+
+
 class WhatHalfACameraSees(CliTest):
     def notices(self, *arguments, scene):
         said = self.succeed("render", scene, "-o", "x.exr", "--size", "32x32", "--spp", 4, "--device", "cpu", "--json",
