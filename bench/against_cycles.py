@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Times whole pictures on the CPU against Cycles, in turns: `bench/against_cycles.py PERTEV [--pairs N]`.
 
-Needs PyPI's bpy (Cycles 5; `pip install bpy`) and PERTEV_SCENES (docs/scenes.md). Two jobs, both with a box filter of one
-pixel: S8 of `pertev bench render`, and Bitterli's Cornell box with the depth of its file. Prints for each pair how many
+Needs PyPI's bpy (Cycles 5; `pip install bpy`) and PERTEV_SCENES (docs/scenes.md). Three jobs, all with a box filter of one
+pixel: S8 of `pertev bench render`, with its roulette and with that of `pertev render`, and Bitterli's Cornell box with the
+depth of its file. Prints for each pair how many
 samples a second, without reading and trees (Cycles: by the difference of two numbers of samples), and how fast to equal
 error: samples a second times error of a picture of the same number of samples, where the error is the mean over pixels of
 variance / (mean^2 + 0.01), from two pictures of other seeds.
@@ -13,6 +14,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import statistics
 import subprocess
 import sys
@@ -135,6 +137,24 @@ class Sponza:
         return ["bench", "render", "--job", "S8", "--scene", self.file, "-o", path]
 
 
+class SponzaByDefault(Sponza):
+    """The same scene as a file for `pertev render`, whose paths end as they do by default."""
+
+    name = "S8 by the roulette of render"
+
+    def __init__(self, scenes, folder, threads):
+        super().__init__(scenes, folder, threads)
+        pathlib.Path(folder, "grey.mtl").write_text("newmtl grey\nKd 0.7 0.7 0.7\n")
+        kept = [line for line in self.file.read_text().splitlines() if line[:2] in ("v ", "f ")]
+        faces = [re.sub(r"/\S*", "", line) for line in kept]  # positions alone
+        self.file = pathlib.Path(folder, "grey.obj")
+        self.file.write_text("\n".join(["mtllib grey.mtl", "usemtl grey", *faces, ""]))
+
+    def arguments(self, path):
+        return ["render", self.file, "-o", path, "--filter", "box", "--max-depth", 8, "--environment", "1,1,1",
+                "--eye=-110,18,-2", "--target=60,32,-4", "--fov", 60]
+
+
 class CornellBox:
     name, width, height, samples = "cornell-box", 512, 512, 16
 
@@ -181,7 +201,7 @@ def main():
     arguments = parser.parse_args()
     scenes = pathlib.Path(os.environ["PERTEV_SCENES"])
     with tempfile.TemporaryDirectory() as folder:
-        for make in (Sponza, CornellBox):
+        for make in (Sponza, SponzaByDefault, CornellBox):
             job = make(scenes, folder, arguments.threads)
             ours = [pathlib.Path(folder, f"ours-{seed}.exr") for seed in (1, 2)]
             theirs = [pathlib.Path(folder, f"theirs-{seed}.exr") for seed in (1, 2)]
