@@ -42,9 +42,26 @@ HD inline float float_of(uint32_t bits) {
     return x;
 }
 
-HD inline float abs(float x) { return float_of(bits_of(x) & 0x7fffffffu); }
+HD inline float abs(float x) {
+#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
+    return ::fabsf(x); // a part of the instruction that takes it
+#else
+    return float_of(bits_of(x) & 0x7fffffffu);
+#endif
+}
 HD inline float copysign(float magnitude, float sign) {
     return float_of((bits_of(magnitude) & 0x7fffffffu) | (bits_of(sign) & 0x80000000u));
+}
+/// 1 / x, correctly rounded, for 2^-126 <= |x| < 2^126. On the device by the three instructions that the compiler takes
+/// for these x too, without its branch to the others.
+HD inline float reciprocal_of_normal(float x) {
+#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
+    float r;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(x));
+    return ::fmaf(r, ::fmaf(-x, r, 1.0f), r);
+#else
+    return 1.0f / x;
+#endif
 }
 HD inline bool is_finite(float x) { return (bits_of(x) & 0x7f800000u) != 0x7f800000u; }
 HD inline float sqrt(float x) { return ::sqrtf(x); }

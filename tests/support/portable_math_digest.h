@@ -1,7 +1,7 @@
 #pragma once
 
-// One number per (function of portable_math.h, 32-bit input), on host and device: comparing a sum or hash of these over
-// all 2^32 inputs shows whether two compilers or devices compute one and the same function.
+// One number per (function of portable_math.h or scalar.h, 32-bit input), on host and device: comparing a sum or hash
+// of these over all 2^32 inputs shows whether two compilers or devices compute one and the same function.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace pertev::test {
 
-inline constexpr int kPortableFunctionCount = 16;
+inline constexpr int kPortableFunctionCount = 17;
 
 HD inline const char* portable_function_name(int function) {
     switch (function) {
@@ -46,6 +46,8 @@ HD inline const char* portable_function_name(int function) {
         return "pow";
     case 15:
         return "atan2";
+    case 16:
+        return "reciprocal_of_normal";
     }
     return "";
 }
@@ -58,6 +60,9 @@ HD inline float portable_second_argument(uint32_t input) {
     if ((h & 3) != 0) return float_of(h * 0xc2b2ae3du);
     return float_of((h & 0x80ffffffu) + 0x3f000000u); // +-[0.5, 2^1.99]
 }
+
+/// What reciprocal_of_normal takes; of other inputs its value counts as 0.
+HD inline bool has_reciprocal(float x) { return abs(x) >= 0x1p-126f && abs(x) < 0x1p126f; }
 
 /// Bits of function(input as a float). sin_cos_2pi takes the input as a fraction of 2^32; what it gives is in
 /// [-1, 1]. The functions of two arguments take portable_second_argument() as the second.
@@ -101,6 +106,8 @@ HD inline uint32_t portable_math_value(int function, uint32_t input) {
         return bits_of(pow(x, portable_second_argument(input)));
     case 15:
         return bits_of(atan2(x, portable_second_argument(input)));
+    case 16:
+        return has_reciprocal(x) ? bits_of(reciprocal_of_normal(x)) : 0;
     }
     return 0;
 }

@@ -48,7 +48,7 @@ HD inline CompressedAxis make_compressed_axis(const CompressedBvhNode& node, int
                                               float grow) {
     const bool backwards = inv < 0;
     const float s = quantum(node, axis), from = node.origin[axis] - origin;
-    const float out = fma(0x1p-7f, s, grow) * ::fabsf(inv); // not abs(), which the device takes an instruction for
+    const float out = fma(0x1p-7f, s, grow) * abs(inv);
     CompressedAxis r;
     r.step = s * inv;
     r.near = fma(from, inv, -out);
@@ -106,7 +106,12 @@ HD inline uint32_t least_entry(const float (&entries)[8], uint32_t slots, float 
 HD inline uint32_t nearest_slot(uint32_t slots, Vec3 inv) {
     const auto keep_nearer = [&slots](float along, uint32_t lower_half) {
         const uint32_t backwards = 0u - (bits_of(along) >> 31);
+#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
+        uint32_t nearer; // (a ^ b) & c at once, which ptxas does not make of it
+        asm("lop3.b32 %0, %1, %2, %3, 0x28;" : "=r"(nearer) : "r"(backwards), "r"(lower_half), "r"(slots));
+#else
         const uint32_t nearer = slots & (backwards ^ lower_half);
+#endif
         slots = nearer != 0 ? nearer : slots;
     };
     keep_nearer(inv.z, 0x0f);

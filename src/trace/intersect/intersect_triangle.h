@@ -30,7 +30,7 @@ HD inline RayShear make_ray_shear(Vec3 direction) {
     const int kz = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
     const int kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
     const float dz = component(direction, kz);
-    return {kx, ky, kz, component(direction, kx) / dz, component(direction, ky) / dz, 1.0f / dz};
+    return {kx, ky, kz, component(direction, kx) / dz, component(direction, ky) / dz, reciprocal_of_normal(dz)};
 }
 
 /// `p`, relative to the ray's origin, with the direction turned to +z. Same rounding for every caller.
@@ -46,7 +46,7 @@ HD inline Vec3 shear(Vec3 p, const RayShear& ray) {
 /// The least |x| of three. Where one is NaN the triangle is not hit, whatever comes out.
 HD inline float least_size(float a, float b, float c) {
 #if PERTEV_ON_DEVICE
-    return ::fminf(::fabsf(a), ::fminf(::fabsf(b), ::fabsf(c))); // two instructions, where abs() and min() take seven
+    return ::fminf(abs(a), ::fminf(abs(b), abs(c))); // two instructions, where min() takes four
 #else
     return min(abs(a), min(abs(b), abs(c)));
 #endif
@@ -75,7 +75,8 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
 
     const float det = ea + eb + ec;
     if (det == 0) return false;
-    const float inv = 1.0f / det, u = eb * inv, v = ec * inv;
+    // Of three numbers alike in sign, each at least 2^-100, or of numbers whose sizes add up to 1.
+    const float inv = reciprocal_of_normal(det), u = eb * inv, v = ec * inv;
     const float t = (ea * inv * pa.z + u * pb.z + v * pc.z) * ray.sz;
     if (!(t > t_min && t < t_max)) return false; // so written that NaN (bad vertex) is a miss
     hit = {t, u, v};

@@ -37,6 +37,9 @@ HD inline float least_bits(float a, float b, float c) {
     return float_of(static_cast<uint32_t>(min(min(x, y), z)));
 }
 
+/// The greatest |component|. Where one is NaN it may be left out.
+HD inline float greatest_size(Vec3 v) { return box_max(abs(v.x), box_max(abs(v.y), abs(v.z))); }
+
 struct RayBoxes {
     Vec3 inv; // 1 / direction, where a component near 0 counts as +-2^-80
     Vec3 lo;  // -(origin + e) / direction: what takes a lower plane, moved out, to its parameter
@@ -47,7 +50,7 @@ HD inline float guard_direction(float d) { return abs(d) < 0x1p-80f ? copysign(0
 
 /// e: how far planes move out.
 HD inline float box_growth(Vec3 origin, float bounds_max_abs) {
-    return 0x1p-20f * (max_component(abs(origin)) + bounds_max_abs);
+    return 0x1p-20f * (greatest_size(origin) + bounds_max_abs);
 }
 
 /// `bounds_max_abs` is of the whole tree; `growth` multiplies e (1 within a mesh).

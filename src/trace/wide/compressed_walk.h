@@ -67,9 +67,11 @@ struct CompressedPlace {
     static constexpr int kSlots = 2 * kMaxBvhDepth;
     static constexpr int kRefillBelow = 24; // for dynamic fetch
 
-    // [kSlots], an array of its own: see WalkStack. In local memory on the device: pushes are few, and a top of the
-    // stack in shared memory, as theirs, would be taken from the L1 cache that all nodes are gathered through.
+    // [kSlots], an array of its own: see WalkStack. In local memory on the device: pushes are few, and more of the
+    // stack in shared memory, as theirs, would be taken from the L1 cache that all nodes are gathered through. Its top
+    // is held in registers, so that no lane waits for one that it pops: [k] lies below entry k, [0] below the first.
     Slot* slots;
+    Slot top = 0;
     int size = 0;
     NodeGroup nodes = {0, 0};
     TriangleGroup triangles = {0, 0, 0}; // found, and put off
@@ -78,7 +80,7 @@ struct CompressedPlace {
 
     HD explicit CompressedPlace(Slot* memory) : slots(memory) {}
 
-    HD bool is_done() const { return nodes.is_empty() && triangles.is_empty(); }
+    HD bool is_done() const { return nodes.is_empty() && triangles.is_empty() && size == 0; }
     HD void stop() {
         size = 0;
         nodes.left = triangles.left = 0;
@@ -94,25 +96,27 @@ struct CompressedPlace {
         return {node->triangle_base, node->triangles, 0};
 #endif
     }
-    HD void push(uint32_t lower, uint32_t left) { slots[size++] = uint64_t(left) << 32 | lower; }
+    HD void push(uint32_t lower, uint32_t left) {
+        slots[size++] = top;
+        top = uint64_t(left) << 32 | lower;
+    }
 
-    /// Takes what comes next from the stack, but for nodes entered beyond `limit`. Triangles that meet others which are
-    /// put off stay there, and the ray waits.
+    /// Takes one entry from the stack, where there is need of it; a node entered beyond `limit` is dropped. Triangles
+    /// that meet others which are put off stay there, and the ray waits. One a turn: the next turn takes another one
+    /// sooner than a loop would bring a warp's lanes together again.
     HD void refill(const CompressedBvhView& bvh, float limit) {
-        while (nodes.is_empty() && size > 0) {
-            const Slot top = slots[size - 1];
-            const uint32_t lower = static_cast<uint32_t>(top), left = static_cast<uint32_t>(top >> 32);
-            if (left >= 1u << 24) {
-                const NodeGroup group = {lower, left};
-                if (!kRtaAtPops || group.entry() <= limit) nodes = group;
-            } else if (triangles.is_empty()) {
-                triangles = load_triangles(bvh.nodes + lower);
-                triangles.left = left;
-            } else {
-                return;
-            }
-            --size;
+        if (!nodes.is_empty() || size == 0) return;
+        const uint32_t lower = static_cast<uint32_t>(top), left = static_cast<uint32_t>(top >> 32);
+        const bool has_nodes = left >= 1u << 24;
+        if (!has_nodes && !triangles.is_empty()) return;
+        if (has_nodes) {
+            const NodeGroup group = {lower, left};
+            if (!kRtaAtPops || group.entry() <= limit) nodes = group;
+        } else {
+            triangles = load_triangles(bvh.nodes + lower);
+            triangles.left = left;
         }
+        top = slots[--size];
     }
 };
 
@@ -154,6 +158,7 @@ struct CompressedWalk {
                     place.stop();
                 }
             } while (are_enough());
+            if (kOptions.rta && visitor.limit() < place.segment.end) place.segment.shorten(visitor.limit());
         }
         place.refill(bvh, skip_beyond<kOptions>(visitor, ray));
         return ended;
@@ -178,11 +183,11 @@ private:
         float entries[8];
         const uint32_t entered = enters_slots(ray.origin, place.segment, node, entries);
         const uint32_t found = triangles_of_slots(node, entered);
-        if (place.triangles.is_empty()) {
-            place.triangles = {node.triangle_base, node.triangles, found};
-        } else if (found != 0) {
-            place.push(index, found);
-        }
+        const bool waits = !place.triangles.is_empty(); // selects, not branches, which would part the lanes
+        if (waits & (found != 0)) place.push(index, found);
+        place.triangles.base = waits ? place.triangles.base : node.triangle_base;
+        place.triangles.all = waits ? place.triangles.all : node.triangles;
+        place.triangles.left = waits ? place.triangles.left : found;
         const uint32_t inner = entered & inner_slots(node);
         place.nodes = {node.child_base, (node.exponents_and_inner & 0xff000000u) | inner};
         if (Place::kRtaAtPops) {
@@ -201,10 +206,7 @@ private:
         const BvhTriangle triangle = load_aligned(at);
         TriangleHit hit;
         if (!Tests::intersect(ray, place.prepared, triangle.a, triangle.b, triangle.c, hit)) return false;
-        const float before = visitor.limit();
-        const bool ended = visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit);
-        if (kOptions.rta && visitor.limit() < before) place.segment.shorten(visitor.limit());
-        return ended;
+        return visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit);
     }
 };
 
