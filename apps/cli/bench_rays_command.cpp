@@ -1,7 +1,8 @@
 // pertev bench rays: how many rays a second the walk of pictures traces, on sets of rays that other tracers can be
 // timed on (docs/ray_sets.md). What the record says of the same sets stands beside, and our rate over the best public
-// tracer's where both are of the same rays on the same card (lab/stored_figures.h). On a CPU the same tree is walked
-// with one ray after the other, where pictures go by packets and flights of rays (trace/wide/trace_many.h).
+// tracer's where both are of the same rays on the same card (lab/stored_figures.h). The tree is the best one unless
+// --build asks for another. On a CPU it is walked with one ray after the other, where pictures go by packets and
+// flights of rays (trace/wide/trace_many.h).
 
 #include <algorithm>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/tracer_flags.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "formats/read_scene.h"
@@ -34,12 +36,13 @@ struct RaysFlags {
     SceneOptions camera; // --eye, --target and --fov of it
     uint32_t count = kRecordRays, runs = 0;
     bool check = false;
+    TracerFlags tracer = {.default_build = TreeBuild::Best}; // no tree's making is timed
     MachineFlags machine;
     ReportFlags report;
 };
 
 struct SetFigures {
-    std::string scene, set, device;
+    std::string scene, set, device, tracer;
     uint64_t rays = 0;
     RunTimes times;
     WorkSummary work;
@@ -92,11 +95,14 @@ const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& cho
     return set.any_hit ? choice.shadow : set.name == "primary" ? choice.camera : choice.bounce;
 }
 
-SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, const PreparedScene& prepared) {
-    SetFigures figures{.set = set.name, .device = queue.device_name(), .rays = set.rays.size()};
+SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, const TracerChoice& choice,
+                   const PreparedScene& prepared) {
+    const Combination& combination = tracer_of_pictures(set, choice);
+    SetFigures figures{
+        .set = set.name, .device = queue.device_name(), .tracer = name_of(combination), .rays = set.rays.size()};
     if (set.rays.empty()) return figures;
     throw_if_interrupted();
-    const Tracer tracer = make_tracer(queue, tracer_of_pictures(set, default_tracers(queue.is_cuda())), prepared);
+    const Tracer tracer = make_tracer(queue, combination, prepared);
     RaysOnDevice rays(queue, set);
     rays.trace(tracer);
     const std::vector<RayHit> hits = rays.hits();
@@ -130,8 +136,8 @@ void print(const SetFigures& f, bool is_checked, Reporter& reporter) {
                               r.hit_share, r.nodes, r.triangles, best)
                 : "null";
         reporter.event(fmt::format(
-            R"({{"event":"rays","scene":{},"set":"{}","device":{},"rays":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"checked":{},"record":{},{}}})",
-            json_string(f.scene), f.set, json_string(f.device), f.rays,
+            R"({{"event":"rays","scene":{},"set":"{}","device":{},"tracer":"{}","rays":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"checked":{},"record":{},{}}})",
+            json_string(f.scene), f.set, json_string(f.device), f.tracer, f.rays,
             beside(f.rays_per_second(), "{:.0f}", f.rays > 0, "null"), json_number(f.times.median),
             json_number(f.times.least), json_number(f.times.greatest), f.times.runs, f.hit_share, f.work.nodes,
             f.work.triangles, f.work.most_nodes, f.work.most_triangles, is_checked, record, ratios_json({&ratio, 1})));
@@ -161,8 +167,8 @@ void print_summary(const std::string& scene, std::span<const double> ratios, Rep
 }
 
 /// `header` is printed before the first row, and is empty after it. Ratios to the best public tracers go to `all`.
-void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, std::string& header,
-                 std::vector<double>& all, Reporter& reporter) {
+void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, const TracerChoice& choice,
+                 std::string& header, std::vector<double>& all, Reporter& reporter) {
     Messages& messages = reporter.messages();
     reporter.set_work(fmt::format("{}: making sets of rays", name));
     Stopwatch watch;
@@ -170,7 +176,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const double load_s = watch.seconds();
     throw_if_interrupted();
     const PreparedScene prepared = // the sets are in the file's coordinates
-        prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .keep_coordinates = true}, messages);
+        prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
     const Tracer tracer = make_tracer(queue, kBinary, prepared);
     const FrameSize frame = record_frame(flags.count);
     const Camera camera = choose_camera(flags.camera, scene, 16.0f / 9.0f, messages);
@@ -190,7 +196,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     std::vector<double> ratios;
     for (std::size_t i = 0; i < sets.size(); ++i) {
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
-        SetFigures figures = measure(queue, sets[i], flags, prepared);
+        SetFigures figures = measure(queue, sets[i], flags, choice, prepared);
         figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
         figures.record = is_moved ? nullptr : record, figures.number = i, figures.triangles = prepared.triangles;
         reporter.answer(std::exchange(header, ""));
@@ -214,6 +220,8 @@ int bench_rays(const RaysFlags& flags) {
     for (const std::string& scene : scenes) check_record_scene(scene);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
+    const TracerChoice choice =
+        tracer_choice(flags.tracer, queue->is_cuda()).value_or(default_tracers(queue->is_cuda()));
     std::string header = fmt::format(
         "{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in the binary tree,\n"
         "nodes of the dearest ray; at the right the best public tracer on one {}, the ratio to it where ours is on\n"
@@ -223,7 +231,7 @@ int bench_rays(const RaysFlags& flags) {
         queue->device_name(), kFiguresDevice, "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
         "tri", "most", "best", "ratio", "hits", "nodes", "tri");
     std::vector<double> ratios;
-    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, header, ratios, reporter);
+    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, choice, header, ratios, reporter);
     if (scenes.size() > 1) print_summary("", ratios, reporter);
     return 0;
 }
@@ -252,6 +260,7 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
         ->type_name("N")
         ->check(whole_between(1, 10000));
     verb.add_flag("--check", flags->check, "compare every hit with the binary walk's on the CPU, bit for bit");
+    add_tracer_flags(verb, flags->tracer, "Tracing");
     add_machine_flags(verb, flags->machine);
     add_report_flags(verb, flags->report);
     verb.callback([&verb, flags, &status] {

@@ -95,6 +95,7 @@ int bench_job(const JobFlags& flags) {
 void add_bench_render_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("render", "One job that other renderers were timed on");
     const auto flags = std::make_shared<JobFlags>();
+    flags->picture.tracer.default_build = TreeBuild::Best; // what is timed is the render alone
     std::vector<std::string> names;
     for (const RecordJob& job : record_jobs()) names.emplace_back(job.name);
     verb.add_option(

@@ -69,7 +69,7 @@ void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group) {
             "--build", flags.build,
             fmt::format("how much time the tree that rays go through is worth ({}):\nfast is built soonest, best "
                         "is gone through soonest; none changes\nthe picture",
-                        name_of(kDefaultBuild)))
+                        name_of(flags.default_build)))
         ->type_name("WHICH")
         ->check(one_of(builds))
         ->group(group);
@@ -85,8 +85,8 @@ void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group) {
 }
 
 std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda) {
-    if (flags.are_empty()) return std::nullopt;
-    TracerChoice choice = default_tracers(on_cuda, tree_build_named(flags.build).value_or(kDefaultBuild));
+    if (flags.are_empty() && flags.default_build == kDefaultBuild) return std::nullopt;
+    TracerChoice choice = default_tracers(on_cuda, tree_build_named(flags.build).value_or(flags.default_build));
     std::set<const Combination*> structure_named, walk_named;
     apply("--structure", flags.structures, choice, list_of(all_structures()),
           [&](Combination& c, const std::string& name) {

@@ -18,7 +18,8 @@ namespace pertev {
 
 /// Each is "NAME" for all rays, or "KIND=NAME" for camera, bounce or shadow rays; the last that names a ray counts.
 struct TracerFlags {
-    std::string build; // empty: kDefaultBuild
+    std::string build; // empty: default_build
+    TreeBuild default_build = kDefaultBuild;
     std::vector<std::string> structures, walks, rta, order, distributions;
 
     bool are_empty() const {
@@ -32,8 +33,8 @@ void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group);
 /// Whether a better tree than --build asks for will do: where no --structure names one.
 inline bool may_be_better(const TracerFlags& flags) { return flags.structures.empty(); }
 
-/// What the flags ask for, the device's default where they say nothing; nothing at all where none is given. Throws
-/// Error(BadInput) where pictures cannot be traced so.
+/// What the flags ask for, the device's default where they say nothing; nothing at all where that is no other than its
+/// default. Throws Error(BadInput) where pictures cannot be traced so.
 std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda);
 
 } // namespace pertev

@@ -10,7 +10,7 @@ class RaysOnTheRecord(CliTest):
 
     def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
         for flag in ["--count 0", "--count -1", "--count 1.5", "--count 4294967297", "--count x", "--runs 0", "--fov 0",
-                     "--fov nan", "--eye 1,2", "--target x", "--device gpu", "--threads 0", "--size 10x10", "--foo"]:
+                     "--fov nan", "--eye 1,2", "--target x", "--device gpu", "--threads 0", "--size 10x10", "--build x", "--walk x", "--foo"]:
             with self.subTest(flag=flag):
                 self.refuse(2, "bench", "rays", "--scene", "cornell-box", *flag.split(), says=[flag.split()[0]])
 
@@ -42,6 +42,7 @@ class RaysOnTheRecord(CliTest):
             self.assertGreater(of["hit_share"], 0.2)
             self.assertLessEqual(of["hit_share"], 1)
             self.assertGreaterEqual(of["most_nodes"], of["nodes"])
+            self.assertTrue(of["tracer"].startswith("sbvh-reinsertion wide8-simd"), of["tracer"])
         again = self.rays("--scene", "cornell-box", "--count", "3000", "--threads", "1")
         self.assertEqual({of["checked"] for of in again}, {False})
         text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "cornell-box", "--count", "3000",
@@ -49,6 +50,13 @@ class RaysOnTheRecord(CliTest):
         self.assertRegex(text, r"\ncornell-box: checked, .*\n$")
         for key in ["hit_share", "nodes", "triangles", "most_nodes"]:
             self.assertEqual([of[key] for of in sets], [of[key] for of in again])
+
+    def test_rays_are_traced_as_the_flags_say(self):
+        for flags, tracer in [("--build fast", "binned wide8-simd"), ("--walk skip-links", "sbvh-reinsertion skip-links"),
+                              ("--structure octree", "octree octree")]:
+            with self.subTest(flags=flags):
+                sets = self.rays("--scene", "cornell-box", "--count", "500", "--check", *flags.split())
+                self.assertEqual([(of["tracer"][:len(tracer)], of["checked"]) for of in sets], [(tracer, True)] * 5)
 
     def test_the_camera_given_is_the_one_used(self):
         write(self.path("floor.obj"), FLOOR)
