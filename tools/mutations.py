@@ -329,4 +329,11 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
              [edit("src/render/opacity/opacity_micromaps.cpp", "if (!have_changed && wanted == made_for_) return;",
                    "if (wanted == made_for_) return;")],
              ["unit/opacity_micromaps"]),
+    Mutation("a vertex that draws its light by its own scattering where eight paths draw at once",
+             [edit("src/integrators/path/vertex_numbers.h", "sample_bits<Word>(kind, key, vertex_light_group(depth), Pair::Last)",
+                   "sample_bits<Word>(kind, key, vertex_group(depth, kGroupScatter), Pair::Last)")],
+             ["unit/vertex_numbers"]),
+    Mutation("choices that are not drawn where a path may end by chance",
+             [edit("src/integrators/path/path_loop.cpp", "has_choices || may_end_by_chance(settings_, path.depth + 1)", "has_choices")],
+             ["unit/vertex_numbers", "consistency/bodies"]),
 ]

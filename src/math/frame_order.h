@@ -23,14 +23,15 @@ namespace pertev {
 inline constexpr uint32_t kFrameBits = 6;
 
 /// What the index of every pixel is changed by in frame `time` < 2^kFrameBits of the sequence.
-HD inline uint32_t frame_word(uint32_t time) {
-    uint32_t word = 0;
-    word ^= (time & 1u) != 0 ? 0x5ac592d7u : 0;
-    word ^= (time & 2u) != 0 ? 0x48d263a5u : 0;
-    word ^= (time & 4u) != 0 ? 0xd4d385ccu : 0;
-    word ^= (time & 8u) != 0 ? 0xf7653742u : 0;
-    word ^= (time & 16u) != 0 ? 0x1970ca1du : 0;
-    word ^= (time & 32u) != 0 ? 0xab7a6738u : 0;
+template <class Word>
+HD inline Word frame_word(Word time) {
+    Word word = {};
+    word ^= (0u - (time & 1u)) & 0x5ac592d7u;
+    word ^= (0u - (time >> 1u & 1u)) & 0x48d263a5u;
+    word ^= (0u - (time >> 2u & 1u)) & 0xd4d385ccu;
+    word ^= (0u - (time >> 3u & 1u)) & 0xf7653742u;
+    word ^= (0u - (time >> 4u & 1u)) & 0x1970ca1du;
+    word ^= (0u - (time >> 5u & 1u)) & 0xab7a6738u;
     return word;
 }
 

@@ -5,29 +5,39 @@
 //
 // Source: Jarzynski, Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020: pcg, pcg3d and pcg4d, which pass the
 // most of TestU01 at their cost. The high bits are the better ones.
+//
+// `Word`, here and in sampler.h: uint32_t, or eight of them at once (math/words8.h), with the same bits of each.
 
 #include <cstdint>
+#include <type_traits>
 
 #include "base/host_device.h"
 
 namespace pertev {
 
-struct Hash3 {
-    uint32_t x, y, z;
+template <class Word>
+struct Hash3Of {
+    Word x, y, z;
 };
-struct Hash4 {
-    uint32_t x, y, z, w;
+template <class Word>
+struct Hash4Of {
+    Word x, y, z, w;
 };
+using Hash3 = Hash3Of<uint32_t>;
+using Hash4 = Hash4Of<uint32_t>;
 
 /// A permutation of the 32-bit words.
-HD inline uint32_t hash_word(uint32_t x) {
-    const uint32_t state = x * 747796405u + 2891336453u;
-    const uint32_t word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+template <class Word>
+HD inline Word hash_word(Word x) {
+    const Word state = x * 747796405u + 2891336453u;
+    const Word word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
     return (word >> 22) ^ word;
 }
 
 /// A permutation of triples: three words in, three words out, each of which depends on all.
-HD inline Hash3 hash_words(uint32_t x, uint32_t y, uint32_t z) {
+template <class Word = uint32_t>
+HD inline Hash3Of<Word> hash_words(std::type_identity_t<Word> x, std::type_identity_t<Word> y,
+                                   std::type_identity_t<Word> z) {
     x = x * 1664525u + 1013904223u;
     y = y * 1664525u + 1013904223u;
     z = z * 1664525u + 1013904223u;
@@ -44,7 +54,9 @@ HD inline Hash3 hash_words(uint32_t x, uint32_t y, uint32_t z) {
 }
 
 /// The same of four words.
-HD inline Hash4 hash_words(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
+template <class Word = uint32_t>
+HD inline Hash4Of<Word> hash_words(std::type_identity_t<Word> x, std::type_identity_t<Word> y,
+                                   std::type_identity_t<Word> z, std::type_identity_t<Word> w) {
     x = x * 1664525u + 1013904223u;
     y = y * 1664525u + 1013904223u;
     z = z * 1664525u + 1013904223u;

@@ -31,16 +31,21 @@ enum class SamplerKind : uint8_t {
     Independent, // white noise: for tests and comparisons
 };
 
-struct SampleKey {
-    uint32_t pixel = 0;  // any numbering of the pixels
-    uint32_t sample = 0; // index among the samples of the pixel
-    uint32_t seed = 0;   // another seed, another picture of the same expectation
+/// `Word`: of one path, or of eight (math/random.h).
+template <class Word>
+struct SampleKeyOf {
+    Word pixel = {};   // any numbering of the pixels
+    Word sample = {};  // index among the samples of the pixel
+    uint32_t seed = 0; // another seed, another picture of the same expectation
 };
+using SampleKey = SampleKeyOf<uint32_t>;
 
 /// ((bits >> 9) + 0.5) 2^-23: the middles of 2^23 equal parts of (0, 1), exact.
 HD inline float unit_interval(uint32_t bits) { return float_of((bits >> 9) | 0x3f800000u) - 0x1.fffffep-1f; }
 
-HD inline uint32_t reverse_bits(uint32_t x) {
+template <class Word>
+HD inline Word reverse_bits(Word x) {
+    static_assert(std::is_same_v<Word, uint32_t>); // of eight words: math/words8.h
 #if PERTEV_ON_DEVICE
     return __brev(x);
 #else
@@ -53,7 +58,8 @@ HD inline uint32_t reverse_bits(uint32_t x) {
 
 /// A random permutation in which bit k of the result depends on the bits 0 to k of x alone: Owen's nested scrambling of
 /// a fraction whose first digit is bit 0.
-HD inline uint32_t owen_scramble_reversed(uint32_t x, uint32_t key) {
+template <class Word>
+HD inline Word owen_scramble_reversed(Word x, Word key) {
     x ^= x * 0x3d20adeau; // even factors: each bit is changed by lower ones only
     x += key;
     x *= (key >> 16) | 1u;
@@ -66,8 +72,9 @@ HD inline uint32_t owen_scramble_reversed(uint32_t x, uint32_t key) {
 enum class FieldElement : uint8_t { One, W, WSquared };
 
 /// Sixteen digits in base 4, each times `factor`. A digit is two bits, the first of them the more significant one.
-HD inline uint32_t multiply_digits(FieldElement factor, uint32_t x) {
-    const uint32_t first = x & 0x55555555u, second = x >> 1 & 0x55555555u;
+template <class Word>
+HD inline Word multiply_digits(FieldElement factor, Word x) {
+    const Word first = x & 0x55555555u, second = x >> 1 & 0x55555555u;
     switch (factor) {
     case FieldElement::One:
         break;
@@ -81,7 +88,8 @@ HD inline uint32_t multiply_digits(FieldElement factor, uint32_t x) {
 
 /// Component of Faure's sequence, first digit in the lowest bits: digit k is the sum over j of C(j, k) a^(j-k) times
 /// digit j of the index, a = `factor`. C(j, k) is odd where j has every bit of k (Lucas), hence one step a bit of k.
-HD inline uint32_t pascal_transform(FieldElement factor, uint32_t x) {
+template <class Word>
+HD inline Word pascal_transform(FieldElement factor, Word x) {
     const bool is_w = factor == FieldElement::W;
     const FieldElement squared = factor == FieldElement::One ? factor : is_w ? FieldElement::WSquared : FieldElement::W;
     x ^= multiply_digits(factor, x >> 2 & 0x33333333u); // a, a^2, a^4 = a, a^8 = a^2
@@ -93,74 +101,82 @@ HD inline uint32_t pascal_transform(FieldElement factor, uint32_t x) {
 
 /// Component `number` of the sequence's point `index`, unscrambled, first digit in bit 0. The sum of a digit's bits in
 /// the first one's place makes the pairs (0, 1) and (2, 3) nets in base 2 as well; base 4 does not see it.
-HD inline uint32_t sequence_component(uint32_t index, uint32_t number) {
+template <class Word>
+HD inline Word sequence_component(Word index, uint32_t number) {
     switch (number) {
     case 0:
         return index;
     case 1: {
-        const uint32_t x = pascal_transform(FieldElement::One, index);
+        const Word x = pascal_transform(FieldElement::One, index);
         return x ^ (x >> 1 & 0x55555555u);
     }
     case 2:
         return pascal_transform(FieldElement::W, index);
     default: {
-        const uint32_t x = pascal_transform(FieldElement::WSquared, index);
+        const Word x = pascal_transform(FieldElement::WSquared, index);
         return x ^ (x >> 1 & 0x55555555u);
     }
     }
 }
 
 /// Two numbers in [0, 1) by their first 32 binary digits.
-struct SampleBits {
-    uint32_t x, y;
+template <class Word>
+struct SampleBitsOf {
+    Word x, y;
 };
+using SampleBits = SampleBitsOf<uint32_t>;
 
 /// The first or the last two numbers of a group.
 enum class Pair : uint8_t { First, Last };
 
 /// What the four numbers of a group share.
+template <class Word>
 struct GroupKeys {
-    uint32_t index; // of the point, shuffled, first digit in bit 0
-    Hash3 keys;
+    Word index; // of the point, shuffled, first digit in bit 0
+    Hash3Of<Word> keys;
 };
 
-HD inline GroupKeys group_keys(SamplerKind kind, SampleKey key, uint32_t group) {
+template <class Word>
+HD inline GroupKeys<Word> group_keys(SamplerKind kind, SampleKeyOf<Word> key, std::type_identity_t<Word> group) {
     if (kind == SamplerKind::SpaceTime) {
         constexpr uint32_t kTimes = (1u << kFrameBits) - 1;
-        const Hash3 keys = hash_words(key.sample >> kFrameBits, group, ~key.seed);
+        const Hash3Of<Word> keys = hash_words<Word>(key.sample >> kFrameBits, group, Word{} + ~key.seed);
         // Shuffled as below, each by itself: blocks of pixels and of frames stay blocks.
-        const uint32_t place = reverse_bits(owen_scramble_reversed(reverse_bits(key.pixel), keys.x));
-        const uint32_t first_bits = reverse_bits(key.sample & kTimes) >> (32 - kFrameBits);
-        const uint32_t time = reverse_bits(owen_scramble_reversed(first_bits, hash_word(keys.x)) & kTimes);
+        const Word place = reverse_bits(owen_scramble_reversed(reverse_bits(key.pixel), keys.x));
+        const Word first_bits = reverse_bits(key.sample & kTimes) >> (32 - kFrameBits);
+        const Word time = reverse_bits(owen_scramble_reversed(first_bits, hash_word(keys.x)) & kTimes);
         return {place ^ frame_word(time >> (32 - kFrameBits)), keys};
     }
-    const Hash3 keys = hash_words(key.pixel, group, key.seed);
+    const Hash3Of<Word> keys = hash_words<Word>(key.pixel, group, Word{} + key.seed);
     // The order of the points is shuffled by scrambling the index.
     return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
 }
 
 /// Inlined, like sample_bits, so that `number` is known: a switch at run time takes 2 % of a render on the CPU.
-[[gnu::always_inline]] HD inline uint32_t scrambled_component(const GroupKeys& group, uint32_t number) {
-    const uint32_t key = number % 2 == 0 ? group.keys.y : group.keys.z;
+template <class Word>
+[[gnu::always_inline]] HD inline Word scrambled_component(const GroupKeys<Word>& group, uint32_t number) {
+    const Word key = number % 2 == 0 ? group.keys.y : group.keys.z;
     return reverse_bits(
         owen_scramble_reversed(sequence_component(group.index, number), number < 2 ? key : hash_word(key)));
 }
 
 /// 32 bits of each of two numbers of a group.
-[[gnu::always_inline]] HD inline SampleBits sample_bits(SamplerKind kind, SampleKey key, uint32_t group,
-                                                        Pair pair = Pair::First) {
+template <class Word = uint32_t>
+[[gnu::always_inline]] HD inline SampleBitsOf<Word>
+sample_bits(SamplerKind kind, std::type_identity_t<SampleKeyOf<Word>> key, std::type_identity_t<Word> group,
+            Pair pair = Pair::First) {
     switch (kind) {
     case SamplerKind::Sobol:
     case SamplerKind::SpaceTime: {
-        const GroupKeys keys = group_keys(kind, key, group);
+        const GroupKeys<Word> keys = group_keys(kind, key, group);
         const uint32_t first = pair == Pair::First ? 0 : 2;
         return {scrambled_component(keys, first), scrambled_component(keys, first + 1)};
     }
     case SamplerKind::Independent:
         break;
     }
-    const Hash4 bits = hash_words(key.pixel, key.sample, group, key.seed);
-    return pair == Pair::First ? SampleBits{bits.x, bits.y} : SampleBits{bits.z, bits.w};
+    const Hash4Of<Word> bits = hash_words<Word>(key.pixel, key.sample, group, Word{} + key.seed);
+    return pair == Pair::First ? SampleBitsOf<Word>{bits.x, bits.y} : SampleBitsOf<Word>{bits.z, bits.w};
 }
 
 /// A point of (0, 1)^2.

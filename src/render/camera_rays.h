@@ -31,11 +31,16 @@ struct CameraRays {
                             static_cast<float>(row) + 0.5f + offset.y};
         return make_camera_ray(view, place, on_lens);
     }
+    /// The same at `time` (below).
+    HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens, float time) const {
+        const Ray still = ray(pixel, in_filter, on_lens);
+        return motion.moves() ? moved(still, time) : still;
+    }
     /// The ray of a sample of `pixel`, by the numbers that `key` draws.
     HD Ray ray(uint32_t pixel, SamplerKind sampler, SampleKey key) const {
         const Vec2 in_filter = sample_2d(sampler, key, kGroupCamera);
-        const Ray still = ray(pixel, in_filter, has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{});
-        return motion.moves() ? moved(still, time(sampler, key)) : still;
+        const Vec2 on_lens = has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{};
+        return ray(pixel, in_filter, on_lens, motion.moves() ? time(sampler, key) : kAtRest);
     }
     /// Of the sample that `key` draws, evenly over the time that the shutter is open, [0, 1).
     HD float time(SamplerKind sampler, SampleKey key) const {

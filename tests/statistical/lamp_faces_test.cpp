@@ -144,9 +144,10 @@ TEST_CASE("a clamp takes later light alike, however it is found, before it is we
         PathState here = path;
         here.depth = depth;
         ShadowRay shadow;
+        NoEvents events;
         const PathSettings settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
-        REQUIRE(ask_for_light<MaterialsKnown::Nothing, MotionKnown::None>(device.view(), settings, here, surface,
-                                                                          {0, 1, 0}, false, false, shadow));
+        REQUIRE(ask_for_light<MaterialsKnown::Nothing, MotionKnown::None>(
+            device.view(), settings, here, surface, {0, 1, 0}, DrawWhenAsked(), false, false, shadow, events));
         return static_cast<double>(max_component(shadow.contribution));
     };
     CHECK(asked(0, LightStrategy::NeeOnly, 1) == asked(0, LightStrategy::NeeOnly, 0));

@@ -125,8 +125,9 @@ TEST_CASE("strata: where a path goes and the light that it asks there belong tog
                 PathState before, after;
                 before.depth = depth - 1;
                 after.depth = depth;
-                const Vec2 way = sample_2d(kind, key, depth == 0 ? kGroupCamera : vertex_group(before, kGroupScatter));
-                const Vec2 light = sample_2d(kind, key, light_group(after), Pair::Last);
+                const Vec2 way =
+                    sample_2d(kind, key, depth == 0 ? kGroupCamera : vertex_group(before.depth, kGroupScatter));
+                const Vec2 light = sample_2d(kind, key, vertex_light_group(after.depth), Pair::Last);
                 return static_cast<double>(way.x * way.y) * static_cast<double>(light.x * light.y);
             });
         };

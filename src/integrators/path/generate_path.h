@@ -13,19 +13,25 @@ HD inline float time_of(const CameraRays& camera, const PathSettings& settings, 
     return camera.time(settings.sampler, sample_key(settings, path.pixel, path.sample));
 }
 
-HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, uint32_t pixel,
-                                  uint32_t sample) {
-    const Ray ray = camera.ray(pixel, settings.sampler, sample_key(settings, pixel, sample));
+/// `ray`, `time`: CameraRays', of the sample.
+HD inline PathState begin_path(const CameraRays& camera, uint32_t pixel, uint32_t sample, const Ray& ray, float time) {
     PathState path;
     path.origin = ray.origin;
     path.direction = ray.direction;
     path.pixel = pixel;
     path.sample = sample;
-    path.time = time_of(camera, settings, path);
+    path.time = time;
     if (camera.view.projection == Projection::Cosine) {
         path.bsdf_pdf = pdf_cosine_hemisphere(dot(ray.direction, camera.axis)); // as if a white surface stood there
     }
     return path;
+}
+
+HD inline PathState generate_path(const CameraRays& camera, const PathSettings& settings, uint32_t pixel,
+                                  uint32_t sample) {
+    const SampleKey key = sample_key(settings, pixel, sample);
+    return begin_path(camera, pixel, sample, camera.ray(pixel, settings.sampler, key),
+                      camera.time(settings.sampler, key));
 }
 
 } // namespace pertev

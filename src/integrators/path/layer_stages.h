@@ -55,8 +55,8 @@ struct ShadeHitsToLayers {
             key = path_key(path, settings.seed, true);
             here = {hit.instance, hit.primitive};
             if (layers.is_there() && path.depth > 0) state = {layered.states[place].x, layered.states[place].y};
-            goes_on = shade_hit_to_layers<kMotion>(picture, settings, film, layers, is_meter, state, path, hit, shadow,
-                                                   wants_shadow, parts);
+            goes_on = shade_hit_to_layers<kMotion>(picture, settings, film, layers, is_meter, state, path, hit,
+                                                   DrawWhenAsked(), shadow, wants_shadow, parts);
         }
         const auto [to, ray] = take_places(lists, *round, last, is_there, goes_on, wants_shadow);
         if (!is_there) return;

@@ -2,7 +2,8 @@
 
 #include <type_traits>
 
-#include "integrators/path/generate_path.h"
+#include "integrators/path/eight_samples.h"
+#include "integrators/path/host_shading.h"
 #include "integrators/path/shade_to_layers.h"
 #include "render/find_hits.h"
 #include "render/tiled_pixel.h"
@@ -44,12 +45,14 @@ public:
         find_hits_of(0, going_on_);
         find_hits_of(going_on_, count_);
         uint32_t shadows = 0;
+        VertexWords<Words8> words;
         for (uint32_t i = 0; i < count_; ++i) {
+            if (i % kWords == 0) words = draw_for(i);
             ask_for_indices(i + 16);
             ask_for_vertices(i + 8);
             Asked& asked = asked_[shadows];
             const uint32_t key = key_of(paths_[i], true);
-            const bool wants_shadow = shade(i, shadows);
+            const bool wants_shadow = shade(i, DrawnNumbers(words, i % kWords), shadows);
             asked.start = {hits_[i].instance, hits_[i].primitive};
             asked.key = key, asked.path = i;
             shadows += wants_shadow ? 1 : 0;
@@ -67,18 +70,33 @@ private:
         uint32_t key, path;
     };
 
+    /// What paths [begin, begin + 8) draw at the vertices that they have come to.
+    VertexWords<Words8> draw_for(uint32_t begin) const {
+        SampleKeyOf<Words8> keys;
+        Words8 depths = {};
+        bool has_choices = picture_.scene.known == MaterialsKnown::Nothing; // lobes
+        for (uint32_t i = begin; i < begin + kWords && i < count_; ++i) {
+            const PathState& path = paths_[i];
+            set_lane(keys, i - begin, sample_key(settings_, path.pixel, path.sample));
+            depths[i - begin] = path.depth;
+            has_choices = has_choices || may_end_by_chance(settings_, path.depth + 1);
+        }
+        return draw_vertex(settings_.sampler, keys, depths, has_choices);
+    }
+
     /// Takes path i over what it met; true where it asks for the shadow ray at place `shadow`.
-    bool shade(uint32_t i, uint32_t shadow) {
+    bool shade(uint32_t i, const DrawnNumbers& numbers, uint32_t shadow) {
         bool wants_shadow = false;
         if constexpr (kHasLayers) {
             goes_on_[i] = shade_hit_to_layers<MotionKnown::Perhaps>(
                 picture_, settings_, film_, layers_.view, layers_.is_meter, layers_.states[i], paths_[i], hits_[i],
-                asked_[shadow].ray, wants_shadow, layers_.shadows[shadow]);
+                numbers, asked_[shadow].ray, wants_shadow, layers_.shadows[shadow]);
             return wants_shadow;
         }
         LightSplit split;
         if (splits_light_) split.take_out(paths_[i], paths_[i].depth > 0 ? diffuse_[i] : Float4{0, 0, 0, 0});
-        goes_on_[i] = shade_hit(picture_, settings_, film_, paths_[i], hits_[i], asked_[shadow].ray, wants_shadow);
+        goes_on_[i] =
+            shade_(picture_, settings_, film_, paths_[i], hits_[i], numbers, asked_[shadow].ray, wants_shadow);
         if (splits_light_) {
             split.put_back(paths_[i]);
             diffuse_[i] = split.diffuse;
@@ -195,6 +213,7 @@ private:
     const HostTrees& trees_;
     const TileRasterView* raster_;
     const FilmView& film_;
+    const ShadeOnHost shade_ = shading_for(picture_, film_);
     const bool splits_light_ = film_.frame.splits_light();
     const bool tells_bounce_ = film_.frame.first_bounce.tells_bounce();
     uint32_t count_ = 0, going_on_ = 0; // paths; of which those that are not new
@@ -212,13 +231,19 @@ void render_group(const PictureView& picture, const PathSettings& settings, cons
                   const FilmView& film, const Layers& layers, const PixelSamples& work, RayCounts& counts) {
     PathGroup<Layers> group(picture, settings, trees, film, layers);
     const uint32_t width = picture.camera.width, height = picture.camera.height;
+    EightSamples samples(picture.camera, settings);
+    const auto trace = [&](const PathState& path) {
+        group.add(path);
+        while (group.is_full()) group.advance(counts);
+    };
     for (uint64_t i = work.begin; i < work.end; ++i) {
         const uint32_t pixel = tiled_pixel(static_cast<uint32_t>(i), width, height);
         for (uint32_t k = 0; k < work.samples; ++k) {
-            group.add(generate_path(picture.camera, settings, pixel, work.first_sample + k));
-            while (group.is_full()) group.advance(counts);
+            samples.add(pixel, work.first_sample + k);
+            if (samples.is_full()) samples.begin(trace);
         }
     }
+    samples.begin(trace);
     while (!group.is_empty()) group.advance(counts);
 }
 

@@ -38,6 +38,11 @@ struct PathSettings {
     bool operator==(const PathSettings&) const = default;
 };
 
+/// Whether Russian roulette is played at vertex `vertex` of a path, counted from 1.
+HD inline bool may_end_by_chance(const PathSettings& settings, uint32_t vertex) {
+    return vertex >= settings.roulette_depth;
+}
+
 /// What the random numbers of a path are drawn by.
 HD inline SampleKey sample_key(const PathSettings& settings, uint32_t pixel, uint32_t sample) {
     const bool is_placed = settings.sampler == SamplerKind::SpaceTime;

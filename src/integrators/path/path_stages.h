@@ -89,8 +89,8 @@ struct ShadeHits {
             key = path_key(path, settings.seed, true);
             here = {hit.instance, hit.primitive};
             if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
-            goes_on = shade_hit<kKnown, kMayBeFrame, kMayLeave, kMotion>(picture, settings, film, path, hit, shadow,
-                                                                         wants_shadow);
+            goes_on = shade_hit<kKnown, kMayBeFrame, kMayLeave, kMotion>(picture, settings, film, path, hit,
+                                                                         DrawWhenAsked(), shadow, wants_shadow);
             if (splits_light) split.put_back(path);
         }
         const RoundPlaces places = take_places(lists, *round, last, is_there, goes_on, wants_shadow);

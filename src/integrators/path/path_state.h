@@ -80,13 +80,17 @@ inline constexpr uint32_t kGroupFirstVertex = kCameraGroups;
 enum VertexGroup : uint32_t { kGroupScatter, kGroupChoices, kGroupsPerVertex };
 inline constexpr uint32_t kNumberLobe = 0, kNumberRoulette = 1, kNumberLightPath = 2;
 
-HD inline uint32_t vertex_group(const PathState& path, VertexGroup group) {
-    return kGroupFirstVertex + path.depth * kGroupsPerVertex + group;
+/// `depth`: of one path or of eight (math/random.h), as PathState has it.
+template <class Word>
+HD inline Word vertex_group(Word depth, VertexGroup group) {
+    return depth * uint32_t(kGroupsPerVertex) + (kGroupFirstVertex + group);
 }
 
 /// The group whose last pair draws the light of the path's vertex.
-HD inline uint32_t light_group(const PathState& path) {
-    return path.depth == 0 ? kGroupCamera : vertex_group(path, kGroupScatter) - kGroupsPerVertex;
+template <class Word>
+HD inline Word vertex_light_group(Word depth) {
+    const Word from_camera = Word{} + uint32_t(kGroupCamera);
+    return depth == 0u ? from_camera : vertex_group(depth - 1u, kGroupScatter);
 }
 
 /// The coin of blended surfaces for a path's ray at its depth; shadow rays toss another one.

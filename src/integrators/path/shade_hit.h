@@ -9,6 +9,7 @@
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
 #include "integrators/path/vertex_events.h"
+#include "integrators/path/vertex_numbers.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
 #include "render/moved_surface.h"
@@ -54,15 +55,14 @@ HD inline void add_emission(const PathSettings& settings, PathState& path, Rgb e
 
 /// Draws one point of one light. True when `shadow` is to be traced. `splits_light`: shadow.diffuse is wanted;
 /// `tells_bounce`: shadow.sent is, of a second vertex.
-template <MaterialsKnown kKnown, MotionKnown kMotion, class Events = NoEvents>
+template <MaterialsKnown kKnown, MotionKnown kMotion, class Numbers, class Events>
 HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSettings& settings, const PathState& path,
-                                       const Surface& surface, Vec3 wo, bool splits_light, bool tells_bounce,
-                                       ShadowRay& shadow, Events&& events = Events()) {
+                                       const Surface& surface, Vec3 wo, const Numbers& numbers, bool splits_light,
+                                       bool tells_bounce, ShadowRay& shadow, Events& events) {
     if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
-    const SampleKey key = sample_key(settings, path.pixel, path.sample);
     LightSample light;
-    const SampleBits u = sample_bits(settings.sampler, key, light_group(path), Pair::Last);
+    const SampleBits u = numbers.light(settings, path);
     const bool moves = is_moving<kMotion>(scene);
     if (moves) {
         const LampsAt lamps = {scene.motions, path.time};
@@ -105,15 +105,11 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
 }
 
 /// Draws where the path goes on. False when it ends here.
-template <class Events>
+template <class Numbers, class Events>
 HD INLINE_ON_DEVICE bool scatter(const PathSettings& settings, PathState& path, const Surface& surface, Vec3 wo,
-                                 Events& events) {
-    const SampleKey key = sample_key(settings, path.pixel, path.sample);
-    const float lobe = surface.bsdf.draws_lobe()
-                           ? sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberLobe)
-                           : 0.5f;
-    const Vec2 u = sample_2d(settings.sampler, key, vertex_group(path, kGroupScatter));
-    const BsdfSample sample = surface.sample(wo, lobe, u);
+                                 const Numbers& numbers, Events& events) {
+    const float lobe = surface.bsdf.draws_lobe() ? numbers.lobe(settings, path) : 0.5f;
+    const BsdfSample sample = surface.sample(wo, lobe, numbers.direction(settings, path));
     if (!(sample.pdf > 0)) return false;
     const Vec3 wi = sample.wi;
     events.goes_on(surface, wo, sample);
@@ -126,12 +122,10 @@ HD INLINE_ON_DEVICE bool scatter(const PathSettings& settings, PathState& path, 
     path.rough_depth += sample.is_delta() ? 0 : 1;
     if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing of it would count
     const uint32_t vertex = path.depth + 1;
-    if (vertex >= settings.roulette_depth) {
+    if (may_end_by_chance(settings, vertex)) {
         const float survival = survival_probability(settings.roulette, max_component(path.throughput));
         if (survival < 1) {
-            const float u_roulette =
-                sample_1d(settings.sampler, key, vertex_group(path, kGroupChoices), kNumberRoulette);
-            if (!(u_roulette < survival)) return false;
+            if (!(numbers.roulette(settings, path) < survival)) return false;
             path.throughput = (1.0f / survival) * path.throughput;
         }
     }
@@ -180,12 +174,12 @@ HD inline void store_no_hit(const NoisyFrameView& frame, uint32_t pixel) {
 /// `wants_shadow` says whether `shadow` was written. Auxiliary channels of the first vertex go to `film`.
 /// Where `kMayBeFrame` is false `film` is none of a noisy frame, and where `kMayLeave` is, none that leaves light to
 /// ReSTIR: code for these would cost others registers, and so would code for a motion that is not there (`kMotion`).
-/// `events`: what is to be told of the vertex (vertex_events.h).
+/// `numbers`: DrawWhenAsked or DrawnNumbers. `events`: what is to be told of the vertex (vertex_events.h).
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing, bool kMayBeFrame = true, bool kMayLeave = true,
-          MotionKnown kMotion = MotionKnown::Perhaps, class Events = NoEvents>
+          MotionKnown kMotion = MotionKnown::Perhaps, class Numbers, class Events = NoEvents>
 HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSettings& settings, const FilmView& film,
-                                   PathState& path, const Hit& hit, ShadowRay& shadow, bool& wants_shadow,
-                                   Events&& events = Events()) {
+                                   PathState& path, const Hit& hit, const Numbers& numbers, ShadowRay& shadow,
+                                   bool& wants_shadow, Events&& events = Events()) {
     const SceneView& scene = picture.scene;
     const bool is_frame = kMayBeFrame && film.frame.is_there();
     const bool splits_light = kKnown == MaterialsKnown::Nothing && is_frame && film.frame.splits_light();
@@ -248,13 +242,13 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
     // With coat or sheen on top, what leaves it in one direction says little of another.
     const bool is_bounce = tells_bounce && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
     if (is_bounce) begin_bounce(left, path, hit, true);
-    wants_shadow =
-        !(leaves_light && path.depth == 0) &&
-        ask_for_light<kKnown, kMotion>(scene, settings, path, surface, wo, splits_light, is_bounce, shadow, events);
+    wants_shadow = !(leaves_light && path.depth == 0) &&
+                   ask_for_light<kKnown, kMotion>(scene, settings, path, surface, wo, numbers, splits_light, is_bounce,
+                                                  shadow, events);
     if (tells_bounce && wants_shadow && !is_bounce) {
         shadow.sent = share_onwards(left, path.pixel) * shadow.contribution;
     }
-    const bool goes_on = scatter(settings, path, surface, wo, events);
+    const bool goes_on = scatter(settings, path, surface, wo, numbers, events);
     // Not by the lobe that was drawn: others send light that way, too, and light of glossy ones changes with the view.
     if (splits_light && goes_on && path.depth == 1) {
         path.first_diffuse = path.bsdf_pdf > 0 ? surface.diffuse_share(wo, path.direction) : Rgb{0, 0, 0};

@@ -26,22 +26,22 @@ HD inline void add_to_layers(const LightPathView& layers, const FilmView& film, 
     layers.add(film, pixel, after(LobeClass::Glossy), shadow.light, contribution - shadow.diffuse);
 }
 
-/// As shade_hit (`kMotion` too). `state`: of the path before the vertex, then after it. `parts` is written where
-/// `wants_shadow` is. `is_meter`: the picture is that of the irradiance of what the camera sees, W/m2, black where it
-/// sees no surface.
-template <MotionKnown kMotion>
-HD INLINE_ON_DEVICE bool shade_hit_to_layers(const PictureView& picture, const PathSettings& settings,
-                                             const FilmView& film, const LightPathView& layers, bool is_meter,
-                                             LightPathState& state, PathState& path, const Hit& hit, ShadowRay& shadow,
-                                             bool& wants_shadow, LayerShadow& parts) {
+/// As shade_hit (`kMotion` and `numbers` too). `state`: of the path before the vertex, then after it. `parts` is
+/// written where `wants_shadow` is. `is_meter`: the picture is that of the irradiance of what the camera sees, W/m2,
+/// black where it sees no surface.
+template <MotionKnown kMotion, class Numbers>
+HD INLINE_ON_DEVICE bool
+shade_hit_to_layers(const PictureView& picture, const PathSettings& settings, const FilmView& film,
+                    const LightPathView& layers, bool is_meter, LightPathState& state, PathState& path, const Hit& hit,
+                    const Numbers& numbers, ShadowRay& shadow, bool& wants_shadow, LayerShadow& parts) {
     const LightSetView& lights = picture.scene.lights;
     const Rgb before = path.radiance; // taken out, so that what the vertex adds is known to the last bit
     path.radiance = {0, 0, 0};
     VertexEvents events;
     events.is_meter = is_meter;
     const bool is_sky_seen = hit.instance == kNoHit && path.depth == 0;
-    const bool goes_on = shade_hit<MaterialsKnown::Nothing, false, false, kMotion>(picture, settings, film, path, hit,
-                                                                                   shadow, wants_shadow, events);
+    const bool goes_on = shade_hit<MaterialsKnown::Nothing, false, false, kMotion>(
+        picture, settings, film, path, hit, numbers, shadow, wants_shadow, events);
     if (is_meter && is_sky_seen) path.radiance = {0, 0, 0};
     if (!layers.is_there()) {
         path.radiance = before + path.radiance;
@@ -61,7 +61,7 @@ HD INLINE_ON_DEVICE bool shade_hit_to_layers(const PictureView& picture, const P
     }
     if (goes_on) {
         const SampleKey key = sample_key(settings, path.pixel, path.sample);
-        const uint32_t group = vertex_group(path, kGroupChoices) - kGroupsPerVertex; // of the vertex left behind
+        const uint32_t group = vertex_group(path.depth - 1, kGroupChoices); // of the vertex left behind
         const float u = events.is_specular ? 0.5f : sample_1d(settings.sampler, key, group, kNumberLightPath);
         state = after_scattering(layers, state, column, events.is_specular, events.is_transmission, events.diffuse, u);
     }
