@@ -57,7 +57,8 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
     };
     const BvhTriangle* t[4] = {first, first + (count > 1 ? 1 : 0), first + (count > 2 ? 2 : 0),
                                first + (count > 3 ? 3 : 0)};
-    const auto sheared = [&](const Vec3 BvhTriangle::*corner) {
+    // In line, or its vectors go through memory three times.
+    const auto sheared = [&](const Vec3 BvhTriangle::*corner) __attribute__((always_inline)) {
         const auto load = [&](int k) { return _mm_permutevar_ps(_mm_load_ps(&(t[k]->*corner).x), ray.order); };
         __m128 r0 = load(0), r1 = load(1), r2 = load(2), r3 = load(3);
         _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
