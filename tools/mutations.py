@@ -335,5 +335,5 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
              ["unit/vertex_numbers"]),
     Mutation("choices that are not drawn where a path may end by chance",
              [edit("src/integrators/path/path_loop.cpp", "has_choices || may_end_by_chance(settings_, path.depth + 1)", "has_choices")],
-             ["unit/vertex_numbers", "consistency/bodies"]),
+             ["consistency/one_picture"]),
 ]

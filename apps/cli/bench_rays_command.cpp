@@ -35,7 +35,7 @@ struct RaysFlags {
     std::vector<std::string> scenes;
     SceneOptions camera; // --eye, --target and --fov of it
     uint32_t count = kRecordRays, runs = 0;
-    bool check = false;
+    bool check = false, axes = false;
     TracerFlags tracer = {.default_build = TreeBuild::Best}; // no tree's making is timed
     MachineFlags machine;
     ReportFlags report;
@@ -148,11 +148,11 @@ void print(const SetFigures& f, bool is_checked, Reporter& reporter) {
             fmt::format("{:11} {:8} {:8} empty: no ray before it hit anything\n", f.scene, f.set, 0));
     }
     reporter.answer(fmt::format(
-        "{:11} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} {:>6} {:>6}\n", f.scene,
-        f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest), millions_a_second(f.rays, f.times.least),
-        f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes, beside(best * 1e-6, "{:.0f}", has),
-        ratio_cell(ratio), beside(r.hit_share, "{:.3f}", has), beside(r.nodes, "{:.1f}", has),
-        beside(r.triangles, "{:.1f}", has)));
+        "{:11} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} {:>6} {:>6} {}\n",
+        f.scene, f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest),
+        millions_a_second(f.rays, f.times.least), f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes,
+        beside(best * 1e-6, "{:.0f}", has), ratio_cell(ratio), beside(r.hit_share, "{:.3f}", has),
+        beside(r.nodes, "{:.1f}", has), beside(r.triangles, "{:.1f}", has), f.tracer));
 }
 
 /// Of ratios to the best public tracers, where there are any; `scene` is "" of all scenes together.
@@ -188,6 +188,8 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
         trace_rays(rays, hits);
     };
     std::vector<RaySet> sets = make_record_ray_sets({scene, camera, frame.width, frame.height, trace}, flags.count);
+    const std::size_t recorded = sets.size();
+    if (flags.axes) std::ranges::move(make_axis_ray_sets(sets[2]), std::back_inserter(sets));
     reporter.say(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",
                              name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
                              frame.height));
@@ -198,7 +200,8 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
         SetFigures figures = measure(queue, sets[i], flags, choice, prepared);
         figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
-        figures.record = is_moved ? nullptr : record, figures.number = i, figures.triangles = prepared.triangles;
+        figures.record = is_moved || i >= recorded ? nullptr : record, figures.number = i,
+        figures.triangles = prepared.triangles;
         reporter.answer(std::exchange(header, ""));
         print(figures, flags.check, reporter);
         if (const auto ratio = figures.ratio().value) ratios.push_back(*ratio);
@@ -220,16 +223,16 @@ int bench_rays(const RaysFlags& flags) {
     for (const std::string& scene : scenes) check_record_scene(scene);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
-    const TracerChoice choice =
-        tracer_choice(flags.tracer, queue->is_cuda()).value_or(default_tracers(queue->is_cuda()));
+    const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // there is one: of the best tree
     std::string header = fmt::format(
         "{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in the binary tree,\n"
         "nodes of the dearest ray; at the right the best public tracer on one {}, the ratio to it where ours is on\n"
-        "one too, and what the record says of the same rays\n{:11} {:8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} "
+        "one too, what the record says of the same rays, and by what ours were traced\n{:11} {:8} {:>8} {:>8} {:>8} "
+        "{:>8} {:>6} {:>6} {:>6} "
         "{:>7} "
-        "{:>6} {:>6} {:>6} {:>6} {:>6}\n",
+        "{:>6} {:>6} {:>6} {:>6} {:>6} {}\n",
         queue->device_name(), kFiguresDevice, "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
-        "tri", "most", "best", "ratio", "hits", "nodes", "tri");
+        "tri", "most", "best", "ratio", "hits", "nodes", "tri", "traced by");
     std::vector<double> ratios;
     for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, choice, header, ratios, reporter);
     if (scenes.size() > 1) print_summary("", ratios, reporter);
@@ -260,6 +263,7 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
         ->type_name("N")
         ->check(whole_between(1, 10000));
     verb.add_flag("--check", flags->check, "compare every hit with the binary walk's on the CPU, bit for bit");
+    verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
     add_tracer_flags(verb, flags->tracer, "Tracing");
     add_machine_flags(verb, flags->machine);
     add_report_flags(verb, flags->report);

@@ -200,6 +200,21 @@ std::vector<RaySet> make_record_ray_sets(const RaySetJob& job, uint32_t count) {
     return sets;
 }
 
+std::vector<RaySet> make_axis_ray_sets(const RaySet& from) {
+    const auto turned = [&](const char* name, float aside) {
+        RaySet set{name, from.any_hit, from.rays};
+        parallel_for(set.rays.size(), kGrain, [&](uint64_t i) {
+            Vec3& d = set.rays[i].direction;
+            const Vec3 size = abs(d);
+            const bool is_x = size.x >= size.y && size.x >= size.z, is_y = !is_x && size.y >= size.z;
+            const auto part = [&](bool is_axis, float of) { return copysign(is_axis ? 1.0f : aside, of); };
+            d = normalize({part(is_x, d.x), part(is_y, d.y), part(!is_x && !is_y, d.z)});
+        });
+        return set;
+    };
+    return {turned("along_axes", 0), turned("beside_axes", 1e-3f)};
+}
+
 std::vector<RaySet> make_frame_ray_sets(const RaySetJob& job, int depth) {
     check_frame(job);
     PERTEV_CHECK(depth >= 0 && depth <= kMaxFrameDepth);

@@ -44,6 +44,11 @@ FrameSize record_frame(uint32_t count);
 /// are fewer, the set is that much smaller.
 std::vector<RaySet> make_record_ray_sets(const RaySetJob& job, uint32_t count);
 
+/// "along_axes": the rays of `from`, turned to the axis that each is nearest to. "beside_axes": the same a thousandth
+/// of their way off to both sides, so that they meet nearly the same. A walk takes as long for both unless it stumbles
+/// over directions with components of 0.
+std::vector<RaySet> make_axis_ray_sets(const RaySet& from);
+
 inline constexpr int kMaxFrameDepth = 8;
 
 /// One frame: "primary" with one ray a pixel, "shadow" from its hits, "diffuse1" from them too, and so on to

@@ -52,8 +52,8 @@ HD inline float abs(float x) {
 HD inline float copysign(float magnitude, float sign) {
     return float_of((bits_of(magnitude) & 0x7fffffffu) | (bits_of(sign) & 0x80000000u));
 }
-/// 1 / x, correctly rounded, for 2^-126 <= |x| < 2^126. On the device by the three instructions that the compiler takes
-/// for these x too, without its branch to the others.
+/// 1 / x, correctly rounded, for 2^-126 <= |x| < 2^126; beyond, devices differ. On the device by the three instructions
+/// that the compiler takes for these x too, without its branch to the others.
 HD inline float reciprocal_of_normal(float x) {
 #if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
     float r;

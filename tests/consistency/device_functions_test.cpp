@@ -160,6 +160,14 @@ TEST_CASE(
                        test::EvaluateMath{function, part << 28 | part * 0x0badcafu, per_index, out});
             });
         }
+        for (const uint32_t end : {0x00800000u, 0x3f800000u, 0x7e800000u, 0x7f800000u}) { // 2^-126, 1, 2^126, infinity
+            for (const uint32_t sign : {0u, 0x80000000u}) {
+                check_same_bits(2, [&](Queue& queue, uint32_t* out, uint32_t count) {
+                    launch(queue, "evaluate_math", count,
+                           test::EvaluateMath{function, (end | sign) - per_index, per_index, out});
+                });
+            }
+        }
     }
 }
 

@@ -10,7 +10,8 @@ class RaysOnTheRecord(CliTest):
 
     def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
         for flag in ["--count 0", "--count -1", "--count 1.5", "--count 4294967297", "--count x", "--runs 0", "--fov 0",
-                     "--fov nan", "--eye 1,2", "--target x", "--device gpu", "--threads 0", "--size 10x10", "--build x", "--walk x", "--foo"]:
+                     "--fov nan", "--eye 1,2", "--target x", "--device gpu", "--threads 0", "--size 10x10", "--build x",
+                     "--walk x", "--foo"]:
             with self.subTest(flag=flag):
                 self.refuse(2, "bench", "rays", "--scene", "cornell-box", *flag.split(), says=[flag.split()[0]])
 
@@ -50,6 +51,14 @@ class RaysOnTheRecord(CliTest):
         self.assertRegex(text, r"\ncornell-box: checked, .*\n$")
         for key in ["hit_share", "nodes", "triangles", "most_nodes"]:
             self.assertEqual([of[key] for of in sets], [of[key] for of in again])
+
+    def test_rays_along_axes_are_two_more_sets(self):
+        sets = self.rays("--scene", "cornell-box", "--count", "3000", "--check", "--axes")
+        self.assertEqual([of["set"] for of in sets[5:]], ["along_axes", "beside_axes"])
+        along, beside = sets[5:]
+        self.assertTrue(along["checked"] and beside["checked"])
+        self.assertLess(abs(along["hit_share"] - beside["hit_share"]), 0.01)
+        self.assertLess(along["nodes"], 1.1 * beside["nodes"])
 
     def test_rays_are_traced_as_the_flags_say(self):
         for flags, tracer in [("--build fast", "binned wide8-simd"), ("--walk skip-links", "sbvh-reinsertion skip-links"),

@@ -110,6 +110,26 @@ TEST_CASE("draws hit the two zeros that were found on the record, and no third")
     CHECK(second == 0);
 }
 
+TEST_CASE("rays are turned to the axis that they are nearest to, or a little beside it") {
+    RaySet from{"some", false, {}};
+    from.rays.push_back({{1, 2, 3}, 0.5f, normalize({0.1f, -0.9f, 0.2f}), 7});
+    from.rays.push_back({{0, 0, 0}, 0, normalize({-0.5f, -0.4f, 0.3f}), 1});
+    from.rays.push_back({{0, 0, 0}, 0, normalize({0.1f, 0.2f, 0.3f}), 1});
+    const std::vector<RaySet> sets = make_axis_ray_sets(from);
+    REQUIRE(sets.size() == 2);
+    CHECK(sets[0].name == "along_axes");
+    CHECK(sets[0].rays[0].direction == Vec3{0, -1, 0});
+    CHECK(sets[0].rays[1].direction == Vec3{-1, 0, 0});
+    CHECK(sets[0].rays[2].direction == Vec3{0, 0, 1});
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Ray &along = sets[0].rays[i], &beside = sets[1].rays[i];
+        CHECK(along.origin == from.rays[i].origin);
+        CHECK(beside.t_max == from.rays[i].t_max);
+        CHECK(dot(along.direction, beside.direction) > 0.99999f);
+        CHECK(length(along.direction - beside.direction) == doctest::Approx(0.001414).epsilon(0.01));
+    }
+}
+
 TEST_CASE("the frame of the record is that of its count, and smaller ones are whole tiles of the same shape") {
     CHECK(record_frame(kRecordRays).width == 1920);
     CHECK(record_frame(kRecordRays).height == 1080);

@@ -74,14 +74,16 @@ TEST_CASE("unit/vertex_numbers: a vertex's numbers, drawn for eight paths, are t
 
 TEST_CASE("unit/vertex_numbers: paths that begin eight at once are those that begin one by one") {
     CameraRays camera = make_camera_rays(Camera{}, {PixelFilter::Box, 0.5f, nullptr}, kWidth, 1080, {0, 0, 0});
+    const MotionKey keys[] = {{{0, 0, 0, 1}, {0, 0, 0}}, {{0, 0.6f, 0, 0.8f}, {3, 0, 0}}};
     for (const SamplerKind kind : kKinds) {
         for (const float aperture : {0.0f, 0.1f}) {
             for (const bool is_open : {false, true}) {
                 const PathSettings settings = settings_of(kind, 3);
                 camera.view.aperture_radius = aperture;
                 camera.is_open = is_open;
+                camera.motion = is_open ? MotionTrack{keys, {0, 0, 0}, 1} : MotionTrack{};
+                EightSamples samples(camera, settings);
                 for (const uint32_t count : {8u, 3u, 0u, 1u}) { // lanes without a sample change no other
-                    EightSamples samples(camera, settings);
                     for (uint32_t i = 0; i < count; ++i) samples.add(path_of(i, count).pixel, path_of(i, count).sample);
                     CHECK(samples.is_full() == (count == kWords));
                     uint32_t i = 0;

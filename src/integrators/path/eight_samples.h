@@ -15,8 +15,7 @@ public:
     bool is_full() const { return count_ == kWords; }
     void add(uint32_t pixel, uint32_t sample) {
         set_lane(keys_, count_, sample_key(settings_, pixel, sample));
-        pixels_[count_] = pixel, samples_[count_] = sample;
-        count_++;
+        pixels_[count_++] = pixel; // a key may have another number for it
     }
 
     /// Hands each path to `take`, in the order in which they were added, and leaves none.
@@ -33,7 +32,7 @@ public:
             const float time = camera_.is_open ? unit_interval(times[i]) : kAtRest;
             const Vec2 lens = camera_.has_lens() ? unit_square(on_lens, i) : Vec2{};
             const Ray ray = camera_.ray(pixels_[i], unit_square(in_filter, i), lens, time);
-            take(begin_path(camera_, pixels_[i], samples_[i], ray, time));
+            take(begin_path(camera_, pixels_[i], keys_.sample[i], ray, time));
         }
         count_ = 0;
     }
@@ -42,7 +41,7 @@ private:
     const CameraRays& camera_;
     const PathSettings& settings_;
     SampleKeyOf<Words8> keys_; // those beyond `count_` of samples before, or 0: drawn for nothing
-    uint32_t pixels_[kWords], samples_[kWords];
+    uint32_t pixels_[kWords];
     uint32_t count_ = 0;
 };
 

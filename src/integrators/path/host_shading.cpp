@@ -3,10 +3,11 @@
 namespace pertev {
 namespace {
 
-/// All that it calls is in line: a third of the time of S8 is shading, which g++ would cut into a dozen calls.
+/// All that it calls is in line: g++ by itself would leave a dozen calls, for a third more time of Bitterli's box.
 template <MaterialsKnown kKnown, bool kIsFrame, MotionKnown kMotion>
-[[gnu::flatten]] bool shade(const PictureView& picture, const PathSettings& settings, const FilmView& film, PathState& path,
-           const Hit& hit, const DrawnNumbers& numbers, ShadowRay& shadow, bool& wants_shadow) {
+[[gnu::flatten]] bool shade(const PictureView& picture, const PathSettings& settings, const FilmView& film,
+                            PathState& path, const Hit& hit, const DrawnNumbers& numbers, ShadowRay& shadow,
+                            bool& wants_shadow) {
     return shade_hit<kKnown, kIsFrame, kIsFrame, kMotion>(picture, settings, film, path, hit, numbers, shadow,
                                                           wants_shadow);
 }

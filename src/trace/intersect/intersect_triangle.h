@@ -75,7 +75,9 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
 
     const float det = ea + eb + ec;
     if (det == 0) return false;
-    // Of three numbers alike in sign, each at least 2^-100, or of numbers whose sizes add up to 1.
+    // Of three numbers alike in sign, each at least 2^-100, or of numbers whose sizes add up to 1. Nor is it 2^126: it
+    // is twice an area, of a triangle whose sides are a scene's. (Where products overflow it is infinite or NaN: a
+    // miss.)
     const float inv = reciprocal_of_normal(det), u = eb * inv, v = ec * inv;
     const float t = (ea * inv * pa.z + u * pb.z + v * pc.z) * ray.sz;
     if (!(t > t_min && t < t_max)) return false; // so written that NaN (bad vertex) is a miss

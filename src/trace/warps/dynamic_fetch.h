@@ -63,7 +63,8 @@ template <class Tree>
 inline constexpr int kBlocksWanted<SingleTree<Tree>> = 8;
 
 /// The next `wanted` indices of a pool, for the warp whose lanes are all here: the first of them. They must be here:
-/// persistent.h says when ptxas 13.0 does not wait for them. In kernels of this file it does: their SASS has no BMOV.
+/// persistent.h says when ptxas 13.0 does not wait for them. In kernels of this file it does: the SASS of all
+/// 103 has no BMOV (b41ae20).
 __device__ inline uint32_t fetch_from_pool(uint32_t* pool, uint32_t wanted) {
     uint32_t first = 0;
     if (threadIdx.x % 32 == 0) first = atomicAdd(pool, wanted);
