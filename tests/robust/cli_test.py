@@ -33,7 +33,7 @@ FLAGS = {
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --quiet -q --json",
-    "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
+    "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --axes --build --structure --walk --rta --order --distribution --quiet -q --json",
 }
 
 
