@@ -235,6 +235,48 @@ TEST_CASE("RTA at pops saves the compressed walk nodes, beyond what it saves at 
 
 namespace {
 
+/// Many small spheres in a large one: whatever is in the way of a ray between them, the large one ends it.
+std::vector<BvhTriangle> things_in_a_room() {
+    std::vector<BvhTriangle> triangles = triangles_of(make_sphere(1, {}, 10));
+    Random random(6);
+    for (int i = 0; i < 80; ++i) {
+        for (BvhTriangle triangle : triangles_of(make_sphere(2, random.point(-5, 5), 0.3f))) {
+            triangle.primitive = static_cast<uint32_t>(triangles.size());
+            triangles.push_back(triangle);
+        }
+    }
+    return triangles;
+}
+
+/// Nodes of searches for any hit of rays that end far outside of all, over those of the same rays without an end.
+template <class Walk>
+double nodes_saved_by_no_end(const typename Walk::Tree& tree) {
+    Random random(7);
+    uint64_t with_end = 0, without = 0, triangles = 0, missed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Ray ray;
+        ray.origin = random.point(-5, 5);
+        ray.direction = random.direction();
+        ray.t_max = 1e30f;
+        missed += trace_any<Walk>(scene_of(tree), ray, AcceptAll{}, WalkCounter{&with_end, &triangles}) ? 0 : 1;
+        ray.t_max = kInfinity;
+        missed += trace_any<Walk>(scene_of(tree), ray, AcceptAll{}, WalkCounter{&without, &triangles}) ? 0 : 1;
+    }
+    CHECK(missed == 0);
+    return static_cast<double>(with_end) / static_cast<double>(without);
+}
+
+} // namespace
+
+TEST_CASE("a search for any hit of a ray that has no end begins at its far end, and so visits fewer nodes") {
+    const Trees trees(build_bvh(things_in_a_room()));
+    CHECK(nodes_saved_by_no_end<CompressedWalk<for_any_hit(kBoth)>>(view_of(trees.compressed)) > 1.3);
+    CHECK(nodes_saved_by_no_end<Wide8SimdWalk<for_any_hit(kBoth)>>(view_of(trees.wide8)) > 1.3);
+    CHECK(nodes_saved_by_no_end<Wide8SimdWalk<for_any_hit(kBuildersOrder)>>(view_of(trees.wide8)) > 1.1);
+}
+
+namespace {
+
 constexpr WalkOptions kFast = {.tests = TestKind::Fast};
 
 template <class Walk>

@@ -165,13 +165,15 @@ TEST_CASE("a slot's child is early for rays of the slot's octant") {
     }
 }
 
-TEST_CASE("slots come in the order of the ray's octant") {
+TEST_CASE("slots come in the order of the ray's octant, or the other way round") {
     for (uint32_t mask = 1; mask < 256; ++mask) {
         for (uint32_t octant = 0; octant < 8; ++octant) {
             const Vec3 inv = {octant & 1 ? -1.0f : 2.0f, octant & 2 ? -0x1p-40f : 0x1p72f, octant & 4 ? -3.0f : 1.0f};
-            uint32_t first = 0;
+            uint32_t first = 0, last = 7;
             while (!(mask >> (first ^ octant) & 1)) ++first;
-            REQUIRE(nearest_slot(mask, inv) == 1u << (first ^ octant));
+            while (!(mask >> (last ^ octant) & 1)) --last;
+            REQUIRE(first_of_slots(mask, slot_order(inv, false)) == 1u << (first ^ octant));
+            REQUIRE(first_of_slots(mask, slot_order(inv, true)) == 1u << (last ^ octant));
         }
     }
 }

@@ -13,7 +13,7 @@
 // the nearest of its waiting children, so that it is dropped at a pop when that lies beyond. That saves 7 to
 // 8 % of the nodes in Sponza and costs more instructions than it saves: rta_at_pops off is without it. Triangles that
 // were put off carry no distance: they are tested whatever was hit meanwhile.
-// near_first off: in the order of slots.
+// near_first off: in the order of slots. A search for any hit may ask for far children first (trace_any.h).
 
 #include <cstddef>
 #include <cstdint>
@@ -76,6 +76,7 @@ struct CompressedPlace {
     NodeGroup nodes = {0, 0};
     TriangleGroup triangles = {0, 0, 0}; // found, and put off
     RaySegment segment = {};
+    uint32_t order = 0; // of slots
     typename Tests::Triangles prepared = {};
 
     HD explicit CompressedPlace(Slot* memory) : slots(memory) {}
@@ -136,6 +137,7 @@ struct CompressedWalk {
     template <class Visitor>
     HD static void start(const CompressedBvhView& bvh, const Ray& ray, const Visitor& visitor, Place& place) {
         place.segment = make_ray_segment<Tests>(ray, bvh.bounds_max_abs, skip_beyond<kOptions>(visitor, ray));
+        place.order = slot_order(place.segment.inv, visitor.goes_far_first());
         place.prepared = Tests::make_triangles(ray);
         place.size = 0;
         place.nodes = {0, 1u << 24 | (bvh.nodes == nullptr ? 0u : 1u)}; // slot 0 of a node above
@@ -166,15 +168,15 @@ struct CompressedWalk {
 
 private:
     /// Of slots the one to enter first; 0 of none.
-    HD static uint32_t first_slot(uint32_t slots, const RaySegment& segment) {
-        return kOptions.near_first ? nearest_slot(slots, segment.inv) : slots & (0u - slots);
+    HD static uint32_t first_slot(uint32_t slots, uint32_t order) {
+        return kOptions.near_first ? first_of_slots(slots, order) : slots & (0u - slots);
     }
 
     /// Tests the boxes of the next node. Its children come before what is left of its group.
     template <class Counter>
     HD static void step_down(const CompressedBvhView& bvh, const Ray& ray, Place& place, const Counter& counter) {
         NodeGroup group = place.nodes;
-        const uint32_t slot = first_slot(group.left & 0xffu, place.segment); // one bit
+        const uint32_t slot = first_slot(group.left & 0xffu, place.order); // one bit
         const uint32_t index = group.base + count_ones(group.left & (slot * (1u << 24) - (1u << 24)));
         group.left ^= slot;
         if (!group.is_empty()) place.push(group.base, group.left);
@@ -191,7 +193,7 @@ private:
         const uint32_t inner = entered & inner_slots(node);
         place.nodes = {node.child_base, (node.exponents_and_inner & 0xff000000u) | inner};
         if (Place::kRtaAtPops) {
-            const uint32_t others = inner ^ first_slot(inner, place.segment);
+            const uint32_t others = inner ^ first_slot(inner, place.order);
             place.nodes.left |= least_entry(entries, others, place.segment.end) << 8;
         }
     }

@@ -38,12 +38,17 @@ class FlightStack {
 public:
     FlightStack() : size_(1) { entry_[0] = -kInfinity, link_[0] = kNoLink, count_[0] = 0; }
 
-    /// The children that are entered; the nearest last, or the one that the builder put first.
+    /// The children that are entered; the nearest last, or the one that the builder put first, or the farthest.
     template <WalkOptions kOptions>
-    [[gnu::always_inline]] void push(const WideBvhNode<kWideChildren>& node, const EnteredChildren& children) {
+    [[gnu::always_inline]] void push(const WideBvhNode<kWideChildren>& node, const EnteredChildren& children,
+                                     bool far_first) {
         const unsigned entered = children.mask();
         uint64_t lanes;
-        if constexpr (kOptions.near_first) {
+        if (far_first) { // alike for most rays in flight
+            const unsigned farthest = farthest_of(children);
+            const unsigned others = entered & ~(1u << farthest);
+            lanes = kLanesOfMask.down[others] | uint64_t(farthest) << 8 * __builtin_popcount(others);
+        } else if constexpr (kOptions.near_first) {
             const unsigned nearest = nearest_of(children);
             const unsigned others = entered & ~(1u << nearest);
             lanes = kLanesOfMask.up[others] | uint64_t(nearest) << 8 * __builtin_popcount(others);
@@ -82,12 +87,23 @@ private:
 
     /// The lane of the least entry, by its upper 16 bits; none is negative. Where none is entered, any.
     [[gnu::always_inline]] static unsigned nearest_of(const EnteredChildren& children) {
+        return least_lane(_mm_or_si128(keys_of(children), _mm_xor_si128(in_of(children), _mm_set1_epi32(-1))));
+    }
+    /// Likewise of the greatest.
+    [[gnu::always_inline]] static unsigned farthest_of(const EnteredChildren& children) {
+        const __m128i not_zero = _mm_or_si128(keys_of(children), _mm_set1_epi16(1)); // as those are that are left out
+        return least_lane(_mm_xor_si128(_mm_and_si128(not_zero, in_of(children)), _mm_set1_epi32(-1)));
+    }
+    [[gnu::always_inline]] static __m128i keys_of(const EnteredChildren& children) {
         const __m256i entries = _mm256_srli_epi32(_mm256_castps_si256(children.entries), 16);
+        return _mm_packus_epi32(_mm256_castsi256_si128(entries), _mm256_extracti128_si256(entries, 1));
+    }
+    [[gnu::always_inline]] static __m128i in_of(const EnteredChildren& children) {
         const __m256i is_in = _mm256_castps_si256(children.is_in);
-        const __m128i keys = _mm_packus_epi32(_mm256_castsi256_si128(entries), _mm256_extracti128_si256(entries, 1));
-        const __m128i in = _mm_packs_epi32(_mm256_castsi256_si128(is_in), _mm256_extracti128_si256(is_in, 1));
-        const __m128i out = _mm_xor_si128(in, _mm_set1_epi32(-1));
-        return static_cast<unsigned>(_mm_cvtsi128_si32(_mm_minpos_epu16(_mm_or_si128(keys, out)))) >> 16;
+        return _mm_packs_epi32(_mm256_castsi256_si128(is_in), _mm256_extracti128_si256(is_in, 1));
+    }
+    [[gnu::always_inline]] static unsigned least_lane(__m128i keys) {
+        return static_cast<unsigned>(_mm_cvtsi128_si32(_mm_minpos_epu16(keys))) >> 16;
     }
 
     /// From place `at` on, the lanes that are named; what comes after them is spoilt.

@@ -109,7 +109,7 @@ private:
             const __m256 t_limit = _mm256_set1_ps(skip_beyond<kOptions>(flight.visitor, flight.ray));
             const EnteredChildren entered =
                 enters_children(flight.wide, node, _mm256_set1_ps(flight.ray.t_min), t_limit);
-            flight.stack.template push<kOptions>(node, entered);
+            flight.stack.template push<kOptions>(node, entered, flight.visitor.goes_far_first());
             const bool is_leaf = go_on(flight);
             at_leaves.add_if(is_leaf, &flight);
             at_nodes.flights[left] = &flight;

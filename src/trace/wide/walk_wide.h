@@ -134,23 +134,29 @@ struct WideEntry {
 using WideStack = WideEntry[kWideStackSize<kWideChildren>];
 
 /// Tests a node's boxes. Where the ray enters any, the first of them goes to `at` and the others to the stack: the
-/// nearest first, or the one that the builder put first. Most nodes lead to one child or two, which take no loop.
+/// nearest first, or the one that the builder put first, or the farthest. Most nodes lead to one child or two, which
+/// take no loop.
 template <WalkOptions kOptions>
 [[gnu::always_inline]] inline bool enter_node(const WideBvhNode<kWideChildren>& node, const WideRay& wide, __m256 t_min,
-                                              __m256 t_limit, WideEntry* stack, int& size, WideEntry& at) {
+                                              __m256 t_limit, bool far_first, WideEntry* stack, int& size,
+                                              WideEntry& at) {
     const EnteredChildren children = enters_children(wide, node, t_min, t_limit);
     unsigned entered = children.mask();
     if (entered == 0) return false;
     alignas(32) float entries[kWideChildren];
     _mm256_store_ps(entries, children.entries);
     const auto child = [&](int k) { return WideEntry{entries[k], node.child[k], node.count[k]}; };
-    if constexpr (!kOptions.near_first) {
+    if (!kOptions.near_first || far_first) {
+        const int base = size;
         while ((entered & (entered - 1)) != 0) {
             const int last = 31 - __builtin_clz(entered);
             stack[size++] = child(last);
             entered ^= 1u << last;
         }
         at = child(__builtin_ctz(entered));
+        for (int i = base; far_first && i < size; ++i) {
+            if (stack[i].entry > at.entry) std::swap(stack[i], at);
+        }
         return true;
     }
     const int first = __builtin_ctz(entered);
@@ -190,7 +196,7 @@ template <WalkOptions kOptions, class Visitor, class Counter>
             const WideBvhNode<kWideChildren>& node = bvh.nodes[at.link];
             counter.add_node(&node);
             const __m256 t_limit = _mm256_set1_ps(skip_beyond<kOptions>(visitor, ray));
-            if (enter_node<kOptions>(node, wide, t_min, t_limit, stack, size, at)) continue;
+            if (enter_node<kOptions>(node, wide, t_min, t_limit, visitor.goes_far_first(), stack, size, at)) continue;
         } else if (leaf.test_all(bvh.triangles + (at.link & ~kLeafBit), at.count, instance, visitor, counter)) {
             return true;
         }

@@ -52,6 +52,7 @@ public:
 
     void run(Visitor* visitors, int count) {
         visitors_ = visitors;
+        far_first_ = visitors[0].goes_far_first(); // as most of a packet's rays; it is right for all
         for (int k = 0; k < kWidePacket; ++k) {
             eights_[k / 8].limits[k % 8] = k < count ? visitors[k].limit() : -kInfinity;
         }
@@ -216,9 +217,10 @@ private:
         for (unsigned rest = mask_of(_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)); rest != 0; rest &= rest - 1) {
             const int k = __builtin_ctz(rest);
             int place = n++;
-            for (; kOptions.near_first && place > 0 && entries[order[place - 1]] > entries[k]; --place) {
-                order[place] = order[place - 1];
-            }
+            const auto is_before = [&](int other) {
+                return far_first_ ? entries[k] > entries[other] : kOptions.near_first && entries[k] < entries[other];
+            };
+            for (; place > 0 && is_before(order[place - 1]); --place) order[place] = order[place - 1];
             order[place] = k;
         }
         return n;
@@ -268,7 +270,7 @@ private:
     Visitor* visitors_ = nullptr;
     Eight eights_[kPacketEights];
     Extent extents_[3];
-    bool back_[3], is_coherent_ = true;
+    bool back_[3], is_coherent_ = true, far_first_ = false;
     float least_t_ = kInfinity;
 };
 
