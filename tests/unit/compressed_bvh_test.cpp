@@ -172,6 +172,7 @@ TEST_CASE("slots come in the order of the ray's octant, or the other way round")
             uint32_t first = 0, last = 7;
             while (!(mask >> (first ^ octant) & 1)) ++first;
             while (!(mask >> (last ^ octant) & 1)) --last;
+            REQUIRE(nearest_slot(mask, inv) == 1u << (first ^ octant));
             REQUIRE(first_of_slots(mask, slot_order(inv, false)) == 1u << (first ^ octant));
             REQUIRE(first_of_slots(mask, slot_order(inv, true)) == 1u << (last ^ octant));
         }

@@ -101,15 +101,33 @@ HD inline uint32_t least_entry(const float (&entries)[8], uint32_t slots, float 
     return bits_of(float_of(static_cast<uint32_t>(min(b, c))) * end) >> 16;
 }
 
-/// In which order a ray takes slots: at each axis, z, y, x from the lowest byte on, the half of the slots that comes
-/// first. With 1 / direction `inv` that is the nearer half, or the farther one.
+/// The bit of the slot that comes first for a ray with 1 / direction `inv`: least s ^ the ray's octant; 0 of no
+/// slots. At each axis the half that lies nearer is kept, unless it is empty.
+HD inline uint32_t nearest_slot(uint32_t slots, Vec3 inv) {
+    const auto keep_nearer = [&slots](float along, uint32_t lower_half) {
+        const uint32_t backwards = 0u - (bits_of(along) >> 31);
+#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
+        uint32_t nearer; // (a ^ b) & c at once, which ptxas does not make of it
+        asm("lop3.b32 %0, %1, %2, %3, 0x28;" : "=r"(nearer) : "r"(backwards), "r"(lower_half), "r"(slots));
+#else
+        const uint32_t nearer = slots & (backwards ^ lower_half);
+#endif
+        slots = nearer != 0 ? nearer : slots;
+    };
+    keep_nearer(inv.z, 0x0f);
+    keep_nearer(inv.y, 0x33);
+    keep_nearer(inv.x, 0x55);
+    return slots;
+}
+
+/// The same order, or the other way round, as three bytes: at each axis, z, y, x from the lowest byte on, the half of
+/// the slots that comes first.
 HD inline uint32_t slot_order(Vec3 inv, bool far_first) {
     const auto half = [far_first](float along, uint32_t lower) { return (along < 0) != far_first ? lower ^ 0xffu : lower; };
     return half(inv.z, 0x0f) | half(inv.y, 0x33) << 8 | half(inv.x, 0x55) << 16;
 }
 
-/// The bit of the slot that comes first; 0 of no slots. At each axis the half that comes first is kept, unless it is
-/// empty.
+/// The bit of the slot that comes first in that order; 0 of no slots.
 HD inline uint32_t first_of_slots(uint32_t slots, uint32_t order) {
     const auto keep = [&slots](uint32_t half) { slots = (slots & half) != 0 ? slots & half : slots; };
     keep(order); // slots are eight bits
