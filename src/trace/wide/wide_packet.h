@@ -6,6 +6,8 @@
 //
 // Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", ACM TOG
 // 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in walk_wide.h.
+// A search for any hit keeps to the builder's order, rays without an end too (trace_any.h): they go to one sun then, and
+// with far children first fewer of them go on together.
 // No hit is lost to the intervals: planes are moved out for each ray (ray_boxes.h) by 16 units, of which a bound that
 // is computed as (plane - moved origin) times 1/direction loses four and the triangle's test six.
 
@@ -52,7 +54,6 @@ public:
 
     void run(Visitor* visitors, int count) {
         visitors_ = visitors;
-        far_first_ = visitors[0].goes_far_first(); // as most of a packet's rays; it is right for all
         for (int k = 0; k < kWidePacket; ++k) {
             eights_[k / 8].limits[k % 8] = k < count ? visitors[k].limit() : -kInfinity;
         }
@@ -217,10 +218,9 @@ private:
         for (unsigned rest = mask_of(_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)); rest != 0; rest &= rest - 1) {
             const int k = __builtin_ctz(rest);
             int place = n++;
-            const auto is_before = [&](int other) {
-                return far_first_ ? entries[k] > entries[other] : kOptions.near_first && entries[k] < entries[other];
-            };
-            for (; place > 0 && is_before(order[place - 1]); --place) order[place] = order[place - 1];
+            for (; kOptions.near_first && place > 0 && entries[order[place - 1]] > entries[k]; --place) {
+                order[place] = order[place - 1];
+            }
             order[place] = k;
         }
         return n;
@@ -270,7 +270,7 @@ private:
     Visitor* visitors_ = nullptr;
     Eight eights_[kPacketEights];
     Extent extents_[3];
-    bool back_[3], is_coherent_ = true, far_first_ = false;
+    bool back_[3], is_coherent_ = true;
     float least_t_ = kInfinity;
 };
 
