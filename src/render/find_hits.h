@@ -21,8 +21,8 @@ inline void find_hits(const HostTrees& trees, uint32_t count, RayOrder order, co
 template <class RayOf, class AcceptOf>
 inline void find_occlusions(const HostTrees& trees, uint32_t count, RayOrder order, const RayOf& ray_of,
                             const AcceptOf& accept_of, bool* met) {
-    // Of several children, the builder put first where such searches end sooner, but of rays without an end the farthest
-    // is a better start (trace/trace_any.h).
+    // Of several children, the builder put first where such searches end sooner. Of rays without an end the farthest is
+    // a better start (trace/trace_any.h).
     trace_any_many<WalkOptions{.near_first = false}>(trees, count, order, ray_of, accept_of, met);
 }
 

@@ -18,9 +18,11 @@ enum class TestKind {
 struct WalkOptions {
     bool rta = true; // redundant traversal avoidance: skip what is entered beyond the nearest hit so far; off: only
                      // what is entered beyond the ray's own t_max
-    bool near_first = true; // of several children, the one entered first; off: the builder's order
+    bool near_first = true; // of several children, the one entered first; off: the builder's order. What searches for
+                            // any hit ask for beside that: trace_any.h
     TestKind tests = TestKind::Exact;
     bool rta_at_pops = true; // off: RTA at nodes alone; the compressed walk has that, the others do not
+    bool any_hit = false;    // what for_any_hit makes of the others
 
     constexpr bool operator==(const WalkOptions&) const = default;
     constexpr bool is_exact() const { return tests == TestKind::Exact; }
@@ -30,6 +32,7 @@ struct WalkOptions {
 constexpr WalkOptions for_any_hit(WalkOptions options) {
     options.rta = false;
     options.rta_at_pops = true;
+    options.any_hit = true;
     return options;
 }
 

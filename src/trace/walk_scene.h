@@ -4,8 +4,8 @@
 // differ only in the visitor:
 //   float limit() const                              a box whose entry is greater holds nothing of interest
 //   bool visit(instance, primitive, TriangleHit)     sees each candidate; true ends the walk
-//   bool goes_far_first() const                      whether far children had better come first (trace_any.h); walks
-//                                                    that pictures take for shadow rays ask it
+//   bool goes_far_first() const                      whether far children had better come first (trace_any.h):
+//                                                    CompressedWalk, walk_wide.h and walk_in_flight.h ask it
 // The set of triangles that a visitor sees may differ between structures; what it makes of them may not.
 
 #include <cstdint>

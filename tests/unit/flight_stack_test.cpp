@@ -4,9 +4,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <vector>
 
+#include "accel/bvh/build_bvh.h"
+#include "accel/bvh/wide_bvh.h"
 #include "tests/support/random.h"
+#include "trace/wide/walk_in_flight.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -41,30 +45,81 @@ std::vector<uint32_t> order_of(unsigned mask, const float (&entries)[kWideChildr
 
 } // namespace
 
-TEST_CASE("children are popped the nearest, the builder's first, or the farthest first, the others as the builder has them") {
+TEST_CASE("the nearest child comes first, or the builder's, or the farthest, the others as the builder has them") {
     Random random(2);
     for (unsigned mask = 0; mask < 256; ++mask) {
-        for (const bool all_at_zero : {false, true}) { // a ray that starts in all of them
+        for (int started_in = 0; started_in <= 8; ++started_in) { // so many of the boxes, on average
             float entries[kWideChildren];
-            for (float& entry : entries) entry = all_at_zero ? 0.0f : random.within(0, 1000);
+            for (float& entry : entries) {
+                entry = random.below(8) < static_cast<uint32_t>(started_in) ? 0.0f : random.within(0, 1000);
+            }
             std::vector<uint32_t> builders;
             for (unsigned k = 0; k < kWideChildren; ++k) {
                 if (mask >> k & 1) builders.push_back(100 + k);
             }
             CHECK(order_of<WalkOptions{.near_first = false}>(mask, entries, false) == builders);
-            const auto check_first = [&](std::vector<uint32_t> order, float sign) {
+            const auto check_first = [&](std::vector<uint32_t> order, bool is_far) {
                 REQUIRE(order.size() == builders.size());
                 if (order.empty()) return;
-                const float first = sign * entries[order[0] - 100];
-                for (const uint32_t link : order) CHECK(first <= sign * entries[link - 100] + 0.01f * first * sign);
+                const float first = entries[order[0] - 100];
+                for (const uint32_t link : order) { // compared by the upper 16 bits
+                    const float other = entries[link - 100];
+                    CHECK((is_far ? other <= 1.01f * first : first <= 1.01f * other));
+                }
+                std::ranges::sort(order);
+                CHECK(order == builders);
             };
             const auto far = order_of<WalkOptions{.near_first = false}>(mask, entries, true);
-            check_first(far, -1);
-            check_first(order_of<WalkOptions{}>(mask, entries, true), -1);
-            check_first(order_of<WalkOptions{}>(mask, entries, false), 1);
+            check_first(far, true);
+            check_first(order_of<WalkOptions{}>(mask, entries, true), true);
+            check_first(order_of<WalkOptions{}>(mask, entries, false), false);
             if (far.empty()) continue;
             std::erase(builders, far[0]);
             CHECK(std::vector(far.begin() + 1, far.end()) == builders);
         }
     }
+}
+
+namespace {
+
+/// Ends at the first candidate that it sees.
+struct FirstSeen {
+    AcceptAll accept;
+    float t_max, seen = -1;
+    bool is_far;
+
+    float limit() const { return t_max; }
+    bool is_done() const { return seen >= 0; }
+    bool goes_far_first() const { return is_far; }
+    bool visit(uint32_t, uint32_t, const TriangleHit& hit) {
+        seen = hit.t;
+        return true;
+    }
+};
+
+/// The candidate that rays along x see first, of triangles at x = 1, 2, ... 64.
+std::vector<float> first_seen(bool is_far) {
+    std::vector<BvhTriangle> triangles(64);
+    for (uint32_t i = 0; i < triangles.size(); ++i) {
+        const float x = 1 + static_cast<float>(i);
+        triangles[i].a = {x, -1, -1}, triangles[i].b = {x, 1, -1}, triangles[i].c = {x, 0, 1};
+        triangles[i].primitive = i;
+    }
+    const WideBvh<kWideChildren> tree = make_wide_bvh<kWideChildren>(build_bvh(triangles));
+    HostTrees scene;
+    scene.baked = view_of(tree);
+    const Ray ray = {{0, 0, 0}, 0, {1, 0, 0}, kInfinity};
+    std::vector<float> seen(20);
+    walk_scene_in_flight<WalkOptions{}>(
+        scene, static_cast<uint32_t>(seen.size()), [&](uint32_t) { return ray; }, [](uint32_t) { return AcceptAll{}; },
+        [&](const AcceptAll&, const Ray& r) { return FirstSeen{.accept = {}, .t_max = r.t_max, .is_far = is_far}; },
+        [&](uint32_t i, const FirstSeen& visitor) { seen[i] = visitor.seen; });
+    return seen;
+}
+
+} // namespace
+
+TEST_CASE("rays in flight begin at their far ends where that is asked for") {
+    for (const float t : first_seen(false)) CHECK(t <= 4); // a leaf holds four
+    for (const float t : first_seen(true)) CHECK(t > 60);
 }

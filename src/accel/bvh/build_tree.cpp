@@ -107,7 +107,7 @@ private:
             build_right();
         }
         // Child 0 is the one where a ray finds something sooner: more surface a triangle (large walls before small
-        // ornaments). A search for any hit goes there first, which halves its way in Sponza.
+        // ornaments). A CPU's search for any hit of a ray that ends goes there first: half the way in Sponza.
         const float left_size = static_cast<float>(left.size()), right_size = static_cast<float>(right.size());
         const int first = half_area(left.box) * right_size >= half_area(right.box) * left_size ? 0 : 1;
         set_child(node, first, to_bounds(left.box), links[0]);

@@ -7,7 +7,8 @@
 // sections 3 and 4. Unlike theirs, a node says which triangles its leaves have in one word of three masks of children,
 // so that a walk turns a mask of children into one of triangles by a multiplication. A child's place (slot)
 // tells where it lies: the one in slot s comes early for rays that travel into octant s (bit 0: x decreases, bit 1: y,
-// bit 2: z), so a ray of octant r takes slots in ascending order of s ^ r and sorts nothing.
+// bit 2: z), so a ray of octant r takes slots in ascending order of s ^ r, or the far ones first in descending order,
+// and sorts nothing.
 
 #include <cstdint>
 #include <optional>

@@ -75,7 +75,7 @@ TracerChoice default_tracers(bool on_cuda, TreeBuild build) {
         return {together, alone, alone};
     }
     TracerChoice choice = same_for_all({.structure = structure, .walk = WalkKind::Wide8Simd});
-    // Of several children, the first is where any-hit searches end sooner; of rays without an end see trace/trace_any.h.
+    // Of several children, the first is where any-hit searches end sooner (of rays without an end: trace/trace_any.h).
     choice.shadow.options.near_first = false;
     return choice;
 }

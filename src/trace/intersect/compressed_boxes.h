@@ -123,7 +123,9 @@ HD inline uint32_t nearest_slot(uint32_t slots, Vec3 inv) {
 /// The same order, or the other way round, as three bytes: at each axis, z, y, x from the lowest byte on, the half of
 /// the slots that comes first.
 HD inline uint32_t slot_order(Vec3 inv, bool far_first) {
-    const auto half = [far_first](float along, uint32_t lower) { return (along < 0) != far_first ? lower ^ 0xffu : lower; };
+    const auto half = [far_first](float along, uint32_t lower) {
+        return (along < 0) != far_first ? lower ^ 0xffu : lower;
+    };
     return half(inv.z, 0x0f) | half(inv.y, 0x33) << 8 | half(inv.x, 0x55) << 16;
 }
 

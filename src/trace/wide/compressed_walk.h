@@ -1,7 +1,7 @@
 #pragma once
 
 // The walk of the compressed 8-wide tree: what is left to do is kept in groups, one 8-byte entry for all the children
-// of a node that are still to be entered, nearest octant first without any sorting.
+// of a node that are still to be entered, nearest octant first (or farthest, below) without any sorting.
 //
 // Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
 // section 4, with its postponing of triangles: a warp tests them only while enough of its lanes have some, and goes on
@@ -13,7 +13,7 @@
 // the nearest of its waiting children, so that it is dropped at a pop when that lies beyond. That saves 7 to
 // 8 % of the nodes in Sponza and costs more instructions than it saves: rta_at_pops off is without it. Triangles that
 // were put off carry no distance: they are tested whatever was hit meanwhile.
-// near_first off: in the order of slots. A search for any hit may ask for far children first (trace_any.h).
+// near_first off: in the order of slots. On: a search for any hit may ask for far children first (trace_any.h).
 
 #include <cstddef>
 #include <cstdint>
@@ -60,9 +60,8 @@ template <WalkOptions kOptions>
 struct CompressedPlace {
     using Tests = TestsOf<kOptions>;
     static constexpr bool kRtaAtPops = kOptions.rta && kOptions.rta_at_pops;
-    // Searches for any hit have no RTA (for_any_hit). The others go by the signs of 1/direction: with a register for an
-    // order they are 5 % slower.
-    static constexpr bool kEitherWay = !kOptions.rta;
+    // Searches for the closest hit go by the signs of 1/direction: with a register for an order they are 5 % slower.
+    static constexpr bool kEitherWay = kOptions.any_hit && kOptions.near_first;
     // One store, where a struct would become two. Upper half from 2^24: a NodeGroup, whose base is the lower half;
     // less: the `left` of triangles, and the lower half is their node.
     using Slot = uint64_t;

@@ -46,7 +46,7 @@ public:
         uint64_t lanes;
         if (far_first) { // alike for most rays in flight
             const unsigned farthest = farthest_of(children);
-            const unsigned others = entered & ~(1u << farthest);
+            const unsigned others = entered & ~(1u << farthest); // all, if that is not entered: it comes beyond the top
             lanes = kLanesOfMask.down[others] | uint64_t(farthest) << 8 * __builtin_popcount(others);
         } else if constexpr (kOptions.near_first) {
             const unsigned nearest = nearest_of(children);
@@ -89,10 +89,9 @@ private:
     [[gnu::always_inline]] static unsigned nearest_of(const EnteredChildren& children) {
         return least_lane(_mm_or_si128(keys_of(children), _mm_xor_si128(in_of(children), _mm_set1_epi32(-1))));
     }
-    /// Likewise of the greatest.
+    /// Likewise of the greatest. Where all are 0, lane 0, entered or not: push() leaves it out where it is not.
     [[gnu::always_inline]] static unsigned farthest_of(const EnteredChildren& children) {
-        const __m128i not_zero = _mm_or_si128(keys_of(children), _mm_set1_epi16(1)); // as those are that are left out
-        return least_lane(_mm_xor_si128(_mm_and_si128(not_zero, in_of(children)), _mm_set1_epi32(-1)));
+        return least_lane(_mm_xor_si128(_mm_and_si128(keys_of(children), in_of(children)), _mm_set1_epi32(-1)));
     }
     [[gnu::always_inline]] static __m128i keys_of(const EnteredChildren& children) {
         const __m256i entries = _mm256_srli_epi32(_mm256_castps_si256(children.entries), 16);

@@ -134,8 +134,8 @@ struct WideEntry {
 using WideStack = WideEntry[kWideStackSize<kWideChildren>];
 
 /// Tests a node's boxes. Where the ray enters any, the first of them goes to `at` and the others to the stack: the
-/// nearest first, or the one that the builder put first, or the farthest. Most nodes lead to one child or two, which
-/// take no loop.
+/// nearest first, or the one that the builder put first, or the farthest, the others as the builder has them. Most
+/// nodes lead to one child or two, which take no loop by distance.
 template <WalkOptions kOptions>
 [[gnu::always_inline]] inline bool enter_node(const WideBvhNode<kWideChildren>& node, const WideRay& wide, __m256 t_min,
                                               __m256 t_limit, bool far_first, WideEntry* stack, int& size,
@@ -147,16 +147,21 @@ template <WalkOptions kOptions>
     _mm256_store_ps(entries, children.entries);
     const auto child = [&](int k) { return WideEntry{entries[k], node.child[k], node.count[k]}; };
     if (!kOptions.near_first || far_first) {
-        const int base = size;
-        while ((entered & (entered - 1)) != 0) {
+        int first = __builtin_ctz(entered);
+        entered &= entered - 1;
+        if (far_first) {
+            const unsigned all = entered | 1u << first;
+            for (unsigned rest = entered; rest != 0; rest &= rest - 1) {
+                if (entries[__builtin_ctz(rest)] > entries[first]) first = __builtin_ctz(rest);
+            }
+            entered = all & ~(1u << first);
+        }
+        while (entered != 0) {
             const int last = 31 - __builtin_clz(entered);
             stack[size++] = child(last);
             entered ^= 1u << last;
         }
-        at = child(__builtin_ctz(entered));
-        for (int i = base; far_first && i < size; ++i) {
-            if (stack[i].entry > at.entry) std::swap(stack[i], at);
-        }
+        at = child(first);
         return true;
     }
     const int first = __builtin_ctz(entered);

@@ -6,8 +6,8 @@
 //
 // Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", ACM TOG
 // 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in walk_wide.h.
-// A search for any hit keeps to the builder's order, rays without an end too (trace_any.h): they go to one sun then, and
-// with far children first fewer of them go on together.
+// A search for any hit keeps to the builder's order, of rays without an end too (trace_any.h): those that go together
+// mostly go to one sun, and with far children first fewer of them go on together.
 // No hit is lost to the intervals: planes are moved out for each ray (ray_boxes.h) by 16 units, of which a bound that
 // is computed as (plane - moved origin) times 1/direction loses four and the triangle's test six.
 
