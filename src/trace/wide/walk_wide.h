@@ -148,14 +148,11 @@ template <WalkOptions kOptions>
     const auto child = [&](int k) { return WideEntry{entries[k], node.child[k], node.count[k]}; };
     if (!kOptions.near_first || far_first) {
         int first = __builtin_ctz(entered);
-        entered &= entered - 1;
-        if (far_first) {
-            const unsigned all = entered | 1u << first;
-            for (unsigned rest = entered; rest != 0; rest &= rest - 1) {
-                if (entries[__builtin_ctz(rest)] > entries[first]) first = __builtin_ctz(rest);
-            }
-            entered = all & ~(1u << first);
+        for (unsigned rest = entered; far_first && rest != 0; rest &= rest - 1) {
+            const int k = __builtin_ctz(rest);
+            if (entries[k] > entries[first]) first = k;
         }
+        entered ^= 1u << first;
         while (entered != 0) {
             const int last = 31 - __builtin_clz(entered);
             stack[size++] = child(last);
