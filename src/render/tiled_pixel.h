@@ -1,11 +1,11 @@
 #pragma once
 
-// The order in which the pixels of a picture are given out: tiles of 8 x 4, row by row, so that the 32 camera rays of a
-// warp stay together.
+// Orders of a picture's pixels: tiles of 8 x 4, row by row inside, so that the 32 camera rays of a warp stay together.
 
 #include <cstdint>
 
 #include "base/host_device.h"
+#include "math/scalar.h"
 
 namespace pertev {
 
@@ -13,12 +13,16 @@ struct PixelPlace {
     uint32_t x, y; // column, row
 };
 
-/// The pixel that comes as number `i`. Columns and rows that do not fill a tile come last.
-HD inline PixelPlace tiled_place(uint32_t i, uint32_t width, uint32_t height) {
+/// The pixel that comes as number `i`. `band` rows of tiles are gone through together, column by column; 1: tiles come
+/// row by row. Columns and rows that do not fill a tile come last.
+HD inline PixelPlace tiled_place(uint32_t i, uint32_t width, uint32_t height, uint32_t band = 1) {
     const uint32_t tiles_x = width / 8, tiles_y = height / 4, tiled = tiles_x * tiles_y * 32;
     if (i < tiled) {
-        const uint32_t tile = i / 32, within = i % 32, row = tile / tiles_x;
-        return {(tile - row * tiles_x) * 8 + within % 8, row * 4 + within / 8};
+        const uint32_t tile = i / 32, within = i % 32;
+        const uint32_t first_row = tile / (tiles_x * band) * band, rows = min(band, tiles_y - first_row);
+        const uint32_t in_band = tile - first_row * tiles_x, column = in_band / rows;
+        const uint32_t row = first_row + in_band - column * rows;
+        return {column * 8 + within % 8, row * 4 + within / 8};
     }
     i -= tiled;
     const uint32_t right = width - tiles_x * 8, in_right = right * tiles_y * 4;
@@ -26,8 +30,8 @@ HD inline PixelPlace tiled_place(uint32_t i, uint32_t width, uint32_t height) {
     i -= in_right;
     return {i % width, tiles_y * 4 + i / width};
 }
-HD inline uint32_t tiled_pixel(uint32_t i, uint32_t width, uint32_t height) {
-    const PixelPlace place = tiled_place(i, width, height);
+HD inline uint32_t tiled_pixel(uint32_t i, uint32_t width, uint32_t height, uint32_t band = 1) {
+    const PixelPlace place = tiled_place(i, width, height, band);
     return place.y * width + place.x;
 }
 

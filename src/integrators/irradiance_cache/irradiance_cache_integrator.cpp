@@ -138,8 +138,8 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     job.shows_records = picture_cache_.show_records;
     const float bright = 4.0f * store_.mean_luminance();
     job.mark = {bright, 0.35f * bright, 0};
-    job.walk.samples = {0, pixels, first};
-    run_walks(job, 0, uint64_t(pixels) * count, [this](auto& way, const CacheJob& part) {
+    job.walk.samples = {0, pixels, first, count};
+    run_walks(job, 0, job.walk.samples.count(), [this](auto& way, const CacheJob& part) {
         if (!is_abandoned()) run_picture(way, part);
     });
     rays_.camera += uint64_t(pixels) * count;

@@ -229,7 +229,8 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
     parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
         if (abandon_ != nullptr && *abandon_) return;
         RayCounts counts;
-        render_pixels(picture_, settings, {trees, raster}, film, layers, is_meter_, {begin, end, first, count}, counts);
+        render_pixels(picture_, settings, {trees, raster}, film, layers, is_meter_,
+                      {static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first, count}, counts);
         bounces += counts.bounce;
         shadows += counts.shadow;
     });
@@ -239,8 +240,8 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
-    const Work work = {first, uint64_t(picture_.camera.width) * picture_.camera.height * count, film, layers_for(film),
-                       settings_for(film)};
+    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
+    const Work work = {{0, pixels, first, count}, film, layers_for(film), settings_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
     const int going = in_turns ? 1 : static_cast<int>(wavefronts_.size());
@@ -263,7 +264,7 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
         give_rounds(going, work);
     }
     const RenderCounts counts = render_counts_.download().front();
-    rays_.camera += work.samples;
+    rays_.camera += work.samples.count();
     rays_.bounce += counts.bounces;
     rays_.shadow += counts.shadows;
 }
@@ -286,7 +287,7 @@ void PathIntegrator::give_rounds(int going, const Work& work) {
 }
 
 void PathIntegrator::give_round(Wavefront& w, const Work& work) {
-    const uint32_t pixels = picture_.camera.width * picture_.camera.height, last = w.capacity - 1;
+    const uint32_t last = w.capacity - 1;
     const bool any_alpha = picture_.scene.any_alpha != 0;
     const bool splits_light = work.film.frame.splits_light();
     const PathQueueView paths = w.paths(w.round, splits_light), next = w.paths(w.round + 1, splits_light);
@@ -299,8 +300,8 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     {
         const Queue::OnStream on(queue_, w.path_stream);
         launch(queue_, "plan_round", 1,
-               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, render_counts_.data(), w.capacity, pixels,
-                         work.first_sample, work.samples});
+               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, render_counts_.data(), w.capacity,
+                         work.samples.count()});
         w.seen.take(counts);
         if (w.round > 0) {
             tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits);
@@ -309,7 +310,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
             launch(queue_, "generate_paths", fresh,
-                   GeneratePaths{picture_.camera, work.settings, counts, pixels, last, any_alpha, paths});
+                   GeneratePaths{picture_.camera, work.settings, work.samples, counts, last, any_alpha, paths});
             const HitQueueView camera_hits = {hits.places + last, hits.instances + last, -1};
             if (raster_) {
                 tracer_->find_hits(*raster_, paths.query_back(last), fresh, camera_hits);

@@ -25,6 +25,7 @@
 #include "integrators/path/path_settings.h"
 #include "render/light_paths/light_paths_on_device.h"
 #include "render/raster/camera_raster.h"
+#include "render/sample_order.h"
 
 namespace pertev {
 
@@ -60,8 +61,7 @@ private:
 
     /// Samples that render() makes.
     struct Work {
-        uint32_t first_sample;
-        uint64_t samples; // of pixels
+        SampleOrder samples;
         FilmView film;
         LightPathView layers;
         PathSettings settings;

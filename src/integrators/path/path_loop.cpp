@@ -6,7 +6,6 @@
 #include "integrators/path/host_shading.h"
 #include "integrators/path/shade_to_layers.h"
 #include "render/find_hits.h"
-#include "render/tiled_pixel.h"
 
 namespace pertev {
 namespace {
@@ -228,7 +227,7 @@ private:
 
 template <class Layers>
 void render_group(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                  const FilmView& film, const Layers& layers, const PixelSamples& work, RayCounts& counts) {
+                  const FilmView& film, const Layers& layers, const SampleOrder& work, RayCounts& counts) {
     PathGroup<Layers> group(picture, settings, trees, film, layers);
     const uint32_t width = picture.camera.width, height = picture.camera.height;
     EightSamples samples(picture.camera, settings);
@@ -236,8 +235,8 @@ void render_group(const PictureView& picture, const PathSettings& settings, cons
         group.add(path);
         while (group.is_full()) group.advance(counts);
     };
-    for (uint64_t i = work.begin; i < work.end; ++i) {
-        const uint32_t pixel = tiled_pixel(static_cast<uint32_t>(i), width, height);
+    for (uint32_t i = 0; i < work.pixels; ++i) {
+        const uint32_t pixel = ordered_pixel(work.first_pixel + i, width, height);
         for (uint32_t k = 0; k < work.samples; ++k) {
             samples.add(pixel, work.first_sample + k);
             if (samples.is_full()) samples.begin(trace);
@@ -250,7 +249,7 @@ void render_group(const PictureView& picture, const PathSettings& settings, cons
 } // namespace
 
 void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                   const FilmView& film, const LightPathView& layers, bool is_meter, const PixelSamples& work,
+                   const FilmView& film, const LightPathView& layers, bool is_meter, const SampleOrder& work,
                    RayCounts& counts) {
     if (!layers.is_there() && !is_meter) return render_group(picture, settings, trees, film, NoLayers{}, work, counts);
     render_group(picture, settings, trees, film, LayersOfGroup{layers, is_meter, {}, {}}, work, counts);

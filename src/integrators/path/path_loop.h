@@ -9,15 +9,10 @@
 #include "render/light_paths/light_path_view.h"
 #include "render/picture_view.h"
 #include "render/raster/find_in_tile.h"
+#include "render/sample_order.h"
 #include "trace/scene_trees.h"
 
 namespace pertev {
-
-/// Pixels [begin, end) in the order of tiles (render/tiled_pixel.h); of each the samples [first_sample, + samples).
-struct PixelSamples {
-    uint64_t begin, end;
-    uint32_t first_sample, samples;
-};
 
 /// What rays are traced in; what camera rays meet is found in `raster` where there is one.
 struct LoopTrees {
@@ -28,7 +23,7 @@ struct LoopTrees {
 /// Adds the samples to the film, and to those layers that there are. What was traced beside camera rays is added to
 /// `counts`. `is_meter`: shade_hit_to_layers'.
 void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                   const FilmView& film, const LightPathView& layers, bool is_meter, const PixelSamples& work,
+                   const FilmView& film, const LightPathView& layers, bool is_meter, const SampleOrder& work,
                    RayCounts& counts);
 
 } // namespace pertev

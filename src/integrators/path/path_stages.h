@@ -7,7 +7,7 @@
 #include "integrators/path/generate_path.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/shade_hit.h"
-#include "render/tiled_pixel.h"
+#include "render/sample_order.h"
 
 namespace pertev {
 
@@ -16,7 +16,7 @@ struct PlanRound {
     const RoundCounts* before;
     RoundCounts* round;
     RenderCounts* render; // shared by several that go round at once
-    uint32_t capacity, pixels, first_sample;
+    uint32_t capacity;
     uint64_t samples;
 
     HD void operator()(uint32_t) const {
@@ -31,8 +31,7 @@ struct PlanRound {
         round->going_on = going_on;
         round->fresh = fresh;
         round->active = going_on + fresh;
-        round->first_pixel = static_cast<uint32_t>(first % pixels);
-        round->first_sample = first_sample + static_cast<uint32_t>(first / pixels);
+        round->first = first;
         round->all_begun = left <= room ? 1 : 0;
     }
 };
@@ -40,15 +39,15 @@ struct PlanRound {
 struct GeneratePaths {
     CameraRays camera;
     PathSettings settings;
+    SampleOrder samples;
     const RoundCounts* round;
-    uint32_t pixels, last; // `last`: place of the first one
+    uint32_t last; // place of the first one
     bool any_alpha;
     PathQueueView paths;
 
     HD void operator()(uint32_t i) const {
-        const uint32_t sample = round->first_sample + (round->first_pixel + i) / pixels;
-        const uint32_t pixel = tiled_pixel((round->first_pixel + i) % pixels, camera.width, camera.height);
-        const PathState path = generate_path(camera, settings, pixel, sample);
+        const PixelSample begun = samples.at(round->first + i, camera.width, camera.height);
+        const PathState path = generate_path(camera, settings, begun.pixel, begun.sample);
         paths.store(last - i, path, settings.seed, any_alpha);
         if (paths.times != nullptr) paths.times[last - i] = path.time;
     }

@@ -113,7 +113,7 @@ PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
     PhotonJob job = {};
     job.walk.scene = {picture_, picture_settings_, world_, false};
     job.walk.film = film;
-    job.walk.samples = {0, picture_.camera.width * picture_.camera.height, pass};
+    job.walk.samples = {0, picture_.camera.width * picture_.camera.height, pass, 1};
     job.pass = {pass, picture_map_.photons, {targets_.data(), target_count_}, maps_.clear(), film.invalid, energy_};
     job.how = picture_map_.gather;
     job.search = picture_map_.search;

@@ -54,8 +54,8 @@ public:
         met_ = std::make_unique<bool[]>(std::size_t(capacity_) * kShadowsAtOnce);
     }
 
-    void render(const TreeSamples& samples, uint32_t count) {
-        const uint64_t all = uint64_t(samples.pixels) * count;
+    void render(const SampleOrder& samples) {
+        const uint64_t all = samples.count();
         for (uint64_t first = 0; first < all; first += capacity_) {
             const auto trees = static_cast<uint32_t>(std::min<uint64_t>(capacity_, all - first));
             run(trees, BeginTrees{picture_.camera, settings_, trees_, samples, first});
@@ -196,7 +196,7 @@ void RayTreeIntegrator<Algorithm>::render_loop(uint32_t first, uint32_t count, c
     parallel_for_ranges(pixels, ray_tree::kLoopPixels, [&](uint64_t begin, uint64_t end) {
         if (abandon_ != nullptr && *abandon_) return;
         ray_tree::TreeLoop<Algorithm> loop(picture_, picture_settings_, trees, film);
-        loop.render({static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first}, count);
+        loop.render({static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first, count});
         bounces += loop.counts().bounces;
         shadows += loop.counts().all_shadows;
     });
@@ -205,13 +205,13 @@ void RayTreeIntegrator<Algorithm>::render_loop(uint32_t first, uint32_t count, c
 
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::render_all_at_once(uint32_t first, uint32_t count, const FilmView& film) {
-    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
-    const uint64_t all = uint64_t(pixels) * count;
+    const SampleOrder samples = {0, picture_.camera.width * picture_.camera.height, first, count};
+    const uint64_t all = samples.count();
     queue_.zero(trees_.counts, sizeof(TreeCounts));
     for (uint64_t done = 0; done < all; done += trees_.capacity) {
         const auto trees = static_cast<uint32_t>(std::min<uint64_t>(trees_.capacity, all - done));
         launch(queue_, "begin_trees", trees,
-               BeginTrees{picture_.camera, picture_settings_, trees_, {0, pixels, first}, done});
+               BeginTrees{picture_.camera, picture_settings_, trees_, samples, done});
         launch(queue_, "begin_rounds", 1, BeginRounds{trees_.counts, trees});
         give_rounds(trees, film);
     }

@@ -7,30 +7,22 @@
 #include "integrators/ray_tree/tree_vertex.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
-#include "render/tiled_pixel.h"
+#include "render/sample_order.h"
 
 namespace pertev {
-
-/// The samples that trees are begun for: [first_sample, ...) of pixels [first_pixel, + pixels) in tiled order, sample
-/// by sample.
-struct TreeSamples {
-    uint32_t first_pixel, pixels, first_sample;
-};
 
 /// Trees 0, 1, ... become samples `first`, first + 1, ... of `samples`, with the camera's ray under way.
 struct BeginTrees {
     CameraRays camera;
     RayTreeSettings settings;
     TreesView trees;
-    TreeSamples samples;
+    SampleOrder samples;
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
-        const uint64_t number = first + i;
+        const PixelSample begun = samples.at(first + i, camera.width, camera.height);
         TreeState state = {};
-        state.sample = samples.first_sample + static_cast<uint32_t>(number / samples.pixels);
-        state.pixel = tiled_pixel(samples.first_pixel + static_cast<uint32_t>(number % samples.pixels), camera.width,
-                                  camera.height);
+        state.pixel = begun.pixel, state.sample = begun.sample;
         state.rays = 1;
         const SampleKey key = sample_key(settings, state.pixel, state.sample);
         const Ray line = camera.ray(state.pixel, settings.sampler, key);

@@ -11,20 +11,17 @@
 #include "integrators/subpaths/see_vertex.h"
 #include "integrators/subpaths/splat.h"
 #include "integrators/subpaths/walk_vertex.h"
-#include "render/tiled_pixel.h"
+#include "render/sample_order.h"
 
 namespace pertev {
 
-/// The samples that walks are begun for: [first_sample, ...) of pixels [first_pixel, + pixels) in tiled order, sample
-/// by sample.
-struct WalkSamples {
-    uint32_t first_pixel, pixels, first_sample;
-
-    HD void place(const CameraRays& camera, uint64_t number, WalkState& state) const {
-        state.sample = first_sample + static_cast<uint32_t>(number / pixels);
-        state.pixel = tiled_pixel(first_pixel + static_cast<uint32_t>(number % pixels), camera.width, camera.height);
-    }
-};
+/// The state of a walk that begins for the sample `number`.
+HD inline WalkState begin_walk(const SampleOrder& samples, uint64_t number, const CameraRays& camera) {
+    const PixelSample begun = samples.at(number, camera.width, camera.height);
+    WalkState state = {};
+    state.pixel = begun.pixel, state.sample = begun.sample;
+    return state;
+}
 
 /// What a particle's random numbers are drawn by. Where particles are all there is, one sequence goes through the
 /// particles of the whole picture, so that all of them together are spread evenly. Where they are joined to the
@@ -40,13 +37,12 @@ HD inline SampleKey particle_sample_key(const WalkScene& scene, uint32_t pixel, 
 struct BeginParticles {
     WalkScene scene;
     WalksView walks;
-    WalkSamples samples;
+    SampleOrder samples;
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
         const SubpathSettings& settings = scene.settings;
-        WalkState state = {};
-        samples.place(scene.picture.camera, first + i, state);
+        WalkState state = begin_walk(samples, first + i, scene.picture.camera);
         if (walks.room.kept > 0) walks.kept_counts[i] = 0;
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
         const SampleBits place = sample_bits(settings.sampler, key, kGroupLight);

@@ -93,9 +93,9 @@ void WalksIntegrator<Algorithm>::render_loop(uint32_t first, uint32_t count, con
         WalkJob job = make_job(film);
         lay_out(job.walks, reinterpret_cast<std::byte*>(memory.data()), room);
         *job.walks.counts = {};
-        job.samples = {static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first};
+        job.samples = {static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first, count};
         WalksInThread way(trees, room);
-        const uint64_t all = (end - begin) * count;
+        const uint64_t all = job.samples.count();
         for (job.first = 0; job.first < all; job.first += room.walks) {
             job.count = static_cast<uint32_t>(std::min<uint64_t>(room.walks, all - job.first));
             Algorithm::render(way, job);
@@ -109,10 +109,10 @@ void WalksIntegrator<Algorithm>::render_loop(uint32_t first, uint32_t count, con
 template <class Algorithm>
 void WalksIntegrator<Algorithm>::render_all_at_once(uint32_t first, uint32_t count, const FilmView& film) {
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
-    const uint64_t all = uint64_t(pixels) * count;
     WalkJob job = make_job(film);
     job.walks = walks_;
-    job.samples = {0, pixels, first};
+    job.samples = {0, pixels, first, count};
+    const uint64_t all = job.samples.count();
     queue_.zero(walks_.counts, sizeof(WalkCounts));
     WalksOnDevice way(queue_, *tracer_, seen_);
     for (job.first = 0; job.first < all; job.first += walks_.room.walks) {

@@ -1,0 +1,62 @@
+// The order in which samples begin: each sample of each pixel once, those of a pixel together, and what is under way at
+// a time about as wide as high.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "render/sample_order.h"
+
+namespace pertev {
+namespace {
+
+struct Size {
+    uint32_t width, height;
+};
+
+TEST_CASE("every pixel comes once, also where tiles and bands do not fill the picture") {
+    for (const Size size : {Size{1, 1}, Size{7, 3}, Size{8, 4}, Size{64, 64}, Size{101, 67}, Size{16, 131}, Size{200, 9}}) {
+        CAPTURE(size.width);
+        CAPTURE(size.height);
+        std::vector<uint32_t> times(std::size_t(size.width) * size.height);
+        for (uint32_t place = 0; place < times.size(); ++place) {
+            const uint32_t pixel = ordered_pixel(place, size.width, size.height);
+            REQUIRE(pixel < times.size());
+            ++times[pixel];
+        }
+        CHECK(std::ranges::all_of(times, [](uint32_t n) { return n == 1; }));
+    }
+}
+
+TEST_CASE("samples of a pixel come one after another, of the pixels and samples that are asked for") {
+    const Size size = {101, 67};
+    const SampleOrder order = {1000, 500, 7, 3};
+    CHECK(order.count() == 1500);
+    for (uint64_t number = 0; number < order.count(); ++number) {
+        const PixelSample one = order.at(number, size.width, size.height);
+        CHECK(one.pixel == ordered_pixel(1000 + static_cast<uint32_t>(number) / 3, size.width, size.height));
+        CHECK(one.sample == 7 + number % 3);
+    }
+}
+
+TEST_CASE("numbers beyond 32 bits keep their place") {
+    const SampleOrder order = {0, 1920 * 1080, 0, 1u << 20};
+    const PixelSample last = order.at(order.count() - 1, 1920, 1080);
+    CHECK(last.pixel == ordered_pixel(1920 * 1080 - 1, 1920, 1080));
+    CHECK(last.sample == (1u << 20) - 1);
+}
+
+TEST_CASE("pixels that come together lie in about a square") {
+    uint32_t left = 1920, right = 0, top = 1080, bottom = 0;
+    for (uint32_t place = 500'000; place < 504'096; ++place) {
+        const uint32_t pixel = ordered_pixel(place, 1920, 1080), x = pixel % 1920, y = pixel / 1920;
+        left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+    }
+    CHECK(right - left < 100);
+    CHECK(bottom - top < 100);
+}
+
+} // namespace
+} // namespace pertev
