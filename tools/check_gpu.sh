@@ -36,7 +36,7 @@ for part in "${parts[@]}"; do
     sanitizers)
         for tool in memcheck racecheck initcheck synccheck; do
             run compute-sanitizer --tool "$tool" --error-exitcode 1 "$bin/pertev_tests" --device cuda \
-                --test-case='the GPU gives the bytes*,BSDFs have the same bits*,light samples*,each way of handing out rays*,so they do over instances*,live lanes*,each kind of ray may have*,two queues used*,a picture whose samples are shared*,a new camera takes*,warps make the bytes*,a GPU makes the bytes*,frames of what moves*,a step in time uploads*,a frame with ReSTIR counts*,a denoised picture takes*,pictures of trees of rays*,pictures of walks from the lights*,hybrid has path*kinds of surfaces*,rasterised pictures do not*,pictures of micropolygons do not*,pictures by photons*,pictures by irradiance caching*,pictures of a radiosity*,layers do not depend*,blurred*,a blur of the camera alone*,every tracer finds the same in a scene that moves'
+                --test-case='the GPU gives the bytes*,BSDFs have the same bits*,light samples*,each way of handing out rays*,so they do over instances*,live lanes*,each kind of ray may have*,two queues used*,a picture whose samples are shared*,a new camera takes*,a GPU makes the bytes*,frames of what moves*,a step in time uploads*,a frame with ReSTIR counts*,a denoised picture takes*,pictures of trees of rays*,pictures of walks from the lights*,hybrid has path*kinds of surfaces*,rasterised pictures do not*,pictures of micropolygons do not*,pictures by photons*,pictures by irradiance caching*,pictures of a radiosity*,layers do not depend*,blurred*,a blur of the camera alone*,every tracer finds the same in a scene that moves'
         done
         ;;
     references)
