@@ -127,8 +127,8 @@ int run_bench(const Flags& flags) {
             "%s, %s tree: %zu triangles, %llu nodes, %llu triangles in leaves, built in %.2f s\n"
             "kind, share of hits | one ray at a time: Mrays/s, to robust, to fast | as pictures do: Mrays/s, to "
             "robust, to fast, to robust streams (0: it has none), to robust batched, to fast batched | Embree's "
-            "Mrays/s: robust, fast, robust batched, fast batched | our nodes, triangles of a ray by itself | how Embree "
-            "batches best\n",
+            "Mrays/s: robust, fast, robust batched, fast batched | our nodes, triangles of a ray by itself | how "
+            "Embree batches best\n",
             flags.scene.c_str(), flags.build.c_str(), scene.meshes.front().indices.size() / 3,
             static_cast<unsigned long long>(structure->figures().nodes),
             static_cast<unsigned long long>(structure->figures().triangles), prepared.build_seconds);

@@ -142,7 +142,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     run_walks(job, 0, job.walk.samples.count(), [this](auto& way, const CacheJob& part) {
         if (!is_abandoned()) run_picture(way, part);
     });
-    rays_.camera += uint64_t(pixels) * count;
+    rays_.camera += job.walk.samples.count();
 }
 
 /// What is invalid of the records is told with sample 0, once, however the work is split.

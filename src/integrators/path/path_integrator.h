@@ -23,9 +23,9 @@
 #include "integrators/path/layer_stages.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_settings.h"
+#include "render/begin_order.h"
 #include "render/light_paths/light_paths_on_device.h"
 #include "render/raster/camera_raster.h"
-#include "render/sample_order.h"
 
 namespace pertev {
 
@@ -61,7 +61,7 @@ private:
 
     /// Samples that render() makes.
     struct Work {
-        SampleOrder samples;
+        BeginOrder samples;
         FilmView film;
         LightPathView layers;
         PathSettings settings;

@@ -227,7 +227,7 @@ private:
 
 template <class Layers>
 void render_group(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                  const FilmView& film, const Layers& layers, const SampleOrder& work, RayCounts& counts) {
+                  const FilmView& film, const Layers& layers, const BeginOrder& work, RayCounts& counts) {
     PathGroup<Layers> group(picture, settings, trees, film, layers);
     const uint32_t width = picture.camera.width, height = picture.camera.height;
     EightSamples samples(picture.camera, settings);
@@ -236,7 +236,7 @@ void render_group(const PictureView& picture, const PathSettings& settings, cons
         while (group.is_full()) group.advance(counts);
     };
     for (uint32_t i = 0; i < work.pixels; ++i) {
-        const uint32_t pixel = ordered_pixel(work.first_pixel + i, width, height);
+        const uint32_t pixel = ordered_pixel(work.first_place + i, width, height);
         for (uint32_t k = 0; k < work.samples; ++k) {
             samples.add(pixel, work.first_sample + k);
             if (samples.is_full()) samples.begin(trace);
@@ -249,7 +249,7 @@ void render_group(const PictureView& picture, const PathSettings& settings, cons
 } // namespace
 
 void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                   const FilmView& film, const LightPathView& layers, bool is_meter, const SampleOrder& work,
+                   const FilmView& film, const LightPathView& layers, bool is_meter, const BeginOrder& work,
                    RayCounts& counts) {
     if (!layers.is_there() && !is_meter) return render_group(picture, settings, trees, film, NoLayers{}, work, counts);
     render_group(picture, settings, trees, film, LayersOfGroup{layers, is_meter, {}, {}}, work, counts);

@@ -5,11 +5,11 @@
 
 #include "integrators/integrator.h"
 #include "integrators/path/path_settings.h"
+#include "render/begin_order.h"
 #include "render/film_view.h"
 #include "render/light_paths/light_path_view.h"
 #include "render/picture_view.h"
 #include "render/raster/find_in_tile.h"
-#include "render/sample_order.h"
 #include "trace/scene_trees.h"
 
 namespace pertev {
@@ -23,7 +23,7 @@ struct LoopTrees {
 /// Adds the samples to the film, and to those layers that there are. What was traced beside camera rays is added to
 /// `counts`. `is_meter`: shade_hit_to_layers'.
 void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                   const FilmView& film, const LightPathView& layers, bool is_meter, const SampleOrder& work,
+                   const FilmView& film, const LightPathView& layers, bool is_meter, const BeginOrder& work,
                    RayCounts& counts);
 
 } // namespace pertev

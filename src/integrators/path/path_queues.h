@@ -114,13 +114,13 @@ struct ShadowQueueView {
 
 /// Of one round.
 struct RoundCounts {
-    uint64_t first;     // of the samples (SampleOrder), what the first fresh path is
-    uint32_t going_on;                  // paths from the round before, at the front
-    uint32_t fresh;                     // paths that begin in it, from the end on
-    uint32_t active;                    // both
-    uint32_t shadows;                   // rays that its vertices ask for
-    uint32_t next, ended;               // of the active paths, those that go on after it and those that do not
-    uint32_t all_begun;                 // 1: no path begins after it
+    uint64_t first;       // number of the first fresh path's sample (BeginOrder::at)
+    uint32_t going_on;    // paths from the round before, at the front
+    uint32_t fresh;       // paths that begin in it, from the end on
+    uint32_t active;      // both
+    uint32_t shadows;     // rays that its vertices ask for
+    uint32_t next, ended; // of the active paths, those that go on after it and those that do not
+    uint32_t all_begun;   // 1: no path begins after it
 };
 
 /// Where a vertex stores its path for the next round, or for the film, and its shadow ray.

@@ -7,7 +7,7 @@
 #include "integrators/path/generate_path.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/shade_hit.h"
-#include "render/sample_order.h"
+#include "render/begin_order.h"
 
 namespace pertev {
 
@@ -39,7 +39,7 @@ struct PlanRound {
 struct GeneratePaths {
     CameraRays camera;
     PathSettings settings;
-    SampleOrder samples;
+    BeginOrder samples;
     const RoundCounts* round;
     uint32_t last; // place of the first one
     bool any_alpha;

@@ -54,7 +54,7 @@ public:
         met_ = std::make_unique<bool[]>(std::size_t(capacity_) * kShadowsAtOnce);
     }
 
-    void render(const SampleOrder& samples) {
+    void render(const BeginOrder& samples) {
         const uint64_t all = samples.count();
         for (uint64_t first = 0; first < all; first += capacity_) {
             const auto trees = static_cast<uint32_t>(std::min<uint64_t>(capacity_, all - first));
@@ -205,13 +205,12 @@ void RayTreeIntegrator<Algorithm>::render_loop(uint32_t first, uint32_t count, c
 
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::render_all_at_once(uint32_t first, uint32_t count, const FilmView& film) {
-    const SampleOrder samples = {0, picture_.camera.width * picture_.camera.height, first, count};
+    const BeginOrder samples = {0, picture_.camera.width * picture_.camera.height, first, count};
     const uint64_t all = samples.count();
     queue_.zero(trees_.counts, sizeof(TreeCounts));
     for (uint64_t done = 0; done < all; done += trees_.capacity) {
         const auto trees = static_cast<uint32_t>(std::min<uint64_t>(trees_.capacity, all - done));
-        launch(queue_, "begin_trees", trees,
-               BeginTrees{picture_.camera, picture_settings_, trees_, samples, done});
+        launch(queue_, "begin_trees", trees, BeginTrees{picture_.camera, picture_settings_, trees_, samples, done});
         launch(queue_, "begin_rounds", 1, BeginRounds{trees_.counts, trees});
         give_rounds(trees, film);
     }

@@ -5,9 +5,9 @@
 
 #include "device/atomic_add.h"
 #include "integrators/ray_tree/tree_vertex.h"
+#include "render/begin_order.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
-#include "render/sample_order.h"
 
 namespace pertev {
 
@@ -16,7 +16,7 @@ struct BeginTrees {
     CameraRays camera;
     RayTreeSettings settings;
     TreesView trees;
-    SampleOrder samples;
+    BeginOrder samples;
     uint64_t first;
 
     HD void operator()(uint32_t i) const {

@@ -12,12 +12,12 @@ namespace pertev {
 struct BeginEyes {
     WalkScene scene;
     WalksView walks;
-    SampleOrder samples;
+    BeginOrder samples;
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
         const CameraRays& camera = scene.picture.camera;
-        WalkState state = begin_walk(samples, first + i, camera);
+        WalkState state = state_of_sample(samples, first + i, camera);
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
         const Ray ray = camera.ray(state.pixel, scene.settings.sampler, key);
         state.throughput = {1, 1, 1};

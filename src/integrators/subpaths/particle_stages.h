@@ -11,12 +11,12 @@
 #include "integrators/subpaths/see_vertex.h"
 #include "integrators/subpaths/splat.h"
 #include "integrators/subpaths/walk_vertex.h"
-#include "render/sample_order.h"
+#include "render/begin_order.h"
 
 namespace pertev {
 
 /// The state of a walk that begins for the sample `number`.
-HD inline WalkState begin_walk(const SampleOrder& samples, uint64_t number, const CameraRays& camera) {
+HD inline WalkState state_of_sample(const BeginOrder& samples, uint64_t number, const CameraRays& camera) {
     const PixelSample begun = samples.at(number, camera.width, camera.height);
     WalkState state = {};
     state.pixel = begun.pixel, state.sample = begun.sample;
@@ -37,12 +37,12 @@ HD inline SampleKey particle_sample_key(const WalkScene& scene, uint32_t pixel, 
 struct BeginParticles {
     WalkScene scene;
     WalksView walks;
-    SampleOrder samples;
+    BeginOrder samples;
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
         const SubpathSettings& settings = scene.settings;
-        WalkState state = begin_walk(samples, first + i, scene.picture.camera);
+        WalkState state = state_of_sample(samples, first + i, scene.picture.camera);
         if (walks.room.kept > 0) walks.kept_counts[i] = 0;
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
         const SampleBits place = sample_bits(settings.sampler, key, kGroupLight);

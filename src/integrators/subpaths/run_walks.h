@@ -19,7 +19,7 @@ struct WalkJob {
     WalkScene scene;
     FilmView film;
     WalksView walks;
-    SampleOrder samples;
+    BeginOrder samples;
     uint64_t first; // of the samples
     uint32_t count; // of walks of each kind
 };

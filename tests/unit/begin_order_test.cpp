@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/sample_order.h"
+#include "render/begin_order.h"
 
 namespace pertev {
 namespace {
@@ -17,7 +17,8 @@ struct Size {
 };
 
 TEST_CASE("every pixel comes once, also where tiles and bands do not fill the picture") {
-    for (const Size size : {Size{1, 1}, Size{7, 3}, Size{8, 4}, Size{64, 64}, Size{101, 67}, Size{16, 131}, Size{200, 9}}) {
+    const Size sizes[] = {{1, 1}, {7, 3}, {8, 4}, {64, 64}, {101, 67}, {16, 131}, {200, 9}, {24, 84}, {29, 87}};
+    for (const Size size : sizes) {
         CAPTURE(size.width);
         CAPTURE(size.height);
         std::vector<uint32_t> times(std::size_t(size.width) * size.height);
@@ -30,9 +31,23 @@ TEST_CASE("every pixel comes once, also where tiles and bands do not fill the pi
     }
 }
 
+TEST_CASE("32 pixels that come together are one tile") {
+    for (const Size size : {Size{1920, 1080}, Size{101, 67}, Size{29, 87}}) {
+        const uint32_t tiled = (size.width / 8) * (size.height / 4) * 32;
+        uint32_t apart = 0;
+        for (uint32_t place = 0; place < tiled; ++place) {
+            const uint32_t first = ordered_pixel(place / 32 * 32, size.width, size.height);
+            const uint32_t pixel = ordered_pixel(place, size.width, size.height);
+            apart += first % size.width / 8 != pixel % size.width / 8 ? 1 : 0;
+            apart += first / size.width / 4 != pixel / size.width / 4 ? 1 : 0;
+        }
+        CHECK(apart == 0);
+    }
+}
+
 TEST_CASE("samples of a pixel come one after another, of the pixels and samples that are asked for") {
     const Size size = {101, 67};
-    const SampleOrder order = {1000, 500, 7, 3};
+    const BeginOrder order = {1000, 500, 7, 3};
     CHECK(order.count() == 1500);
     for (uint64_t number = 0; number < order.count(); ++number) {
         const PixelSample one = order.at(number, size.width, size.height);
@@ -42,7 +57,7 @@ TEST_CASE("samples of a pixel come one after another, of the pixels and samples 
 }
 
 TEST_CASE("numbers beyond 32 bits keep their place") {
-    const SampleOrder order = {0, 1920 * 1080, 0, 1u << 20};
+    const BeginOrder order = {0, 1920 * 1080, 0, 1u << 20};
     const PixelSample last = order.at(order.count() - 1, 1920, 1080);
     CHECK(last.pixel == ordered_pixel(1920 * 1080 - 1, 1920, 1080));
     CHECK(last.sample == (1u << 20) - 1);

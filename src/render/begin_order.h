@@ -1,0 +1,42 @@
+#pragma once
+
+// The order in which paths, trees of rays and walks begin. All samples of a pixel come first, then those of the next
+// pixel. So what is under way at a time comes from few pixels that lie side by side, and meets the same nodes,
+// triangles and textures, which caches then hold (docs/performance.md, "The order in which samples begin"). No picture
+// depends on this order; which random numbers a sample has is another matter (math/frame_order.h).
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "render/tiled_pixel.h"
+
+namespace pertev {
+
+/// Rows of tiles in a band. A band is 64 pixels high and is gone through column by column, so that some thousand pixels
+/// that come together are about as wide as high.
+inline constexpr uint32_t kBandRows = 16;
+
+/// The pixel that comes as number `place`.
+HD inline uint32_t ordered_pixel(uint32_t place, uint32_t width, uint32_t height) {
+    return tiled_pixel(place, width, height, kBandRows);
+}
+
+/// Which sample of which pixel.
+struct PixelSample {
+    uint32_t pixel, sample;
+};
+
+/// Samples [first_sample, + samples) of the pixels at places [first_place, + pixels) of ordered_pixel.
+struct BeginOrder {
+    uint32_t first_place, pixels, first_sample, samples;
+
+    HD uint64_t count() const { return uint64_t(pixels) * samples; }
+    /// The one that comes as `number` < count(), in a picture of width x height.
+    HD PixelSample at(uint64_t number, uint32_t width, uint32_t height) const {
+        const uint32_t place = static_cast<uint32_t>(number / samples);
+        const uint32_t sample = static_cast<uint32_t>(number - uint64_t(place) * samples);
+        return {ordered_pixel(first_place + place, width, height), first_sample + sample};
+    }
+};
+
+} // namespace pertev
