@@ -51,8 +51,10 @@ TRANSPORT_MUTATIONS = [
                    "picture_.scene.any_hidden_back != 0")],
              ["unit/hidden_back"]),
     Mutation("the wavefront draws other numbers", [edit("src/integrators/path/path_stages.h",
-                                                        "round->first_sample + (", "1 + round->first_sample + (")],
+                                                        "begun.pixel, begun.sample)", "begun.pixel, begun.sample + 1)")],
              ["consistency/one_picture"]),
+    Mutation("a band of tiles has all of its rows where the picture ends sooner",
+             [edit("src/render/tiled_pixel.h", "min(band, tiles_y - first_row)", "band")], ["unit/begin_order"]),
     Mutation("a tree of rays leaves out refraction", [
         edit("src/integrators/ray_tree/tree_vertex.h",
              "follow_delta(branches.refraction, wo_local, branches.refracted, Branch::Refraction, least);", "")],
