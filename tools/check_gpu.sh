@@ -57,6 +57,7 @@ for part in "${parts[@]}"; do
         run "$bin/pertev" bench
         run "$bin/pertev" bench rays --check
         run "$bin/pertev" bench build --compare
+        run "$bin/pertev" bench render --job S5 --spp 64 --moves 60 --scene "$scenes/crytek-sponza/sponza.obj"
         for size in 1920x1080 3840x2160; do
             run "$bin/pertev" bench frames "$scenes/crytek-sponza/sponza.obj" --size $size
         done

@@ -32,18 +32,6 @@ struct FramesFlags {
     uint32_t reference = 0;
 };
 
-/// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
-Camera moved(const Camera& camera, float yaw, Vec3 step) {
-    const float c = cos(yaw), s = sin(yaw);
-    const auto turned = [&](Vec3 v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
-    const Transform& m = camera.world_from_camera;
-    Camera result = camera;
-    const Vec3 x = turned(column(m, 0)), y = turned(column(m, 1)), z = turned(column(m, 2));
-    result.world_from_camera = {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, {}};
-    result.world_from_camera.translation = m.translation + transform_vector(result.world_from_camera, step);
-    return result;
-}
-
 /// A walk: forward by a thousandth of the scene a frame, looking to the left and to the right.
 Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
     const float k = static_cast<float>(frame);

@@ -10,6 +10,7 @@
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
+#include "math/portable_math.h"
 #include "session/check_integrator.h"
 
 namespace pertev {
@@ -74,6 +75,17 @@ PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue) {
     PrepareOptions options;
     options.builder = builder_of(tracers_of(settings, queue.is_cuda()));
     return options;
+}
+
+Camera moved(const Camera& camera, float yaw, Vec3 step) {
+    const float c = cos(yaw), s = sin(yaw);
+    const auto turned = [&](Vec3 v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
+    const Transform& m = camera.world_from_camera;
+    Camera result = camera;
+    const Vec3 x = turned(column(m, 0)), y = turned(column(m, 1)), z = turned(column(m, 2));
+    result.world_from_camera = {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, {}};
+    result.world_from_camera.translation = m.translation + transform_vector(result.world_from_camera, step);
+    return result;
 }
 
 void render_anew(Session& session, uint32_t samples) {

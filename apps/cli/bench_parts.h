@@ -72,6 +72,9 @@ void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& s
 /// The binary trees that pictures with these settings need; what they are turned into is made by the session.
 PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue);
 
+/// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
+Camera moved(const Camera& camera, float yaw, Vec3 step);
+
 /// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
 void render_anew(Session& session, uint32_t samples);
 

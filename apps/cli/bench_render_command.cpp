@@ -2,7 +2,9 @@
 // they it is done where that can be said (lab/stored_figures.h).
 
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,6 +16,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "base/stopwatch.h"
+#include "device/device_timer.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
 #include "lab/record_jobs.h"
@@ -25,7 +28,7 @@ namespace {
 struct JobFlags {
     PictureFlags picture;
     std::string job = "S8", output;
-    uint32_t seed = 0;
+    uint32_t seed = 0, moves = 0;
 };
 
 RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
@@ -34,6 +37,21 @@ RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
     if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
     settings.path.seed = flags.seed;
     return settings;
+}
+
+/// Seconds that one sample of every pixel takes after the camera has moved, from its first call until the film has it:
+/// the job's camera, turned a thousandth to and fro, so that what is seen stays about the same.
+double seconds_after_moves(Session& session, uint32_t moves) {
+    const Camera camera = session.camera();
+    std::vector<double> seconds;
+    for (uint32_t k = 0; k < moves; ++k) {
+        throw_if_interrupted();
+        const Stopwatch watch;
+        session.set_camera(moved(camera, k % 2 == 0 ? 0.001f : -0.001f, {}));
+        session.render(1);
+        seconds.push_back(watch.seconds());
+    }
+    return summarize_runs(seconds).median;
 }
 
 int bench_job(const JobFlags& flags) {
@@ -65,18 +83,21 @@ int bench_job(const JobFlags& flags) {
         write_image(flags.output, result.picture);
         reporter.output(flags.output);
     }
-    const double samples = static_cast<double>(settings.width) * settings.height * settings.samples;
+    const double pixels = static_cast<double>(settings.width) * settings.height, samples = pixels * settings.samples;
     const double samples_per_second = samples / result.render_seconds, mean = mean_of(result.picture);
+    std::optional<double> moved_per_second;
+    if (flags.moves > 0) moved_per_second = pixels / seconds_after_moves(session, flags.moves);
     const std::string device = queue->device_name();
     const std::vector<Ratio> ratios = ratios_of(JobRun{device, &job, settings.width, settings.height, settings.samples,
                                                        prepared.triangles, mean, samples_per_second});
     if (flags.picture.report.json) {
         reporter.event(fmt::format(
-            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
+            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"moved_samples_per_second":{},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
             job.name, json_string(device), settings.width, settings.height, settings.samples, prepared.triangles,
             load_s, prepared.build_seconds, result.render_seconds, samples_per_second,
             static_cast<double>(result.rays.total()) / result.render_seconds,
-            static_cast<double>(result.rays.total()) / samples, mean, result.invalid_samples, hash,
+            static_cast<double>(result.rays.total()) / samples,
+            moved_per_second ? fmt::format("{:.0f}", *moved_per_second) : "null", mean, result.invalid_samples, hash,
             ratios_json(ratios)));
     } else {
         reporter.answer(
@@ -86,6 +107,11 @@ int bench_job(const JobFlags& flags) {
                         prepared.build_seconds, result.render_seconds, samples_per_second * 1e-6,
                         millions_a_second(result.rays.total(), result.render_seconds),
                         static_cast<double>(result.rays.total()) / samples, ratios_line(ratios, job), mean, hash));
+        if (moved_per_second) {
+            reporter.answer(
+                fmt::format("one sample a pixel after the camera moved: {:.2f} Msamples/s, {:.3f} of {} spp\n",
+                            *moved_per_second * 1e-6, *moved_per_second / samples_per_second, settings.samples));
+        }
     }
     return 0;
 }
@@ -115,6 +141,10 @@ void add_bench_render_command(CLI::App& bench, int& status) {
         ->type_name("N")
         ->check(whole_between(0, UINT32_MAX))
         ->capture_default_str();
+    verb.add_option("--moves", flags->moves,
+                    "move the camera so often, too, and time one sample of every\npixel after each move (0)")
+        ->type_name("N")
+        ->check(whole_between(0, 100000));
     verb.add_option("-o,--output", flags->output, "keep the picture")->type_name("FILE");
     add_picture_flags(verb, flags->picture, "the job's", "the job's");
     verb.callback([&verb, flags, &status] {

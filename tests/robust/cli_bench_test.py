@@ -35,6 +35,11 @@ class Bench(CliTest):
         text = self.succeed("bench", "render", *line).stdout
         self.assertRegex(text, r"^job S8 on CPU: 16x16, 1 spp, 38 triangles\nload .*\n.* Msamples/s, .*\n"
                                r"no ratios to others: .* NVIDIA H200, 1920x1080, 256 spp, 262204 triangles .*\nmean .*\n$")
+        self.assertEqual(made["moved_samples_per_second"], None)
+        moved = self.succeed("bench", "render", *line, "--moves", "3", "--json").events("job")[0]
+        self.assertGreater(moved["moved_samples_per_second"], 0)
+        self.assertRegex(self.succeed("bench", "render", *line, "--moves", "3").stdout,
+                         r"\none sample a pixel after the camera moved: .* Msamples/s, .* of 1 spp\n$")
         self.refuse(2, "bench", "render", "--job", "S6", *line, says=["--job", "S5", "cornell-box-8"])
         self.refuse(2, "bench", "render", "--size", "", "--scene", "cornell-box", says=["--size"])
 
