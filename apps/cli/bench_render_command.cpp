@@ -39,8 +39,9 @@ RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
     return settings;
 }
 
-/// Seconds that one sample of every pixel takes after the camera has moved, from its first call until the film has it:
-/// the job's camera, turned a thousandth to and fro, so that what is seen stays about the same.
+/// Seconds that one sample of every pixel takes after the camera has moved, from the call that moves it until the film
+/// has the sample: the median of so many moves. They turn the camera to and fro by a thousandth of a radian, so that
+/// what is seen stays about the same.
 double seconds_after_moves(Session& session, uint32_t moves) {
     const Camera camera = session.camera();
     std::vector<double> seconds;

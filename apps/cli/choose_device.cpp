@@ -1,6 +1,7 @@
 #include "apps/cli/choose_device.h"
 
 #include <charconv>
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -62,7 +63,7 @@ ComingMachine::ComingMachine(const MachineFlags& flags, Messages& messages) : na
     }
     const bool is_auto = name_ == "auto";
     const int index = is_auto ? 0 : cuda_index(name_);
-    if (const std::string reason = is_auto ? "" : why_no_driver(); !reason.empty()) refuse(name_, reason);
+    if (!is_auto && !may_have_cuda()) refuse(name_, why_no_cuda(index));
     std::promise<std::string> why_no_gpu;
     why_no_gpu_ = why_no_gpu.get_future();
     coming_ = std::async(std::launch::async, [index, why_no_gpu = std::move(why_no_gpu)]() mutable {
@@ -86,6 +87,12 @@ bool ComingMachine::is_cuda() {
         if (!reason.empty()) messages_.note(fmt::format("using the CPU: {}", reason));
     }
     return *is_cuda_;
+}
+
+bool ComingMachine::may_be_cuda() {
+    const bool is_known =
+        is_cuda_.has_value() || why_no_gpu_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return is_known || !may_have_cuda() ? is_cuda() : true;
 }
 
 std::unique_ptr<Queue> ComingMachine::take() {

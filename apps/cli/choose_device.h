@@ -38,6 +38,9 @@ public:
 
     /// Waits until that is known. Throws Error(BadInput) where a GPU that is named cannot be used.
     bool is_cuda();
+    /// As is_cuda, but waits for no driver: true where that is not known yet, but a driver's library is there. What is
+    /// made for a GPU then may turn out to be of no use, or a GPU that is named be refused later.
+    bool may_be_cuda();
     /// Waits for it; to be called once. Throws Error(BadInput, DeviceFault).
     std::unique_ptr<Queue> take();
 

@@ -84,7 +84,7 @@ int measure(const MeasureFlags& flags) {
     settings.path.seed = flags.seed;
     Scene scene = load_scene(flags.scene, messages);
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
-    PrepareOptions prepare = prepare_options(settings, machine.is_cuda());
+    PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = true;
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");

@@ -68,7 +68,8 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
                           messages);
     check_camera(settings, ready->camera->at(scene, std::nullopt));
     ready->load_s = watch.seconds();
-    PrepareOptions prepare = prepare_options(settings, machine.is_cuda());
+    // Where it is none after all, the session makes what is missing.
+    PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = may_be_better(flags.tracer);
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");

@@ -24,6 +24,14 @@ public:
     void warn(std::string text) { add(true, std::move(text)); }
     void warn_of_missing(std::string text) { all_[add(true, std::move(text))].is_missing = true; }
     void note(std::string text) { add(false, std::move(text)); }
+    /// All that `other` has, after what is here.
+    void add_all(const Messages& other) {
+        for (const Message& message : other.all_) {
+            Message& here = all_[add(message.is_warning, message.text)];
+            here.times += message.times - 1;
+            here.is_missing = here.is_missing || message.is_missing;
+        }
+    }
     const std::vector<Message>& all() const { return all_; }
 
 private:

@@ -68,8 +68,9 @@ public:
 /// Why no CUDA device can be used, or empty when device `index` can: no support compiled in, no driver, no such
 /// device, or an architecture that the binary holds no code for. The calling thread's device stays as it was.
 std::string why_no_cuda(int index);
-/// Why none can be used, as far as that is known without starting the driver, which takes a quarter of a second.
-std::string why_no_driver();
+/// Whether there may be one: whether a driver's library is there. That is known at once; CUDA's first answer takes a
+/// tenth of a second, and a started driver a quarter.
+bool may_have_cuda();
 int cuda_device_count();
 /// Throws Error(BadInput) with why_no_cuda's reason.
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index);

@@ -80,35 +80,37 @@ uint64_t texture_bytes(const ImageHeader& header) {
     return uint64_t(header.width) * header.height * 4 * (header.is_float ? sizeof(float) : 1);
 }
 
-void decode(std::span<const std::byte> bytes, const std::string& name, Uses use, TextureImage& to, Messages& said) {
-    auto image = decode_image(bytes, name, &said);
+TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses use, const std::string& name) {
+    TextureImage to;
+    to.name = name;
     if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
         to.rgba8 = std::move(*rgba8);
-    } else if (recognise_image(bytes) == ImageFormat::Png) {
+    } else if (is_png) {
         put_png16(std::get<Image>(image), use, to);
     } else {
         to.rgba_float = to_rgba(std::get<Image>(image));
     }
+    return to;
 }
 
 } // namespace
 
 int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference) {
-    const std::optional<fs::path> path = access_.find(from, reference, messages_);
+    const std::optional<fs::path> path = access_.find(from, reference, *messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_.warn_of_missing(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(),
-                                                  shortened(reference)));
+            messages_->warn_of_missing(fmt::format("{}: there is no texture {}; its factor alone is used",
+                                                   from.string(), shortened(reference)));
         }
         return kNoImage;
     }
     const auto [known, is_new] = by_path_.try_emplace(*path, static_cast<int32_t>(sources_.size()));
-    if (is_new) sources_.push_back({reference, *path, {}});
+    if (is_new) sources_.push_back({.name = reference, .path = *path, .bytes = {}});
     return known->second;
 }
 
 int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> bytes) {
-    sources_.push_back({std::move(name), {}, bytes});
+    sources_.push_back({.name = std::move(name), .path = {}, .bytes = bytes});
     return static_cast<int32_t>(sources_.size() - 1);
 }
 
@@ -122,12 +124,11 @@ uint64_t TextureLoader::budget(uint64_t scene_bytes) const {
     return justified_bytes(kFreeImageBytes, bytes);
 }
 
-void TextureLoader::check_budget(const std::vector<uint64_t>& bytes, uint64_t limit) const {
+void TextureLoader::check_budget(uint64_t limit) const {
     uint64_t sum = 0;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        sum += bytes[i];
+    for (const Source& source : sources_) {
+        sum += source.texture_bytes;
         if (sum <= limit) continue;
-        const Source& source = sources_[i];
         throw Error(
             ErrorCode::OverLimit,
             fmt::format("{}: with this picture the scene's images take {} MiB in memory; the limit for files of "
@@ -136,49 +137,59 @@ void TextureLoader::check_budget(const std::vector<uint64_t>& bytes, uint64_t li
     }
 }
 
+/// Decodes it, unless it and all pictures seen before, which take `all_bytes`, would take more than `limit`.
+void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const {
+    try {
+        const bool is_embedded = source.path.empty();
+        const std::vector<std::byte> file = is_embedded ? std::vector<std::byte>() : read_file(source.path);
+        const std::span<const std::byte> bytes = is_embedded ? source.bytes : file;
+        const std::string name = is_embedded ? source.name : source.path.string();
+        source.texture_bytes = texture_bytes(read_image_header(bytes, name));
+        if ((all_bytes += source.texture_bytes) > limit) return;
+        source.is_png = recognise_image(bytes) == ImageFormat::Png;
+        source.image = decode_image(bytes, name, &source.said);
+    } catch (const Error& error) {
+        source.fault = error.what();
+    }
+}
+
+void TextureLoader::decode() { decode_within(budget(0)); }
+
+void TextureLoader::decode_within(uint64_t limit) {
+    const auto is_done = [](const Source& source) { return source.image || !source.fault.empty(); };
+    std::atomic<uint64_t> all_bytes = 0;
+    for (const Source& source : sources_) {
+        if (is_done(source)) all_bytes += source.texture_bytes;
+    }
+    parallel_for(sources_.size(), 1, [&](uint64_t i) {
+        if (!is_done(sources_[i])) read(sources_[i], limit, all_bytes);
+    });
+}
+
 void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
-        messages_.warn_of_missing(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
+        messages_->warn_of_missing(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
-    std::vector<TextureImage> decoded(sources_.size());
-    const std::vector<Uses> uses = uses_of(scene, sources_.size());
-    std::vector<std::string> faults(sources_.size());
-    std::vector<Messages> said(sources_.size());
-    std::vector<uint64_t> bytes_needed(sources_.size());
-    std::atomic<uint64_t> total_needed = 0;
     const uint64_t limit = budget(scene_bytes);
-    parallel_for(sources_.size(), 1, [&](uint64_t i) {
-        const Source& source = sources_[i];
-        decoded[i].name = source.name;
-        try {
-            const bool is_embedded = source.path.empty();
-            const std::vector<std::byte> file = is_embedded ? std::vector<std::byte>() : read_file(source.path);
-            const std::span<const std::byte> bytes = is_embedded ? source.bytes : file;
-            const std::string name = is_embedded ? source.name : source.path.string();
-            bytes_needed[i] = texture_bytes(read_image_header(bytes, name));
-            const uint64_t needed = total_needed += bytes_needed[i];
-            if (needed <= limit) decode(bytes, name, uses[i], decoded[i], said[i]);
-        } catch (const Error& error) {
-            faults[i] = error.what();
-        }
-    });
-    check_budget(bytes_needed, limit);
+    decode_within(limit);
+    check_budget(limit);
 
+    const std::vector<Uses> uses = uses_of(scene, sources_.size());
+    std::vector<TextureImage> textures(sources_.size());
+    parallel_for(sources_.size(), 1, [&](uint64_t i) {
+        Source& source = sources_[i];
+        if (source.image) textures[i] = texture_of(*std::move(source.image), source.is_png, uses[i], source.name);
+    });
     std::vector<int32_t> renumbered(sources_.size(), kNoImage);
     for (std::size_t i = 0; i < sources_.size(); ++i) {
-        for (const Message& message : said[i].all()) {
-            if (message.is_warning) {
-                messages_.warn(message.text);
-            } else {
-                messages_.note(message.text);
-            }
-        }
-        if (!faults[i].empty()) {
-            messages_.warn_of_missing(fmt::format("{}; its factor alone is used", faults[i]));
+        messages_->add_all(sources_[i].said);
+        if (!sources_[i].fault.empty()) {
+            messages_->warn_of_missing(fmt::format("{}; its factor alone is used", sources_[i].fault));
             continue;
         }
+        PERTEV_CHECK(sources_[i].image);
         renumbered[i] = static_cast<int32_t>(scene.images.size());
-        scene.images.push_back(std::move(decoded[i]));
+        scene.images.push_back(std::move(textures[i]));
     }
     for (Material& material : scene.materials) {
         for (TextureRef* ref : {&material.base_color_texture, &material.alpha_texture, &material.metallic_texture,

@@ -56,8 +56,13 @@ inline std::string_view text_of(std::span<const std::byte> bytes) {
 /// Statements with their line numbers.
 class ObjLines {
 public:
-    explicit ObjLines(std::string_view text)
-        : text_(text), end_of_line_(text.find('\n') == text.npos ? '\r' : '\n') {} // lone CR: old Macintosh files
+    explicit ObjLines(std::string_view text) : ObjLines(text, end_of_line_of(text), 1) {}
+    /// Of a piece of a text that begins at a statement, in its line `number`.
+    ObjLines(std::string_view piece, char end_of_line, uint32_t number)
+        : text_(piece), end_of_line_(end_of_line), number_(number) {}
+
+    /// A lone CR in old Macintosh files.
+    static char end_of_line_of(std::string_view text) { return text.find('\n') == text.npos ? '\r' : '\n'; }
 
     bool next(std::string_view& line) {
         if (at_ >= text_.size()) return false;
@@ -71,23 +76,26 @@ public:
             end = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : text_.size();
             at_ = end + 1;
             ++joined_;
-        } while (at_ < text_.size() && !is_comment && is_joined(begin, end));
+        } while (at_ < text_.size() && !is_comment && is_joined(text_, begin, end));
         line = text_.substr(begin, end - begin);
         return true;
     }
     /// Of the statement's first line; 1 is the file's first.
     uint32_t number() const { return number_; }
+    /// Of the line behind the statement.
+    uint32_t number_behind() const { return number_ + joined_; }
 
-private:
-    bool is_joined(std::size_t begin, std::size_t end) const {
-        if (end > begin && text_[end - 1] == '\r') --end;
-        return end > begin && text_[end - 1] == '\\';
+    /// Whether the line [begin, end) of `text` goes on in the next, unless it is a comment.
+    static bool is_joined(std::string_view text, std::size_t begin, std::size_t end) {
+        if (end > begin && text[end - 1] == '\r') --end;
+        return end > begin && text[end - 1] == '\\';
     }
 
+private:
     std::string_view text_;
     char end_of_line_;
     std::size_t at_ = 0;
-    uint32_t number_ = 1, joined_ = 0;
+    uint32_t number_, joined_ = 0;
 };
 
 /// Something that happens on many lines: said once, with the first line.
@@ -97,6 +105,11 @@ struct CountedLines {
 
     void add(uint32_t line) {
         if (times++ == 0) first_line = line;
+    }
+    void add(const CountedLines& others) {
+        if (others.times == 0) return;
+        first_line = times == 0 ? others.first_line : std::min(first_line, others.first_line);
+        times += others.times;
     }
 };
 

@@ -1,6 +1,8 @@
 #include "formats/parse_obj.h"
 
+#include <algorithm>
 #include <charconv>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -25,50 +27,107 @@ struct Face {
     uint32_t corner_count, line;
 };
 
+/// Faces of one material in one piece of the text.
 struct RawGroup {
-    std::string material;
+    std::string_view material;
     uint32_t line = 0;              // of the first face
     std::vector<ObjCorner> corners; // of all faces, one after the other
     std::vector<Face> faces;
 };
 
-class ObjParser {
-public:
-    ObjParser(std::string_view text, const std::string& file, Messages& messages)
-        : lines_(text), file_(file), messages_(messages) {}
+struct Counts {
+    std::size_t positions = 0, uvs = 0, normals = 0;
+};
 
-    ObjData run() {
-        std::string_view line;
-        while (lines_.next(line)) statement(line);
-        check_counts();
-        data_.groups.resize(groups_.size());
-        std::vector<CountedLines> without_uv(groups_.size());
-        parallel_for(groups_.size(), 1, [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i]); });
-        std::erase_if(data_.groups, [](const ObjGroup& group) { return group.corners.empty(); });
-        CountedLines missing;
-        for (const CountedLines& of_group : without_uv) {
-            if (of_group.times == 0) continue;
-            missing = {missing.times + of_group.times,
-                       missing.times == 0 ? of_group.first_line : std::min(missing.first_line, of_group.first_line)};
-        }
-        say(missing, "face corner", "with a texture coordinate or normal that is not in the file: without it");
-        say(bad_numbers_, "line", "with a number missing or not readable");
-        say(short_faces_, "face", "of fewer than three corners: left out");
-        say(points_and_lines_, "statement", "of points or lines: left out");
-        say(free_form_, "statement", "of curves or free-form surfaces: left out");
-        say(unknown_, "line", "not understood: left out");
-        return std::move(data_);
+/// Whole statements, which one thread reads.
+struct Piece {
+    std::string_view text;
+    // What stands before it.
+    uint32_t line = 1; // the number of its first
+    Counts counts = {};
+    std::optional<std::string_view> material = {}; // of the last usemtl
+};
+
+/// Of about so many bytes, cut where a line ends that cannot be joined with the next, be it a comment or not.
+std::vector<Piece> cut_into_pieces(std::string_view text, char end_of_line, std::size_t piece_bytes) {
+    std::vector<Piece> pieces;
+    for (std::size_t begin = 0; begin < text.size();) {
+        std::size_t end = text.find(end_of_line, std::min(begin + piece_bytes, text.size()));
+        while (end != text.npos && ObjLines::is_joined(text, begin, end)) end = text.find(end_of_line, end + 1);
+        const std::size_t count = end == text.npos ? text.size() - begin : end + 1 - begin;
+        pieces.push_back({text.substr(begin, count)});
+        begin += count;
     }
+    return pieces;
+}
+
+/// What a piece adds to what stands before the next.
+struct Survey {
+    uint32_t lines = 0;
+    Counts counts = {};
+    std::optional<std::string_view> material = {}; // of its last usemtl
+};
+
+/// Counts what PieceParser::statement makes.
+Survey survey(std::string_view text, char end_of_line) {
+    Survey found;
+    ObjLines lines(text, end_of_line, 1);
+    for (std::string_view line; lines.next(line);) {
+        const std::string_view key = take_word(line);
+        if (key == "v") ++found.counts.positions;
+        if (key == "vt") ++found.counts.uvs;
+        if (key == "vn") ++found.counts.normals;
+        if (key == "usemtl") found.material = rest_as_name(line);
+    }
+    found.lines = lines.number_behind() - 1;
+    return found;
+}
+
+/// Says of each piece what stands before it. Returns the counts of all together.
+Counts count_before(std::vector<Piece>& pieces, char end_of_line) {
+    std::vector<Survey> found(pieces.size());
+    parallel_for(pieces.size(), 1, [&](uint64_t i) { found[i] = survey(pieces[i].text, end_of_line); });
+    Piece before;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        before.text = pieces[i].text;
+        pieces[i] = before;
+        before.line += found[i].lines;
+        before.counts.positions += found[i].counts.positions;
+        before.counts.uvs += found[i].counts.uvs;
+        before.counts.normals += found[i].counts.normals;
+        if (found[i].material) before.material = found[i].material;
+    }
+    return before.counts;
+}
+
+Error fault_at(const std::string& file, uint32_t line, const std::string& what) {
+    return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file, line, what));
+}
+
+/// Reads one piece: its vertices to their places in arrays that are as long as all will be.
+class PieceParser {
+public:
+    PieceParser(const Piece& piece, char end_of_line, const std::string& file, ObjData& data,
+                const FoundMaterials* found_materials)
+        : lines_(piece.text, end_of_line, piece.line), file_(file), before_(piece.counts), so_far_(piece.counts),
+          data_(data), found_materials_(found_materials), material_(piece.material.value_or("")) {}
+
+    void run() {
+        try {
+            for (std::string_view line; lines_.next(line);) statement(line);
+        } catch (const Error& error) {
+            fault = error;
+        }
+    }
+
+    std::optional<Error> fault; // where it stopped
+    std::vector<Vec4> colors;   // of its positions; or none
+    std::vector<RawGroup> groups;
+    std::vector<ObjMaterialFiles> material_files;
+    CountedLines bad_numbers, short_faces, points_and_lines, free_form, unknown;
 
 private:
-    Error fault(uint32_t line, const std::string& what) const {
-        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file_, line, what));
-    }
-
-    void say(const CountedLines& what, const char* thing, const char* text) const {
-        if (what.times == 0) return;
-        messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text));
-    }
+    Error fault_here(const std::string& what) const { return fault_at(file_, lines_.number(), what); }
 
     void statement(std::string_view line) {
         const std::string_view key = take_word(line);
@@ -77,12 +136,12 @@ private:
         if (key == "f" || key == "fo") return face(line);
         if (key == "vn") {
             const auto n = numbers<3>(line);
-            data_.normals.push_back({n[0], n[1], n[2]});
+            data_.normals.at(so_far_.normals++) = {n[0], n[1], n[2]};
             return;
         }
         if (key == "vt") {
             const auto t = numbers<1>(line);
-            data_.uvs.push_back({t[0], next_number(line).value_or(0)});
+            data_.uvs.at(so_far_.uvs++) = {t[0], next_number(line).value_or(0)};
             return;
         }
         if (key == "usemtl") {
@@ -91,10 +150,11 @@ private:
             return;
         }
         if (key == "mtllib") {
-            data_.material_files.push_back({std::string(rest_as_name(line)), lines_.number()});
+            material_files.push_back({std::string(rest_as_name(line)), lines_.number()});
+            if (found_materials_ != nullptr && material_files.size() == 1) (*found_materials_)(material_files.front());
             return;
         }
-        if (key == "p" || key == "l") return points_and_lines_.add(lines_.number());
+        if (key == "p" || key == "l") return points_and_lines.add(lines_.number());
         other(key);
     }
 
@@ -107,9 +167,9 @@ private:
         for (const char* curved :
              {"vp",   "deg", "bmat", "step", "cstype", "curv",  "curv2", "surf", "parm", "trim", "hole",
               "scrv", "sp",  "end",  "con",  "ctech",  "stech", "bsp",   "bzp",  "cdc",  "res"}) {
-            if (key == curved) return free_form_.add(lines_.number());
+            if (key == curved) return free_form.add(lines_.number());
         }
-        unknown_.add(lines_.number());
+        unknown.add(lines_.number());
     }
 
     std::optional<float> next_number(std::string_view& line) {
@@ -117,7 +177,7 @@ private:
         if (line.empty() || line[0] == '#') return std::nullopt;
         const std::optional<float> value = parse_float(line);
         if (value && (line.empty() || is_obj_space(line[0]))) return value;
-        bad_numbers_.add(lines_.number());
+        bad_numbers.add(lines_.number());
         take_word(line);
         return kNan;
     }
@@ -127,7 +187,7 @@ private:
         std::array<float, count> values;
         for (float& value : values) {
             const std::optional<float> number = next_number(line);
-            if (!number) bad_numbers_.add(lines_.number());
+            if (!number) bad_numbers.add(lines_.number());
             value = number.value_or(kNan);
         }
         return values;
@@ -135,7 +195,7 @@ private:
 
     void vertex(std::string_view line) {
         const auto p = numbers<3>(line);
-        data_.positions.push_back({p[0], p[1], p[2]});
+        data_.positions.at(so_far_.positions++) = {p[0], p[1], p[2]};
         std::array<float, 3> rgb;
         std::size_t found = 0;
         while (found < 3) {
@@ -145,10 +205,10 @@ private:
         }
         const Vec4 white = {1, 1, 1, 1};
         if (found == 3) { // one more alone is a weight for rational curves
-            data_.colors.resize(data_.positions.size() - 1, white);
-            data_.colors.push_back({srgb_decode(rgb[0]), srgb_decode(rgb[1]), srgb_decode(rgb[2]), 1});
-        } else if (!data_.colors.empty()) {
-            data_.colors.push_back(white);
+            colors.resize(so_far_.positions - before_.positions - 1, white);
+            colors.push_back({srgb_decode(rgb[0]), srgb_decode(rgb[1]), srgb_decode(rgb[2]), 1});
+        } else if (!colors.empty()) {
+            colors.push_back(white);
         }
     }
 
@@ -158,15 +218,14 @@ private:
         const char* end = text.data() + text.size();
         const auto [after, ec] = std::from_chars(text.data(), end, number);
         if (ec == std::errc::invalid_argument) {
-            throw fault(lines_.number(), "a face's corner is v, v/vt, v//vn or v/vt/vn, all whole numbers");
+            throw fault_here("a face's corner is v, v/vt, v//vn or v/vt/vn, all whole numbers");
         }
         const int64_t zero_based = number < 0 ? static_cast<int64_t>(count_so_far) + number : number - 1;
         // An index may lead to what stands further down, so the upper end is checked when all is read.
         if (ec != std::errc{} || number == 0 || zero_based < 0 || zero_based >= int64_t(kNoIndex)) {
-            throw fault(lines_.number(),
-                        fmt::format("{} index {} is out of range; {} stand above, the first has index 1", of,
-                                    std::string_view(text.data(), static_cast<std::size_t>(after - text.data())),
-                                    count_so_far));
+            throw fault_here(fmt::format("{} index {} is out of range; {} stand above, the first has index 1", of,
+                                         std::string_view(text.data(), static_cast<std::size_t>(after - text.data())),
+                                         count_so_far));
         }
         text.remove_prefix(static_cast<std::size_t>(after - text.data()));
         return static_cast<uint32_t>(zero_based);
@@ -174,26 +233,26 @@ private:
 
     ObjCorner corner(std::string_view word) {
         ObjCorner corner = {kNoIndex, kNoIndex, kNoIndex};
-        corner.position = index(word, data_.positions.size(), "vertex");
+        corner.position = index(word, so_far_.positions, "vertex");
         if (word.starts_with('/')) {
             word.remove_prefix(1);
-            if (!word.empty() && word[0] != '/') corner.uv = index(word, data_.uvs.size(), "texture coordinate");
+            if (!word.empty() && word[0] != '/') corner.uv = index(word, so_far_.uvs, "texture coordinate");
             if (word.starts_with('/')) {
                 word.remove_prefix(1);
-                if (!word.empty()) corner.normal = index(word, data_.normals.size(), "normal");
+                if (!word.empty()) corner.normal = index(word, so_far_.normals, "normal");
             }
         }
         if (!word.empty()) {
-            throw fault(lines_.number(), "a face's corner is v, v/vt, v//vn or v/vt/vn, all whole numbers");
+            throw fault_here("a face's corner is v, v/vt, v//vn or v/vt/vn, all whole numbers");
         }
         return corner;
     }
 
     void face(std::string_view line) {
         if (current_ == nullptr) {
-            const auto [found, is_new] = by_material_.try_emplace(material_, groups_.size());
-            if (is_new) groups_.push_back({material_, lines_.number(), {}, {}});
-            current_ = &groups_[found->second];
+            const auto [found, is_new] = by_material_.try_emplace(material_, groups.size());
+            if (is_new) groups.push_back({material_, lines_.number(), {}, {}});
+            current_ = &groups[found->second];
         }
         const std::size_t before = current_->corners.size();
         for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
@@ -202,25 +261,117 @@ private:
         const std::size_t count = current_->corners.size() - before;
         if (count < 3) {
             current_->corners.resize(before);
-            short_faces_.add(lines_.number());
+            short_faces.add(lines_.number());
             return;
         }
         current_->faces.push_back({static_cast<uint32_t>(count), lines_.number()});
     }
 
-    void check_counts() const {
-        if (data_.positions.size() >= kNoIndex || data_.uvs.size() >= kNoIndex || data_.normals.size() >= kNoIndex) {
+    ObjLines lines_;
+    const std::string& file_;
+    const Counts before_;
+    Counts so_far_;
+    ObjData& data_;
+    const FoundMaterials* found_materials_; // null: nobody asks
+    std::unordered_map<std::string_view, std::size_t> by_material_;
+    std::string_view material_;
+    RawGroup* current_ = nullptr; // of material_; null until a face needs it
+};
+
+class ObjParser {
+public:
+    ObjParser(std::string_view text, const std::string& file, Messages& messages, std::size_t piece_bytes)
+        : file_(file), messages_(messages), end_of_line_(ObjLines::end_of_line_of(text)),
+          pieces_(cut_into_pieces(text, end_of_line_, piece_bytes)) {}
+
+    ObjData run(const FoundMaterials& found_materials) {
+        parse_pieces(found_materials);
+        join_groups();
+        join_colors();
+        for (PieceParser& parser : parsers_)
+            for (ObjMaterialFiles& files : parser.material_files) data_.material_files.push_back(std::move(files));
+        data_.groups.resize(groups_.size());
+        std::vector<CountedLines> without_uv(groups_.size());
+        parallel_for(groups_.size(), 1, [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i]); });
+        std::erase_if(data_.groups, [](const ObjGroup& group) { return group.corners.empty(); });
+        CountedLines missing;
+        for (const CountedLines& of_group : without_uv) missing.add(of_group);
+        say(missing, "face corner", "with a texture coordinate or normal that is not in the file: without it");
+        say(all_of(&PieceParser::bad_numbers), "line", "with a number missing or not readable");
+        say(all_of(&PieceParser::short_faces), "face", "of fewer than three corners: left out");
+        say(all_of(&PieceParser::points_and_lines), "statement", "of points or lines: left out");
+        say(all_of(&PieceParser::free_form), "statement", "of curves or free-form surfaces: left out");
+        say(all_of(&PieceParser::unknown), "line", "not understood: left out");
+        return std::move(data_);
+    }
+
+private:
+    using Parts = std::vector<RawGroup*>; // of one material, in the order of the text
+
+    CountedLines all_of(CountedLines PieceParser::*what) const {
+        CountedLines all;
+        for (const PieceParser& parser : parsers_) all.add(parser.*what);
+        return all;
+    }
+
+    void say(const CountedLines& what, const char* thing, const char* text) const {
+        if (what.times == 0) return;
+        messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text));
+    }
+
+    void parse_pieces(const FoundMaterials& found_materials) {
+        const Counts all = count_before(pieces_, end_of_line_);
+        if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
             throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
+        }
+        data_.positions.resize(all.positions); // pieces write to places of their own
+        data_.uvs.resize(all.uvs);
+        data_.normals.resize(all.normals);
+        for (std::size_t i = 0; i < pieces_.size(); ++i)
+            parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_,
+                                  i == 0 && found_materials ? &found_materials : nullptr);
+        parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
+        for (const PieceParser& parser : parsers_) {
+            if (parser.fault) throw *parser.fault;
+        }
+    }
+
+    void join_groups() {
+        std::unordered_map<std::string_view, std::size_t> by_material;
+        for (PieceParser& parser : parsers_) {
+            for (RawGroup& group : parser.groups) {
+                const auto [found, is_new] = by_material.try_emplace(group.material, groups_.size());
+                if (is_new) groups_.emplace_back();
+                groups_[found->second].push_back(&group);
+            }
+        }
+    }
+
+    void join_colors() {
+        const auto has_colors = [](const PieceParser& parser) { return !parser.colors.empty(); };
+        if (std::ranges::none_of(parsers_, has_colors)) return;
+        data_.colors.resize(data_.positions.size(), {1, 1, 1, 1});
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            const auto first = static_cast<std::ptrdiff_t>(pieces_[i].counts.positions);
+            std::ranges::copy(parsers_[i].colors, data_.colors.begin() + first);
         }
     }
 
     /// Checks a group's indices and cuts its faces into triangles.
-    void finish(RawGroup& raw, ObjGroup& group, CountedLines& without) const {
-        group.material = raw.material;
-        group.line = raw.line;
+    void finish(const Parts& parts, ObjGroup& group, CountedLines& without) const {
+        group.material = parts.front()->material;
+        group.line = parts.front()->line;
         std::size_t triangles = 0;
-        for (const Face& face : raw.faces) triangles += face.corner_count - 2;
+        for (const RawGroup* part : parts)
+            for (const Face& face : part->faces) triangles += face.corner_count - 2;
         group.corners.reserve(3 * triangles);
+        for (RawGroup* part : parts) {
+            cut_faces(*part, group, without);
+            *part = {};
+        }
+    }
+
+    void cut_faces(RawGroup& raw, ObjGroup& group, CountedLines& without) const {
         std::vector<Vec3> polygon;
         std::vector<uint32_t> cut;
         ObjCorner* corners = raw.corners.data();
@@ -238,13 +389,13 @@ private:
             }
             corners += face.corner_count;
         }
-        raw = {};
     }
 
     void check(ObjCorner& corner, uint32_t line, CountedLines& without) const {
         if (corner.position >= data_.positions.size()) {
-            throw fault(line, fmt::format("vertex index {} is out of range; the file has {} vertices",
-                                          uint64_t(corner.position) + 1, data_.positions.size()));
+            throw fault_at(file_, line,
+                           fmt::format("vertex index {} is out of range; the file has {} vertices",
+                                       uint64_t(corner.position) + 1, data_.positions.size()));
         }
         if (corner.uv != kNoIndex && corner.uv >= data_.uvs.size()) {
             without.add(line);
@@ -256,21 +407,20 @@ private:
         }
     }
 
-    ObjLines lines_;
     const std::string& file_;
     Messages& messages_;
+    const char end_of_line_;
+    std::vector<Piece> pieces_;
+    std::deque<PieceParser> parsers_; // of the pieces
     ObjData data_;
-    std::vector<RawGroup> groups_;
-    std::unordered_map<std::string, std::size_t> by_material_;
-    std::string material_;
-    RawGroup* current_ = nullptr; // of material_; null until a face needs it
-    CountedLines bad_numbers_, short_faces_, points_and_lines_, free_form_, unknown_;
+    std::vector<Parts> groups_; // by material, in the order of first use
 };
 
 } // namespace
 
-ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages) {
-    return ObjParser(text_of(bytes), file, messages).run();
+ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages,
+                  const FoundMaterials& found_materials, std::size_t piece_bytes) {
+    return ObjParser(text_of(bytes), file, messages, piece_bytes).run(found_materials);
 }
 
 } // namespace pertev

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ struct ObjMaterialFiles {
     uint32_t line;
 };
 
+using FoundMaterials = std::function<void(const ObjMaterialFiles&)>;
+
 struct ObjData {
     std::vector<Vec3> positions;
     std::vector<Vec4> colors; // [positions], linear; or empty
@@ -49,7 +52,11 @@ struct ObjData {
 };
 
 /// Throws Error(BadInput) that names `file` and the line for a face that cannot be understood or whose vertex does not
-/// exist. A number that cannot be read becomes NaN, with a warning: validate() drops its triangles.
-ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages);
+/// exist. A number that cannot be read becomes NaN, with a warning: validate() drops its triangles. `found_materials`
+/// is called with the first of material_files where that stands in the first piece: once, when it is met, perhaps on
+/// another thread, and also where this function throws later. It throws nothing. A thread takes about `piece_bytes` at
+/// once; what is returned does not depend on it.
+ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages,
+                  const FoundMaterials& found_materials = {}, std::size_t piece_bytes = std::size_t(1) << 20);
 
 } // namespace pertev

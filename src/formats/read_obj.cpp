@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <future>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -138,18 +140,50 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
     return found;
 }
 
-std::map<std::string, MtlMaterial> read_materials(const ObjData& data, const fs::path& obj, const FileAccess& access,
-                                                  TextureLoader& loader, Messages& messages) {
-    std::map<std::string, MtlMaterial> materials;
-    std::set<fs::path> seen;
-    for (const ObjMaterialFiles& line : data.material_files) {
-        if (line.names.empty()) continue;
-        for (const fs::path& path : find_material_files(line, obj, access, messages)) {
-            if (seen.insert(path).second) materials.merge(read_mtl(path, loader, messages));
+/// The materials that an OBJ file names, and their textures. Those of its first mtllib, which is the only one of most
+/// files and stands at their top, are read while the geometry is, where there is a thread for them; a fault of the
+/// geometry is then told once they are.
+class MaterialsBeside {
+public:
+    /// All of these outlive it.
+    MaterialsBeside(const fs::path& obj, const FileAccess& access, TextureLoader& loader, Messages& messages)
+        : obj_(obj), access_(access), loader_(loader), messages_(messages) {}
+
+    /// With the first line of all; once, if at all. Throws nothing.
+    void start(const ObjMaterialFiles& line) {
+        if (thread_count() == 1) return;
+        try {
+            first_ = std::async(std::launch::async, [this, line] {
+                read(line);
+                loader_.decode();
+            });
+        } catch (const std::system_error&) { // no thread can be had
         }
     }
-    return materials;
-}
+    /// Waits for what is under way, and reads the others of `lines`.
+    std::map<std::string, MtlMaterial> finish(const std::vector<ObjMaterialFiles>& lines) {
+        const bool is_first_read = first_.valid();
+        if (is_first_read) first_.get();
+        for (std::size_t i = is_first_read ? 1 : 0; i < lines.size(); ++i) read(lines[i]);
+        return std::move(materials_);
+    }
+
+private:
+    void read(const ObjMaterialFiles& line) {
+        if (line.names.empty()) return;
+        for (const fs::path& path : find_material_files(line, obj_, access_, messages_)) {
+            if (seen_.insert(path).second) materials_.merge(read_mtl(path, loader_, messages_));
+        }
+    }
+
+    const fs::path& obj_;
+    const FileAccess& access_;
+    TextureLoader& loader_;
+    Messages& messages_;
+    std::map<std::string, MtlMaterial> materials_;
+    std::set<fs::path> seen_;
+    std::future<void> first_; // the last member: it is waited for before the others go
+};
 
 Material grey_material(const std::string& name, const ObjData& data) {
     Material material;
@@ -210,10 +244,21 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
 } // namespace
 
 Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
-    const ObjData data = parse_obj(read_file(path), path.string(), messages);
-    TextureLoader loader(access, messages);
+    Messages of_materials; // to be said after those of the geometry
+    TextureLoader loader(access, of_materials);
+    MaterialsBeside beside(path, access, loader, of_materials);
+    const ObjData data = parse_obj(read_file(path), path.string(), messages, [&](const ObjMaterialFiles& line) {
+        if (!options.geometry_only) beside.start(line);
+    });
     std::map<std::string, MtlMaterial> materials;
-    if (!options.geometry_only) materials = read_materials(data, path, access, loader, messages);
+    try {
+        if (!options.geometry_only) materials = beside.finish(data.material_files);
+    } catch (...) {
+        messages.add_all(of_materials);
+        throw;
+    }
+    messages.add_all(of_materials);
+    loader.say_to(messages);
     return make_scene(data, materials, loader, path.string(), options, messages);
 }
 

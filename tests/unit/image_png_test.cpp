@@ -6,6 +6,7 @@
 #include <png.h>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "image/decode_image.h"
 #include "image/write_png.h"
 
@@ -144,6 +145,38 @@ TEST_CASE("a written PNG reads back to the same bytes, with and without alpha, a
     const auto opaque = std::get<Rgba8Image>(decode_image(encode_png(image), "t.png"));
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         CHECK(opaque.pixels[i] == (i % 4 == 3 ? 255 : image.pixels[i]));
+}
+
+TEST_CASE("a PNG that several threads write holds the picture, and its bytes do not depend on them") {
+    const auto noise = [](uint32_t width, uint32_t height, uint32_t bits) {
+        Rgba8Image image{width, height, {}};
+        image.pixels.resize(std::size_t(width) * height * 4);
+        uint32_t state = 1;
+        for (uint8_t& value : image.pixels) {
+            state = state * 1664525u + 1013904223u;
+            value = static_cast<uint8_t>(state >> 24 & ((1u << bits) - 1));
+        }
+        return image;
+    };
+    struct Case {
+        uint32_t width, height, bits; // 8: what deflate cannot shorten
+    };
+    for (const Case& of : {Case{700, 500, 5}, {700, 500, 8}, {700, 500, 1}, {60000, 3, 8}, {1, 40000, 5}}) {
+        CAPTURE(of.width);
+        CAPTURE(of.bits);
+        const Rgba8Image image = noise(of.width, of.height, of.bits);
+        const auto whole = encode_png(image, true), opaque = encode_png(image);
+        CHECK(std::get<Rgba8Image>(decode_image(whole, "t.png")).pixels == image.pixels);
+        const auto read = std::get<Rgba8Image>(decode_image(opaque, "t.png"));
+        bool is_same = true;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            is_same = is_same && read.pixels[i] == (i % 4 == 3 ? 255 : image.pixels[i]);
+        CHECK(is_same);
+        set_thread_count(1);
+        CHECK(encode_png(image, true) == whole);
+        CHECK(encode_png(image) == opaque);
+        set_thread_count(0);
+    }
 }
 
 TEST_CASE("damage to a PNG's pixels is an error that names the file; damage to a comment is not even noticed") {

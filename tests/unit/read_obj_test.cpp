@@ -1,7 +1,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <span>
 
+#include "base/parallel_for.h"
+#include "formats/parse_obj.h"
 #include "formats/read_obj.h"
 #include "formats/triangulate_polygon.h"
 #include "image/srgb.h"
@@ -66,6 +69,46 @@ double area(const std::vector<Vec3>& p, const std::vector<uint32_t>& indices) {
     return sum;
 }
 
+struct Parsed {
+    ObjData data;
+    std::string said; // warnings, or the error
+};
+
+Parsed parse_in_pieces(const std::string& text, std::size_t piece_bytes) {
+    Parsed parsed;
+    Messages messages;
+    std::vector<uint32_t> found; // lines
+    const auto found_materials = [&](const ObjMaterialFiles& files) { found.push_back(files.line); };
+    try {
+        parsed.data = parse_obj(std::as_bytes(std::span(text)), "a.obj", messages, found_materials, piece_bytes);
+        CHECK(found.size() <= 1);
+        if (!found.empty()) CHECK(found.front() == parsed.data.material_files.at(0).line);
+    } catch (const Error& error) {
+        CHECK(error.code() == ErrorCode::BadInput);
+        parsed.said = error.what();
+    }
+    for (const Message& message : messages.all()) parsed.said += message.text + "\n";
+    return parsed;
+}
+
+bool same(const ObjData& a, const ObjData& b) {
+    const auto same_bytes = [](const auto& x, const auto& y) { // NaN is itself
+        return std::ranges::equal(std::as_bytes(std::span(x)), std::as_bytes(std::span(y)));
+    };
+    const auto same_corners = [](const ObjCorner& x, const ObjCorner& y) {
+        return x.position == y.position && x.uv == y.uv && x.normal == y.normal;
+    };
+    const auto same_group = [&](const ObjGroup& x, const ObjGroup& y) {
+        return x.material == y.material && x.line == y.line && std::ranges::equal(x.corners, y.corners, same_corners);
+    };
+    const auto same_files = [](const ObjMaterialFiles& x, const ObjMaterialFiles& y) {
+        return x.names == y.names && x.line == y.line;
+    };
+    return same_bytes(a.positions, b.positions) && same_bytes(a.colors, b.colors) && same_bytes(a.normals, b.normals) &&
+           same_bytes(a.uvs, b.uvs) && std::ranges::equal(a.groups, b.groups, same_group) &&
+           std::ranges::equal(a.material_files, b.material_files, same_files);
+}
+
 } // namespace
 
 TEST_CASE("one mesh and one instance for each material, in the order of first use") {
@@ -123,6 +166,37 @@ TEST_CASE("relative indices, comments, joined lines, CRLF and lone CR line ends 
         CHECK(l.scene.meshes[0].indices == expected);
         CHECK(l.scene.meshes[0].positions[1] == Vec3{1, 0, 0});
         if (end != "\r") CHECK(l.messages.all().empty());
+    }
+}
+
+TEST_CASE("a text that several threads read in pieces is the same, and so is what is said of it") {
+    // ; ends a line. Every construct whose meaning lies in what stands before it, and each kind of fault.
+    const std::string corners = "v 0 0 0;v 1 0 0 1 0.5 0;v 0 1 \\;0;v 1 1 0;vt 0 0;vt 1 0;vn 0 0 1;";
+    const std::string faces =
+        "f 1 2 3;usemtl red one # note;f -4/-2/-1 -3//-1 -2/-1;# C:\\;f 2 3 4;usemtl blue;f 1 2 \\;4 3;";
+    const std::string odd =
+        "v 1 x 2;vt;f 1 2;p 1;vp 0;what;f 1/9 2/9 3/9;mtllib b.mtl c.mtl;usemtl;f 2 3 4;usemtl red one;f 1 2 4;";
+    const std::string whole = "mtllib a.mtl;" + corners + faces + odd + corners + "f -1 -2 -3;" + odd + faces;
+    std::vector<std::string> texts = {"", ";", "f 1 2 3", whole};
+    for (const char* fault : {"f 1 2 99;", "f 1 2 -99;", "f 1 b 2;", "f 0 1 2;"}) {
+        texts.push_back(corners + faces + fault + whole);
+        texts.push_back(whole + fault + faces + "f 1 2 c;");
+    }
+    for (std::string text : texts) {
+        for (const std::string end : {"\n", "\r\n", "\r"}) {
+            std::string lines = text;
+            for (std::size_t at = lines.find(';'); at != lines.npos; at = lines.find(';', at))
+                lines.replace(at, 1, end);
+            const Parsed at_once = parse_in_pieces(lines, lines.size() + 1);
+            CHECK((text != whole || at_once.data.groups.size() == 3));
+            for (const std::size_t piece_bytes : {1, 2, 3, 5, 8, 13, 40, 100, 300}) {
+                CAPTURE(text);
+                CAPTURE(piece_bytes);
+                const Parsed in_pieces = parse_in_pieces(lines, piece_bytes);
+                CHECK(in_pieces.said == at_once.said);
+                CHECK(same(in_pieces.data, at_once.data));
+            }
+        }
     }
 }
 
@@ -412,6 +486,48 @@ TEST_CASE("mtl: a missing file and a missing material are grey with a warning; g
     const Loaded grey_only = load(path, {.allowed_paths = {}, .geometry_only = true});
     CHECK(grey_only.scene.materials[0].base_color == grey(0.5f));
     CHECK(grey_only.messages.all().empty());
+}
+
+TEST_CASE("mtl: several files, read beside the geometry or behind it, say all they have to, after the geometry") {
+    const fs::path folder = test::scratch_folder();
+    write_picture(folder / "shared.png", 2, [](uint32_t, uint32_t) { return uint8_t{100}; });
+    const std::string first = "newmtl a\nmap_Kd shared.png\nnewmtl twice\nKd 1 0 0\n";
+    test::write_text(folder / "a.mtl", first);
+    test::write_text(folder / "b.mtl", "newmtl b\nmap_Kd shared.png\nmap_Ka gone.png\nnewmtl twice\nKd 0 1 0\n");
+    test::write_text(folder / "bad.mtl", "newmtl c\nKd 1 2\n");
+    const std::string faces =
+        "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\nusemtl twice\nf 1 2 3\nl 1 2\n";
+    const std::string far(std::size_t(3) << 20, '\n'); // longer than the piece that is looked at for them
+    const auto load_with = [&](const std::string& text) { return load(test::write_text(folder / "many.obj", text)); };
+    for (const std::string& before : {std::string(), far}) {
+        const Loaded l = load_with(before + "mtllib gone.mtl\nmtllib a.mtl\n" + kTriangle + faces + "mtllib b.mtl\n");
+        REQUIRE(l.scene.materials.size() == 3);
+        CHECK(l.scene.images.size() == 1);
+        CHECK(l.material("a").base_color_texture.image == 0);
+        CHECK(l.material("b").base_color_texture.image == 0);
+        CHECK(l.material("twice").base_color == Rgb{1, 0, 0});
+        const std::vector<Message>& all = l.messages.all();
+        REQUIRE(all.size() >= 2);
+        CHECK(all[0].text.find("of points or lines") != std::string::npos);
+        CHECK(all[1].text.find("no material file gone.mtl") != std::string::npos);
+        CHECK(all[1].is_missing);
+
+        Messages said;
+        const fs::path bad =
+            test::write_text(folder / "bad.obj", before + "mtllib gone.mtl\nmtllib bad.mtl\n" + kTriangle);
+        const auto error = test::thrown_error([&] { read_obj(bad, FileAccess(bad, {}), {}, said); });
+        CHECK(test::says(error, "bad.mtl:2"));
+        REQUIRE(said.all().size() == 1);
+        CHECK(said.all()[0].text.find("gone.mtl") != std::string::npos);
+        const auto of_geometry = test::thrown_error([&] { load_with(before + "mtllib bad.mtl\nf 1 2 3\n"); });
+        CHECK(test::says(of_geometry, "vertex index"));
+    }
+    const Loaded at_once = load_with("mtllib a.mtl\n" + kTriangle + faces);
+    set_thread_count(1);
+    const Loaded in_turns = load_with("mtllib a.mtl\n" + kTriangle + faces);
+    set_thread_count(0);
+    CHECK(in_turns.scene.images.size() == at_once.scene.images.size());
+    CHECK(in_turns.messages.all().size() == at_once.messages.all().size());
 }
 
 TEST_CASE("mtl: a texture or material file outside the scene's folder is refused unless allowed") {

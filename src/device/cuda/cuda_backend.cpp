@@ -1,6 +1,7 @@
 #include "device/backend.h"
 
 #include <cuda_runtime.h>
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <optional>
@@ -217,19 +218,18 @@ int cuda_device_count() {
     return error == cudaSuccess ? count : 0;
 }
 
-std::string why_no_driver() {
-    int driver = 0;
-    cudaDriverGetVersion(&driver);
-    return driver == 0 ? "no NVIDIA driver was found" : "";
+bool may_have_cuda() {
+    // The one that CUDA's runtime would load. It stays.
+    return ::dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE) != nullptr;
 }
 
 std::string why_no_cuda(int index) {
-    if (std::string reason = why_no_driver(); !reason.empty()) return reason;
+    int driver = 0;
+    cudaDriverGetVersion(&driver);
+    if (driver == 0) return "no NVIDIA driver was found";
     int count = 0;
     const cudaError_t error = cudaGetDeviceCount(&count);
     if (error == cudaErrorInsufficientDriver) {
-        int driver = 0;
-        cudaDriverGetVersion(&driver);
         return fmt::format("the NVIDIA driver supports CUDA {}.{}, the binary was built with {}.{}", driver / 1000,
                            driver % 1000 / 10, CUDART_VERSION / 1000, CUDART_VERSION % 1000 / 10);
     }
