@@ -245,9 +245,12 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
     const int going = in_turns ? 1 : static_cast<int>(wavefronts_.size());
+    // Where all paths fit in at once, as in a frame, wavefronts have equal shares and end together.
+    const uint64_t share = (work.samples.count() - 1) / static_cast<uint64_t>(going) + 1;
     render_counts_.zero();
     for (int i = 0; i < going; ++i) {
         Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
+        w.in_flight = static_cast<uint32_t>(std::min<uint64_t>(w.capacity, (share + 31) / 32 * 32));
         w.round = 0;
         w.known = {};
         w.is_done = false;
@@ -296,11 +299,11 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
     RoundCounts* const counts = w.counts.data() + w.round % 2;
     // Once all paths have begun, a round has no more of them than the one before.
-    const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.capacity;
+    const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.in_flight;
     {
         const Queue::OnStream on(queue_, w.path_stream);
         launch(queue_, "plan_round", 1,
-               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, render_counts_.data(), w.capacity,
+               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, render_counts_.data(), w.in_flight,
                          work.samples.count()});
         w.seen.take(counts);
         if (w.round > 0) {

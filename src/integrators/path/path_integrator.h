@@ -105,6 +105,7 @@ private:
             Buffer<Uint2> states;   // where there are layers
         };
         uint32_t capacity;
+        uint32_t in_flight = 0; // at most, of what is rendered now
         Paths sets[2];
         Buffer<Ray> shadow_rays;
         Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
