@@ -163,6 +163,35 @@ TEST_CASE("another seed or number of samples gives another hash: it can tell pic
     CHECK(cpu_hash(settings) != reference_hash());
 }
 
+TEST_CASE("pictures and frames that two wavefronts share, or one with the memory of two, have the bytes of the CPU") {
+    if (!test::cuda_requested()) return;
+    Queue gpu = test::make_cuda_queue(), cpu = Queue::make_cpu();
+    const Scene scene = test::make_mixed_scene();
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = odd_settings();
+    settings.path.max_depth = 3;
+    Session on_gpu(gpu, prepared, test::mixed_scene_camera(), settings),
+        on_cpu(cpu, prepared, test::mixed_scene_camera(), settings);
+    const auto check = [&](uint32_t width, uint32_t height, uint32_t samples) {
+        CAPTURE(width);
+        settings.width = width, settings.height = height;
+        Hash128 hashes[2];
+        for (Session* session : {&on_gpu, &on_cpu}) {
+            session->set_settings(settings);
+            session->cut();
+            session->render(samples);
+            hashes[session == &on_cpu] = hash_of_mixed(session->result());
+        }
+        CHECK(hashes[0] == hashes[1]);
+    };
+    check(90, 50, 1);    // one
+    check(1000, 521, 1); // two with equal shares
+    check(1000, 601, 2); // with room for more
+    check(1000, 521, 1); // again
+    check(700, 500, 1);  // one of them
+}
+
 TEST_CASE("the GPU gives the bytes of the CPU") {
     if (!test::cuda_requested()) return;
     Queue queue = test::make_cuda_queue();

@@ -14,6 +14,10 @@ namespace pertev {
 namespace {
 
 constexpr uint64_t kLoopPixels = 256; // at least, that a thread of the loop takes at once
+// Paths that two wavefronts share at least. Rounds of fewer are over before the host has given those of two; so are the
+// last of many rounds.
+constexpr uint64_t kSharedPaths = 500'000;
+constexpr uint32_t kManyRounds = 16;
 
 /// Wavefronts that go side by side, and the paths that each has in flight.
 struct Size {
@@ -23,8 +27,7 @@ struct Size {
 
 Size size_for(uint64_t samples, uint32_t batch, bool on_cuda) {
     const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(samples, batch));
-    constexpr uint32_t kLeast = 1u << 15; // fewer do not fill a GPU by halves
-    const int wavefronts = on_cuda && paths >= 2 * kLeast ? 2 : 1;
+    const int wavefronts = on_cuda && paths >= kSharedPaths ? 2 : 1;
     const uint32_t each = (paths - 1) / static_cast<uint32_t>(wavefronts) + 1;
     return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
 }
@@ -244,9 +247,12 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
     const Work work = {{0, pixels, first, count}, film, layers_for(film), settings_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
-    const int going = in_turns ? 1 : static_cast<int>(wavefronts_.size());
+    const uint64_t all = work.samples.count();
+    const bool is_small = all < kSharedPaths || work.settings.max_depth > kManyRounds;
+    const bool does_one = in_turns || (is_small && all <= wavefronts_.front().capacity);
+    const int going = does_one ? 1 : static_cast<int>(wavefronts_.size());
     // Where all paths fit in at once, as in a frame, wavefronts have equal shares and end together.
-    const uint64_t share = (work.samples.count() - 1) / static_cast<uint64_t>(going) + 1;
+    const uint64_t share = (all - 1) / static_cast<uint64_t>(going) + 1;
     render_counts_.zero();
     for (int i = 0; i < going; ++i) {
         Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
@@ -267,7 +273,7 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
         give_rounds(going, work);
     }
     const RenderCounts counts = render_counts_.download().front();
-    rays_.camera += work.samples.count();
+    rays_.camera += all;
     rays_.bounce += counts.bounces;
     rays_.shadow += counts.shadows;
 }
