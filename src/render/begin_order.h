@@ -1,7 +1,7 @@
 #pragma once
 
 // The order in which paths, trees of rays and walks begin. All samples of a pixel come first, then those of the next
-// pixel. So what is under way at a time comes from few pixels that lie side by side, and should meet the same nodes,
+// pixel. So what is under way at a time comes from few pixels that lie side by side, and meets the same nodes,
 // triangles and textures while caches hold them (docs/performance.md, "The order in which samples begin"). No picture
 // depends on this order; which random numbers a sample has is another matter (math/frame_order.h).
 

@@ -190,6 +190,8 @@ TEST_CASE("pictures and frames that two wavefronts share, or one with the memory
     check(1000, 601, 2); // with room for more
     check(1000, 521, 1); // again
     check(700, 500, 1);  // one of them
+    settings.path.max_depth = 17;
+    check(1000, 521, 1); // one again, for its many rounds
 }
 
 TEST_CASE("the GPU gives the bytes of the CPU") {

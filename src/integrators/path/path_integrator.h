@@ -6,8 +6,8 @@
 //
 // The wavefront goes round by round (integrators/path/path_queues.h). The host gives rounds to the device without
 // waiting for one: how many paths a round has stays there, and the host reads one round late whether any were left. Two
-// wavefronts go side by side on a GPU, each with its shadow rays beside its next bounce: rays of one kind fill what the
-// last rays of another's launch leave idle.
+// wavefronts go side by side on a GPU, or one where there are few paths, each with its shadow rays beside its next
+// bounce: rays of one kind fill what the last rays of another's launch leave idle.
 //
 // Source: Laine, Karras, Aila, "Megakernels Considered Harmful: Wavefront Path Tracing on GPUs", HPG 2013, whose pool
 // of paths is refilled as they end.
