@@ -1,10 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <span>
 
 #include "base/parallel_for.h"
-#include "formats/parse_obj.h"
 #include "formats/read_obj.h"
 #include "formats/triangulate_polygon.h"
 #include "image/srgb.h"
@@ -69,46 +67,6 @@ double area(const std::vector<Vec3>& p, const std::vector<uint32_t>& indices) {
     return sum;
 }
 
-struct Parsed {
-    ObjData data;
-    std::string said; // warnings, or the error
-};
-
-Parsed parse_in_pieces(const std::string& text, std::size_t piece_bytes) {
-    Parsed parsed;
-    Messages messages;
-    std::vector<uint32_t> found; // lines
-    const auto found_materials = [&](const ObjMaterialFiles& files) { found.push_back(files.line); };
-    try {
-        parsed.data = parse_obj(std::as_bytes(std::span(text)), "a.obj", messages, found_materials, piece_bytes);
-        CHECK(found.size() <= 1);
-        if (!found.empty()) CHECK(found.front() == parsed.data.material_files.at(0).line);
-    } catch (const Error& error) {
-        CHECK(error.code() == ErrorCode::BadInput);
-        parsed.said = error.what();
-    }
-    for (const Message& message : messages.all()) parsed.said += message.text + "\n";
-    return parsed;
-}
-
-bool same(const ObjData& a, const ObjData& b) {
-    const auto same_bytes = [](const auto& x, const auto& y) { // NaN is itself
-        return std::ranges::equal(std::as_bytes(std::span(x)), std::as_bytes(std::span(y)));
-    };
-    const auto same_corners = [](const ObjCorner& x, const ObjCorner& y) {
-        return x.position == y.position && x.uv == y.uv && x.normal == y.normal;
-    };
-    const auto same_group = [&](const ObjGroup& x, const ObjGroup& y) {
-        return x.material == y.material && x.line == y.line && std::ranges::equal(x.corners, y.corners, same_corners);
-    };
-    const auto same_files = [](const ObjMaterialFiles& x, const ObjMaterialFiles& y) {
-        return x.names == y.names && x.line == y.line;
-    };
-    return same_bytes(a.positions, b.positions) && same_bytes(a.colors, b.colors) && same_bytes(a.normals, b.normals) &&
-           same_bytes(a.uvs, b.uvs) && std::ranges::equal(a.groups, b.groups, same_group) &&
-           std::ranges::equal(a.material_files, b.material_files, same_files);
-}
-
 } // namespace
 
 TEST_CASE("one mesh and one instance for each material, in the order of first use") {
@@ -166,37 +124,6 @@ TEST_CASE("relative indices, comments, joined lines, CRLF and lone CR line ends 
         CHECK(l.scene.meshes[0].indices == expected);
         CHECK(l.scene.meshes[0].positions[1] == Vec3{1, 0, 0});
         if (end != "\r") CHECK(l.messages.all().empty());
-    }
-}
-
-TEST_CASE("a text that several threads read in pieces is the same, and so is what is said of it") {
-    // ; ends a line. Every construct whose meaning lies in what stands before it, and each kind of fault.
-    const std::string corners = "v 0 0 0;v 1 0 0 1 0.5 0;v 0 1 \\;0;v 1 1 0;vt 0 0;vt 1 0;vn 0 0 1;";
-    const std::string faces =
-        "f 1 2 3;usemtl red one # note;f -4/-2/-1 -3//-1 -2/-1;# C:\\;f 2 3 4;usemtl blue;f 1 2 \\;4 3;";
-    const std::string odd =
-        "v 1 x 2;vt;f 1 2;p 1;vp 0;what;f 1/9 2/9 3/9;mtllib b.mtl c.mtl;usemtl;f 2 3 4;usemtl red one;f 1 2 4;";
-    const std::string whole = "mtllib a.mtl;" + corners + faces + odd + corners + "f -1 -2 -3;" + odd + faces;
-    std::vector<std::string> texts = {"", ";", "f 1 2 3", whole};
-    for (const char* fault : {"f 1 2 99;", "f 1 2 -99;", "f 1 b 2;", "f 0 1 2;"}) {
-        texts.push_back(corners + faces + fault + whole);
-        texts.push_back(whole + fault + faces + "f 1 2 c;");
-    }
-    for (std::string text : texts) {
-        for (const std::string end : {"\n", "\r\n", "\r"}) {
-            std::string lines = text;
-            for (std::size_t at = lines.find(';'); at != lines.npos; at = lines.find(';', at))
-                lines.replace(at, 1, end);
-            const Parsed at_once = parse_in_pieces(lines, lines.size() + 1);
-            CHECK((text != whole || at_once.data.groups.size() == 3));
-            for (const std::size_t piece_bytes : {1, 2, 3, 5, 8, 13, 40, 100, 300}) {
-                CAPTURE(text);
-                CAPTURE(piece_bytes);
-                const Parsed in_pieces = parse_in_pieces(lines, piece_bytes);
-                CHECK(in_pieces.said == at_once.said);
-                CHECK(same(in_pieces.data, at_once.data));
-            }
-        }
     }
 }
 
