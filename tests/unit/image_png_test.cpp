@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <png.h>
+#include <zlib.h>
 
 #include "base/error.h"
 #include "base/parallel_for.h"
@@ -147,6 +148,29 @@ TEST_CASE("a written PNG reads back to the same bytes, with and without alpha, a
         CHECK(opaque.pixels[i] == (i % 4 == 3 ? 255 : image.pixels[i]));
 }
 
+namespace {
+
+/// Bytes that the file's one zlib stream holds, its sum checked, which libpng does not do; 0 for a broken one.
+std::size_t inflated_bytes(const std::vector<std::byte>& file, std::size_t at_most) {
+    std::vector<std::byte> stream;
+    const auto number_at = [&](std::size_t at) {
+        uint32_t number = 0;
+        for (std::size_t k = at; k < at + 4; ++k) number = number << 8 | std::to_integer<uint32_t>(file.at(k));
+        return number;
+    };
+    for (std::size_t at = 8; at < file.size(); at += 12 + number_at(at)) {
+        if (std::memcmp(&file.at(at + 4), "IDAT", 4) != 0) continue;
+        const auto first = file.begin() + static_cast<std::ptrdiff_t>(at + 8);
+        stream.insert(stream.end(), first, first + number_at(at));
+    }
+    std::vector<Bytef> bytes(at_most);
+    uLongf size = at_most;
+    const int result = uncompress(bytes.data(), &size, reinterpret_cast<const Bytef*>(stream.data()), stream.size());
+    return result == Z_OK ? size : 0;
+}
+
+} // namespace
+
 TEST_CASE("a PNG that several threads write holds the picture, and its bytes do not depend on them") {
     const auto noise = [](uint32_t width, uint32_t height, uint32_t bits) {
         Rgba8Image image{width, height, {}};
@@ -167,6 +191,8 @@ TEST_CASE("a PNG that several threads write holds the picture, and its bytes do 
         const Rgba8Image image = noise(of.width, of.height, of.bits);
         const auto whole = encode_png(image, true), opaque = encode_png(image);
         CHECK(std::get<Rgba8Image>(decode_image(whole, "t.png")).pixels == image.pixels);
+        const std::size_t bytes = of.height * (1 + std::size_t(of.width) * 3);
+        CHECK(inflated_bytes(opaque, bytes + 100) == bytes);
         const auto read = std::get<Rgba8Image>(decode_image(opaque, "t.png"));
         bool is_same = true;
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
