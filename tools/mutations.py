@@ -349,7 +349,7 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
              [edit("src/integrators/path/path_loop.cpp", "has_choices || may_end_by_chance(settings_, path.depth + 1)", "has_choices")],
              ["consistency/one_picture"]),
     Mutation("a piece of an OBJ file that does not know the material before it",
-             [edit("src/formats/parse_obj.cpp", "if (found[i].material) before.material = found[i].material;", "")],
+             [edit("src/formats/parse_obj.cpp", "if (found[i].material) before.material = *found[i].material;", "")],
              ["unit/parse_obj"]),
     Mutation("an OBJ file cut within a statement of two lines",
              [edit("src/formats/parse_obj.cpp", "while (end != text.npos && ObjLines::is_joined(text, begin, end))",

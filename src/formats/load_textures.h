@@ -1,8 +1,8 @@
 #pragma once
 
-// Collects the images that a scene refers to, each once, and decodes all of them in parallel. A picture that
-// is missing or broken is a warning, and what used it falls back to its factor; a picture outside the folders that the
-// scene may read is an error.
+// Collects the images that a scene refers to, each once, and decodes all of them in parallel. A picture that is missing
+// or broken is a warning, and what used it falls back to its factor; a picture outside the folders that the scene may
+// read is an error.
 
 #include <atomic>
 #include <cstddef>

@@ -45,7 +45,7 @@ struct Piece {
     // What stands before it.
     uint32_t line = 1; // the number of its first
     Counts counts = {};
-    std::optional<std::string_view> material = {}; // of the last usemtl
+    std::string_view material = {}; // of the last usemtl
 };
 
 /// Of about so many bytes, cut where a line ends that cannot be joined with the next, be it a comment or not.
@@ -95,7 +95,7 @@ Counts count_before(std::vector<Piece>& pieces, char end_of_line) {
         before.counts.positions += found[i].counts.positions;
         before.counts.uvs += found[i].counts.uvs;
         before.counts.normals += found[i].counts.normals;
-        if (found[i].material) before.material = found[i].material;
+        if (found[i].material) before.material = *found[i].material;
     }
     return before.counts;
 }
@@ -110,7 +110,7 @@ public:
     PieceParser(const Piece& piece, char end_of_line, const std::string& file, ObjData& data,
                 const FoundMaterials* found_materials)
         : lines_(piece.text, end_of_line, piece.line), file_(file), before_(piece.counts), so_far_(piece.counts),
-          data_(data), found_materials_(found_materials), material_(piece.material.value_or("")) {}
+          data_(data), found_materials_(found_materials), material_(piece.material) {}
 
     void run() {
         try {

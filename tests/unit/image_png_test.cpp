@@ -150,7 +150,7 @@ TEST_CASE("a written PNG reads back to the same bytes, with and without alpha, a
 
 namespace {
 
-/// Bytes that the file's one zlib stream holds, its sum checked, which libpng does not do; 0 for a broken one.
+/// Bytes that the file's one zlib stream holds, by zlib alone, which checks their sum; 0 for a broken one.
 std::size_t inflated_bytes(const std::vector<std::byte>& file, std::size_t at_most) {
     std::vector<std::byte> stream;
     const auto number_at = [&](std::size_t at) {
