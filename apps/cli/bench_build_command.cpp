@@ -14,6 +14,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reporter.h"
+#include "base/error.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
 #include "formats/read_scene.h"
@@ -59,9 +60,23 @@ void print(const std::string& scene, const std::string& tree, const std::string&
             ratio > 0 ? fmt::format("{:.4f}", ratio) : "null", ratios_json(others)));
     }
     reporter.answer(fmt::format(
-        "{:11} {:12} {:>8} {:11.3f} {:9.3f} {:9} {:9} {:5} {:8.3f} {:>7} {:>8} {:>8}\n", scene, tree, triangles,
+        "{:11} {:12} {:>8} {:11.3f} {:9.3f} {:>9} {:9} {:5} {:8.3f} {:>7} {:>8} {:>8}\n", scene, tree, triangles,
         times.median * 1e3, times.least * 1e3, fmt::format("{:.1f}", millions_a_second(triangles, times.median)), nodes,
         depth, cost, ratio > 0 ? fmt::format("{:.3f}", ratio) : "-", ratio_cell(others[0]), ratio_cell(others[1])));
+}
+
+/// A built tree fitted to its triangles again.
+void print_refit(const std::string& scene, const std::string& device, uint64_t triangles, const RunTimes& times,
+                 Reporter& reporter) {
+    if (reporter.json()) {
+        return reporter.event(fmt::format(
+            R"({{"event":"refit","scene":{},"tree":"hploc","device":{},"triangles":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{}}})",
+            json_string(scene), json_string(device), triangles, json_number(times.median), json_number(times.least),
+            json_number(times.greatest), times.runs));
+    }
+    reporter.answer(fmt::format("{:11} {:12} {:>8} {:11.3f} {:9.3f} {:>9}\n", scene, "its refit", triangles,
+                                times.median * 1e3, times.least * 1e3,
+                                fmt::format("{:.1f}", millions_a_second(triangles, times.median))));
 }
 
 void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags, Reporter& reporter) {
@@ -91,11 +106,19 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
     const Buffer<BvhTriangle> there(queue, std::span(triangles), "triangles to build of");
     DeviceBuilder builder(queue, count);
     const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 3);
-    const RunTimes times = time_runs(
-        queue, queue.is_cuda() ? 3 : 1, runs, [&] { builder.start(there.data(), count); }, throw_if_interrupted);
+    const auto time = [&](const auto& run) {
+        return time_runs(queue, queue.is_cuda() ? 3 : 1, runs, run, throw_if_interrupted);
+    };
+    const RunTimes times = time([&] { builder.start(there.data(), count); });
     const DeviceBuilder::Figures figures = builder.finish();
     print(name, "hploc", queue.device_name(), count, times, figures.nodes, figures.depth, figures.sah_cost,
           ratio(figures.sah_cost), reporter);
+    const RunTimes refits = time([&] { builder.start_refit(there.data()); });
+    if (builder.finish().bounds != figures.bounds) {
+        throw Error(ErrorCode::DeviceFault,
+                    fmt::format("{}: a tree fitted to its own triangles has other bounds", name));
+    }
+    print_refit(name, queue.device_name(), count, refits, reporter);
 }
 
 int bench_build(const BuildFlags& flags) {

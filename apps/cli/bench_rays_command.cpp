@@ -22,6 +22,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "formats/read_scene.h"
+#include "lab/isolated_rays.h"
 #include "lab/measure_rays.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
@@ -69,30 +70,18 @@ Scene read_geometry(const std::string& name, Messages& messages) {
 
 std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit.t, hit.instance, hit.primitive); }
 
-/// Binary nodes, one ray a thread: what the record's counts of nodes are of.
-constexpr Combination kBinary = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
-
-Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared) {
-    return {queue, combination, prepared.structures->get(combination)};
-}
-
 /// Throws Error(DeviceFault) that names the first ray where the tracer of pictures on this device and the binary walk
 /// on the host differ.
 void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const PreparedScene& prepared) {
     Queue cpu = Queue::make_cpu();
     RaysOnDevice rays(cpu, set);
-    rays.trace(make_tracer(cpu, kBinary, prepared));
+    rays.trace(make_tracer(cpu, kBinaryTracer, prepared));
     const std::vector<RayHit> wanted = rays.hits();
     const auto [found, want] = std::ranges::mismatch(hits, wanted);
     if (found == hits.end()) return;
     throw Error(ErrorCode::DeviceFault,
                 fmt::format("{}: ray {} of {} hits {}, by the binary walk on the CPU {}", set.name,
                             found - hits.begin(), hits.size(), describe(*found), describe(*want)));
-}
-
-/// What pictures trace the set's rays by on this device.
-const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice) {
-    return set.any_hit ? choice.shadow : set.name == "primary" ? choice.camera : choice.bounce;
 }
 
 SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, const TracerChoice& choice,
@@ -109,7 +98,7 @@ SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, cons
     if (flags.check) check_hits(hits, set, prepared);
     figures.hit_share = hit_share(hits);
     throw_if_interrupted();
-    Combination counted = kBinary;
+    Combination counted = kBinaryTracer;
     counted.options.near_first = !set.any_hit; // as the record has it
     figures.work = summarize_work(rays.count_work(make_tracer(queue, counted, prepared)));
     const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 5);
@@ -177,17 +166,11 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     throw_if_interrupted();
     const PreparedScene prepared = // the sets are in the file's coordinates
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
-    const Tracer tracer = make_tracer(queue, kBinary, prepared);
     const FrameSize frame = record_frame(flags.count);
     const Camera camera = choose_camera(flags.camera, scene, 16.0f / 9.0f, messages);
     reporter.say_messages();
     watch.restart();
-    const auto trace = [trace_rays = make_ray_tracer(queue, tracer)](std::span<const Ray> rays,
-                                                                     std::span<RayHit> hits) {
-        throw_if_interrupted();
-        trace_rays(rays, hits);
-    };
-    std::vector<RaySet> sets = make_record_ray_sets({scene, camera, frame.width, frame.height, trace}, flags.count);
+    std::vector<RaySet> sets = make_isolated_sets(queue, scene, camera, prepared, flags.count, throw_if_interrupted);
     const std::size_t recorded = sets.size();
     if (flags.axes) std::ranges::move(make_axis_ray_sets(sets[2]), std::back_inserter(sets));
     reporter.say(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",

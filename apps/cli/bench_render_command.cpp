@@ -19,6 +19,7 @@
 #include "device/device_timer.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
+#include "lab/isolated_rays.h"
 #include "lab/record_jobs.h"
 #include "lab/stored_figures.h"
 
@@ -29,6 +30,7 @@ struct JobFlags {
     PictureFlags picture;
     std::string job = "S8", output;
     uint32_t seed = 0, moves = 0;
+    bool isolated = false;
 };
 
 RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
@@ -37,6 +39,22 @@ RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
     if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
     settings.path.seed = flags.seed;
     return settings;
+}
+
+struct JobBytes {
+    std::size_t of_queues = 0;           // of paths in flight
+    std::optional<double> of_structures; // on a GPU, a triangle; on a CPU trees are not copied
+};
+
+JobBytes bytes_of(const RenderSettings& settings, const PreparedScene& prepared, const Queue& queue) {
+    JobBytes bytes;
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    bytes.of_queues = predicted_bytes(settings, pixels, settings.samples, queue.is_cuda(), !queue.is_cuda());
+    if (queue.is_cuda() && prepared.triangles > 0) {
+        bytes.of_structures = static_cast<double>(prepared.structures->device_bytes(tracers_of(settings, true))) /
+                              static_cast<double>(prepared.triangles);
+    }
+    return bytes;
 }
 
 /// Seconds that one sample of every pixel takes after the camera has moved, from the call that moves it until the film
@@ -53,6 +71,17 @@ double seconds_after_moves(Session& session, uint32_t moves) {
         seconds.push_back(watch.seconds());
     }
     return summarize_runs(seconds).median;
+}
+
+/// Rays a second of each kind by themselves, in the job's scene and by what the job traces them by.
+IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& scene, const TracerChoice& choice,
+                             Reporter& reporter) {
+    reporter.set_work("measuring rays by themselves");
+    const PreparedScene prepared = prepare_scene(
+        scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter.messages());
+    const Camera camera = job_camera(job, scene, 16.0f / 9.0f, reporter.messages()); // as the sets' frames
+    const uint32_t count = queue.is_cuda() ? kRecordRays : kRecordRays / 16;         // a CPU takes seconds for these
+    return measure_isolated_rays(queue, scene, camera, prepared, choice, count, throw_if_interrupted);
 }
 
 int bench_job(const JobFlags& flags) {
@@ -88,16 +117,25 @@ int bench_job(const JobFlags& flags) {
     const double samples_per_second = samples / result.render_seconds, mean = mean_of(result.picture);
     std::optional<double> moved_per_second;
     if (flags.moves > 0) moved_per_second = pixels / seconds_after_moves(session, flags.moves);
+    const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
+    std::optional<double> of_isolated;
+    if (flags.isolated) {
+        const IsolatedRates rates =
+            isolated_rates(*queue, job, scene, tracers_of(settings, queue->is_cuda()), reporter);
+        if (const double mix = rates.of_mix(result.rays); mix > 0) of_isolated = rays_per_second / mix;
+    }
+    const JobBytes bytes = bytes_of(settings, prepared, *queue);
     const std::string device = queue->device_name();
     const std::vector<Ratio> ratios = ratios_of(JobRun{device, &job, settings.width, settings.height, settings.samples,
                                                        prepared.triangles, mean, samples_per_second});
     if (flags.picture.report.json) {
         reporter.event(fmt::format(
-            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"moved_samples_per_second":{},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
+            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"ratio_to_isolated_rays":{},"queue_bytes":{},"structure_bytes_per_triangle":{},"moved_samples_per_second":{},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
             job.name, json_string(device), settings.width, settings.height, settings.samples, prepared.triangles,
-            load_s, prepared.build_seconds, result.render_seconds, samples_per_second,
-            static_cast<double>(result.rays.total()) / result.render_seconds,
+            load_s, prepared.build_seconds, result.render_seconds, samples_per_second, rays_per_second,
             static_cast<double>(result.rays.total()) / samples,
+            of_isolated ? fmt::format("{:.4f}", *of_isolated) : "null", bytes.of_queues,
+            bytes.of_structures ? fmt::format("{:.2f}", *bytes.of_structures) : "null",
             moved_per_second ? fmt::format("{:.0f}", *moved_per_second) : "null", mean, result.invalid_samples, hash,
             ratios_json(ratios)));
     } else {
@@ -108,6 +146,15 @@ int bench_job(const JobFlags& flags) {
                         prepared.build_seconds, result.render_seconds, samples_per_second * 1e-6,
                         millions_a_second(result.rays.total(), result.render_seconds),
                         static_cast<double>(result.rays.total()) / samples, ratios_line(ratios, job), mean, hash));
+        if (bytes.of_structures) {
+            reporter.answer(
+                fmt::format("queues of paths {:.1f} MB, trees with their triangles {:.1f} bytes a triangle\n",
+                            static_cast<double>(bytes.of_queues) * 1e-6, *bytes.of_structures));
+        }
+        if (of_isolated) {
+            reporter.answer(fmt::format("rays a second: {:.3f} of the same mix of the record's rays by themselves\n",
+                                        *of_isolated));
+        }
         if (moved_per_second) {
             reporter.answer(
                 fmt::format("one sample a pixel after the camera moved: {:.2f} Msamples/s, {:.3f} of {} spp\n",
@@ -146,6 +193,9 @@ void add_bench_render_command(CLI::App& bench, int& status) {
                     "move the camera so often, too, and time one sample of every\npixel after each move (0)")
         ->type_name("N")
         ->check(whole_between(0, 100000));
+    verb.add_flag("--isolated", flags->isolated,
+                  "trace the sets of `bench rays` by themselves, too, and say\nwhat share of their rate the job's rays "
+                  "have");
     verb.add_option("-o,--output", flags->output, "keep the picture")->type_name("FILE");
     add_picture_flags(verb, flags->picture, "the job's", "the job's");
     verb.callback([&verb, flags, &status] {

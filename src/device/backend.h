@@ -24,10 +24,14 @@ public:
 class HostCopy {
 public:
     virtual ~HostCopy() = default;
-    /// Copies from `device` after the work given to the current stream so far. The copy before has been waited for.
+    /// Copies from `device` after the work given to the current stream so far. The bytes before have been waited for.
     virtual void take(const void* device) = 0;
-    /// Waits for the last take() and for nothing behind it. The bytes stay until the next. Throws Error(DeviceFault)
-    /// that names `stage`, the last one launched.
+    /// In place of take(): where a stage writes the bytes itself, then said once it has been given to the current
+    /// stream.
+    virtual void* place() = 0;
+    virtual void mark() = 0;
+    /// Waits for the last take() or mark() and for nothing behind it. The bytes stay until the next. Throws
+    /// Error(DeviceFault) that names `stage`, the last one launched.
     virtual const void* wait(const char* stage) = 0;
 };
 

@@ -214,7 +214,7 @@ bool change_settings(Integrator& integrator, const IntegratorSettings& from, con
 }
 
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
-                            bool walks_itself, bool has_times) {
+                            bool walks_itself, PathParts parts) {
     if (settings.integrator == IntegratorKind::Raster) return RasterIntegrator::predicted_bytes(pixels);
     if (settings.integrator == IntegratorKind::Reyes) {
         return ReyesIntegrator::predicted_bytes(reyes_settings(settings), pixels, samples);
@@ -245,18 +245,20 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels,
     case IntegratorKind::Radiosity:
         break;
     case IntegratorKind::Cast:
-        return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);
+        return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, parts.has_times);
     case IntegratorKind::Whitted:
-        return RayTreeIntegrator<Whitted>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);
+        return RayTreeIntegrator<Whitted>::predicted_bytes(tree_settings(settings), all, settings.batch,
+                                                           parts.has_times);
     case IntegratorKind::Distributed:
-        return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch, has_times);
+        return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch,
+                                                               parts.has_times);
     case IntegratorKind::Light:
         return WalksIntegrator<ParticlesAlone>::predicted_bytes(walk_settings(settings), all, settings.batch);
     case IntegratorKind::Bidirectional:
         return WalksIntegrator<BothDirections>::predicted_bytes(walk_settings(settings), all, settings.batch);
     }
-    return tables +
-           PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.light_paths != nullptr, has_times);
+    parts.has_layers = settings.light_paths != nullptr;
+    return tables + PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.path.max_depth, parts);
 }
 
 } // namespace pertev

@@ -54,7 +54,7 @@ struct IntegratorSettings {
 
     // How the device does it: the light stays the same.
     PathBody body = PathBody::Loop; // CUDA always takes Wavefront
-    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes each; or other samples
+    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes and more each; or other samples
 };
 
 /// Whether its samples can be taken apart for frames that are reconstructed (FilmView::frame), for pictures that are
@@ -90,8 +90,9 @@ std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettin
 bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to);
 
 /// Bytes of the device's memory that it takes for `samples` of each of `pixels`. `walks_itself`: its tracers are such
-/// that a loop may walk them ray by ray (can_walk_on_host). `has_times`: instances move while the shutter is open.
+/// that a loop may walk them ray by ray (can_walk_on_host). `parts`: what its paths have beside; that they have layers
+/// the settings say. Of other integrators has_times counts alone.
 std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
-                            bool walks_itself, bool has_times = false);
+                            bool walks_itself, PathParts parts = {});
 
 } // namespace pertev

@@ -39,7 +39,7 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
     const uint32_t layers = light_layers_of(settings);
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layers);
-    const std::size_t own = predicted_bytes(settings, pixels, settings.samples, is_cuda, !is_cuda, false);
+    const std::size_t own = predicted_bytes(settings, pixels, settings.samples, is_cuda, !is_cuda);
     if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
         return fmt::format("Photons take {} (--photons {}, --max-depth {}): a smaller one of either takes less",
                            amount(own), settings.photon_map.photons, settings.path.max_depth);

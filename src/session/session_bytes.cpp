@@ -38,26 +38,23 @@ std::size_t deforming_tree_bytes(const PreparedScene& scene, const TracerChoice&
 
 bool splits_light(const PreparedScene& scene) { return materials_known(*scene.scene) == MaterialsKnown::Nothing; }
 
-/// Of the scene, its trees, and the integrator with its queues, for calls of so many samples. `of_frames`: Float4 that
-/// a path in a queue has beside, as its samples go to noisy frames.
+/// Of the scene, its trees, and the integrator with its queues, for calls of so many samples. `parts`: what paths have
+/// beside as their samples go to noisy frames.
 std::size_t bytes_of_tracing(const PreparedScene& scene, const RenderSettings& settings, uint32_t samples,
-                             std::size_t of_frames, bool on_cuda) {
+                             PathParts parts, bool on_cuda) {
     const TracerChoice tracers = tracers_of(settings, on_cuda, !scene.poses.empty());
     const bool has_loop = can_walk_on_host(tracers, on_cuda);
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    parts.has_times = scene.motions != nullptr;
     std::size_t bytes = predicted_bytes(scene, on_cuda) + deforming_tree_bytes(scene, tracers, on_cuda) +
-                        predicted_bytes(settings, pixels, samples, on_cuda, has_loop, scene.motions != nullptr);
+                        predicted_bytes(settings, pixels, samples, on_cuda, has_loop, parts);
     if (on_cuda) bytes += scene.structures->device_bytes(tracers);
     if (lists_tiles(settings.integrator)) {
         bytes += CameraRaster::predicted_bytes(triangles_of_instances(*scene.scene), settings.width, settings.height,
                                                on_cuda);
     }
-    const bool has_queues = !(has_loop && settings.body == PathBody::Loop);
-    if (has_queues) bytes += of_frames * sizeof(Float4) * std::min(pixels, uint64_t(settings.batch));
     return bytes;
 }
-
-std::size_t of_split_light(const PreparedScene& scene) { return splits_light(scene) ? 3 : 0; }
 
 } // namespace
 
@@ -65,7 +62,7 @@ std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& se
     const uint32_t width = settings.width, height = settings.height;
     const bool denoises = settings.denoise != Denoise::None;
     std::size_t bytes = bytes_of_tracing(scene, settings, denoises ? 1 : settings.samples,
-                                         denoises ? of_split_light(scene) : 0, on_cuda) +
+                                         {.splits_light = denoises && splits_light(scene)}, on_cuda) +
                         Film::predicted_bytes(width, height, settings.aovs, light_layers_of(settings));
     if (denoises) {
         bytes += NoisyFrame::predicted_bytes(width, height, splits_light(scene)) +
@@ -82,8 +79,9 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
                                   bool on_cuda) {
     const uint32_t width = settings.width, height = settings.height;
     const uint32_t of_light[] = {scaled_side(width, reconstruction), scaled_side(height, reconstruction)};
-    const std::size_t of_bounces = restir.light == RestirLight::Indirect ? 1 : 0;
-    std::size_t bytes = bytes_of_tracing(scene, settings, 1, of_split_light(scene) + of_bounces, on_cuda) +
+    const PathParts parts = {.splits_light = splits_light(scene),
+                             .tells_bounce = restir.light == RestirLight::Indirect};
+    std::size_t bytes = bytes_of_tracing(scene, settings, 1, parts, on_cuda) +
                         NoisyFrame::predicted_bytes(of_light[0], of_light[1], splits_light(scene)) +
                         Reconstruction::predicted_bytes(of_light[0], of_light[1]);
     if (restir.light != RestirLight::Off) bytes += Restir::predicted_bytes(of_light[0], of_light[1], restir.light);

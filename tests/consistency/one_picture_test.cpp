@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "base/parallel_for.h"
+#include "image/picture_hash.h"
+#include "integrators/path/path_integrator.h"
 #include "shading/material_view.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -192,6 +194,30 @@ TEST_CASE("pictures and frames that two wavefronts share, or one with the memory
     check(700, 500, 1);  // one of them
     settings.path.max_depth = 17;
     check(1000, 521, 1); // one again, for its many rounds
+}
+
+TEST_CASE("frames that split light after a picture of many samples keep to the bytes of queues, and to their own") {
+    if (!test::cuda_requested()) return;
+    Queue gpu = test::make_cuda_queue();
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    RenderSettings settings = odd_settings();
+    settings.width = 1920, settings.height = 1080, settings.aovs = 0;
+    Hash128 hashes[2];
+    for (const bool renders_before : {false, true}) {
+        Session session(gpu, prepared, test::mixed_scene_camera(), settings);
+        if (renders_before) session.render(2); // takes all the paths that a picture may have
+        const std::size_t before = gpu.allocated_bytes();
+        session.render_frame(0, {});
+        session.render_frame(1, {});
+        hashes[renders_before ? 1 : 0] = picture_hash(session.frame_result().picture);
+        if (!renders_before) continue;
+        const std::size_t film = Film::predicted_bytes(1920, 1080, 0);
+        CHECK(gpu.allocated_bytes() <= predicted_frame_bytes(prepared, settings, {}, {}, true) + film + 8192);
+        CHECK(before > PathIntegrator::kMostQueueBytes - 10'000'000);
+    }
+    CHECK(hashes[0] == hashes[1]);
 }
 
 TEST_CASE("the GPU gives the bytes of the CPU") {

@@ -61,7 +61,9 @@ struct BatchOnDevice {
 
     BatchOnDevice(Queue& queue, const std::vector<Ray>& values)
         : rays(queue, std::span<const Ray>(values), "rays"), hits(queue, values.size(), "hits"),
-          pool(queue, 1, "pool") {}
+          pool(queue, 1, "pool") {
+        pool.zero();
+    }
     WalkBatch view() const { return {rays.data(), hits.data(), static_cast<uint32_t>(rays.size()), pool.data()}; }
 };
 

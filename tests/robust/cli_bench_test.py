@@ -35,7 +35,11 @@ class Bench(CliTest):
         text = self.succeed("bench", "render", *line).stdout
         self.assertRegex(text, r"^job S8 on CPU: 16x16, 1 spp, 38 triangles\nload .*\n.* Msamples/s, .*\n"
                                r"no ratios to others: .* NVIDIA H200, 1920x1080, 256 spp, 262204 triangles .*\nmean .*\n$")
-        self.assertEqual(made["moved_samples_per_second"], None)
+        self.assertEqual([made[key] for key in ("moved_samples_per_second", "ratio_to_isolated_rays",
+                                                "structure_bytes_per_triangle")], [None] * 3)
+        self.assertGreater(made["queue_bytes"], -1)
+        held = self.succeed("bench", "render", *line, "--isolated", "--json").events("job")[0]
+        self.assertGreater(held["ratio_to_isolated_rays"], 0)
         moved = self.succeed("bench", "render", *line, "--moves", "3", "--json").events("job")[0]
         self.assertGreater(moved["moved_samples_per_second"], 0)
         self.assertRegex(self.succeed("bench", "render", *line, "--moves", "3").stdout,
@@ -52,6 +56,10 @@ class Bench(CliTest):
             self.assertIsNone(of["ratio_to_optix_fast_trace"])
             self.assertIsNone(of["ratio_to_optix_fast_build"])
         self.assertRegex(self.succeed(*line).stdout, r"(?m)^cornell-box +hploc .* - +- +-$")
+        refits = self.succeed(*line, "--json").events("refit")
+        self.assertEqual([(of["scene"], of["tree"]) for of in refits], [("cornell-box", "hploc")])
+        self.assertGreater(refits[0]["median_seconds"], 0)
+        self.assertRegex(self.succeed(*line).stdout, r"(?m)^cornell-box +its refit ")
 
     def test_a_flag_before_a_verb_of_bench_ends_with_2_and_says_where_it_belongs(self):
         for flag in ["--device cuda", "--scene nowhere.obj", "--size 8x8", "--spp 1", "--threads 1", "--json", "-q"]:

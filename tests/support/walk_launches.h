@@ -19,7 +19,7 @@ struct WalkBatch {
     const Ray* rays;
     Hit* hits;
     uint32_t count;
-    uint32_t* pool; // one number
+    uint32_t* pool; // one number, 0
 };
 
 /// Of the same triangles.

@@ -161,3 +161,39 @@ TEST_CASE("products that underflow still have their sign") {
     CHECK_FALSE(intersect({0, -2 * s, -1}, {0, 0, 1}, {-s, -s, 0}, {s, -s, 0}, {0, s, 0}, hit));
     CHECK_FALSE(intersect({s, s, -1}, {0, 0, 1}, {-s, -s, 0}, {s, -s, 0}, {0, s, 0}, hit));
 }
+
+TEST_CASE("an edge along the ray, and any edge that is zero, leaves the others to decide, at every size") {
+    Random random(9);
+    uint64_t hits = 0, along = 0, wrong = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const auto whole = [&] { return static_cast<int>(random.below(7)) - 3; };
+        int x[3], y[3];
+        for (int k = 0; k < 3; ++k) x[k] = whole(), y[k] = whole();
+        if (i % 2 == 0) x[1] = x[0], y[1] = y[0]; // the edge from a to b is along the ray
+        const int ox = whole(), oy = whole();
+        // Of whole numbers everything is exact: edges opposite a, b and c as the ray sees them.
+        const auto edge = [&](int p, int q) { return (x[p] - ox) * (y[q] - oy) - (y[p] - oy) * (x[q] - ox); };
+        const int ea = edge(2, 1), eb = edge(0, 2), ec = edge(1, 0);
+        const bool is_outside = (ea < 0 || eb < 0 || ec < 0) && (ea > 0 || eb > 0 || ec > 0);
+        const bool want = !is_outside && ea + eb + ec != 0;
+        const float size = static_cast<float>(std::ldexp(1.0, static_cast<int>(random.below(100)) - 55));
+        const auto corner = [&](int k) {
+            return size * Vec3{static_cast<float>(x[k]), static_cast<float>(y[k]), static_cast<float>(k)};
+        };
+        const Vec3 origin = size * Vec3{static_cast<float>(ox), static_cast<float>(oy), -1};
+        TriangleHit hit;
+        const bool is_hit = intersect(origin, {0, 0, 1}, corner(0), corner(1), corner(2), hit);
+        hits += want ? 1 : 0;
+        along += ec == 0 && ea == -eb && ea != 0 ? 1 : 0;
+        wrong += is_hit != want ? 1 : 0;
+    }
+    CHECK(hits > 5000);
+    CHECK(along > 50000);
+    CHECK(wrong == 0);
+    CHECK(is_surely_outside(-kSureEdge, kSureEdge));
+    CHECK_FALSE(is_surely_outside(-0.9f * kSureEdge, 1)); // it may be zero
+    CHECK_FALSE(is_surely_outside(-1, 0.9f * kSureEdge));
+    CHECK_FALSE(is_surely_outside(-kPlainEdge, 1)); // beside it the other may count as zero
+    CHECK_FALSE(is_surely_outside(-1, kPlainEdge));
+    CHECK_FALSE(is_surely_outside(std::nanf(""), std::nanf("")));
+}

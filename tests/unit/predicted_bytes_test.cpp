@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "integrators/path/path_integrator.h"
 #include "render/scene_on_device.h"
 #include "render/tracer/scene_tracer.h"
 #include "tests/support/options.h"
@@ -59,4 +60,26 @@ TEST_CASE("each light of a scene counts in the bytes that it will take") {
     Scene glowing = scene;
     for (Instance& instance : glowing.instances) instance.material = 1;
     CHECK(bytes_of(glowing) >= dark + kCount * (sizeof(Emitter) + sizeof(EmissiveTriangle) + 16));
+}
+
+TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever a path has beside") {
+    constexpr std::size_t kMost = PathIntegrator::kMostQueueBytes;
+    for (uint32_t bits = 0; bits < 16; ++bits) {
+        CAPTURE(bits);
+        const PathParts parts = {.has_times = (bits & 1) != 0,
+                                 .has_layers = (bits & 2) != 0,
+                                 .splits_light = (bits & 4) != 0,
+                                 .tells_bounce = (bits & 8) != 0};
+        for (const bool on_cuda : {false, true}) {
+            const auto bytes = [&](uint64_t samples, uint32_t batch) {
+                return PathIntegrator::wavefront_bytes(samples, batch, on_cuda, 16, parts);
+            };
+            CHECK(bytes(uint64_t(1) << 32, 1u << 31) <= kMost);
+            CHECK(bytes(uint64_t(1) << 32, 1u << 31) >= kMost - 100'000);
+            CHECK(bytes(3840 * 2160, RenderSettings{}.batch) <= kMost);
+            CHECK(bytes(3840 * 2160, RenderSettings{}.batch) >= kMost - 3'000'000);
+            CHECK(bytes(64, 1000) == bytes(1000, 64)); // the fewer of the two
+            CHECK(bytes(64, 1000) < 64 * 400);
+        }
+    }
 }

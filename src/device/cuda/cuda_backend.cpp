@@ -52,7 +52,7 @@ private:
 
 class CudaBackend;
 
-/// Pinned memory, and an event behind the copy to it.
+/// Pinned memory, and an event behind what writes it.
 class CudaHostCopy final : public HostCopy {
 public:
     /// Device `index` is the current one. `backend` outlives it.
@@ -67,6 +67,8 @@ public:
     CudaHostCopy& operator=(const CudaHostCopy&) = delete;
 
     void take(const void* device) override;
+    void* place() override { return memory_; } // pinned memory has one address on both sides
+    void mark() override;
     const void* wait(const char* stage) override {
         check_cuda(cudaSetDevice(index_), "cudaSetDevice");
         check_cuda(cudaEventSynchronize(taken_), stage);
@@ -207,7 +209,12 @@ void CudaHostCopy::take(const void* device) {
     backend_.make_current();
     const auto stream = static_cast<cudaStream_t>(backend_.stream());
     check_cuda(cudaMemcpyAsync(memory_, device, bytes_, cudaMemcpyDeviceToHost, stream), "copy to host");
-    check_cuda(cudaEventRecord(taken_, stream), "cudaEventRecord");
+    mark();
+}
+
+void CudaHostCopy::mark() {
+    backend_.make_current();
+    check_cuda(cudaEventRecord(taken_, static_cast<cudaStream_t>(backend_.stream())), "cudaEventRecord");
 }
 
 } // namespace

@@ -14,10 +14,12 @@ namespace pertev {
 namespace {
 
 constexpr uint64_t kLoopPixels = 256; // at least, that a thread of the loop takes at once
-// Paths that two wavefronts share at least. Rounds of fewer are over before the host has given those of two; so are the
-// last of many rounds.
+// Paths that two wavefronts share at least: rounds of fewer are over before the host has given those of two. So are the
+// last of many rounds, which are most of what one wavefront does where it has room for all paths at once.
 constexpr uint64_t kSharedPaths = 500'000;
 constexpr uint32_t kManyRounds = 16;
+
+bool does_one_wavefront(uint64_t paths, uint32_t max_depth) { return paths < kSharedPaths || max_depth > kManyRounds; }
 
 /// Wavefronts that go side by side, and the paths that each has in flight.
 struct Size {
@@ -25,9 +27,19 @@ struct Size {
     uint32_t capacity;
 };
 
-Size size_for(uint64_t samples, uint32_t batch, bool on_cuda) {
-    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(samples, batch));
-    const int wavefronts = on_cuda && paths >= kSharedPaths ? 2 : 1;
+std::size_t bytes_of_path(const PathParts& parts) {
+    constexpr std::size_t always = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
+                                   sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
+    return always + (parts.has_times ? 2 * sizeof(float) : 0) + (parts.has_layers ? LayerQueueView::kBytesOfPath : 0) +
+           (parts.splits_light ? 3 * sizeof(Float4) : 0) + (parts.tells_bounce ? sizeof(Float4) : 0);
+}
+
+Size size_for(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth, const PathParts& parts) {
+    constexpr std::size_t rounded_up = 128; // paths, more than capacities grow below, with the counts of rounds
+    const std::size_t fit = PathIntegrator::kMostQueueBytes / bytes_of_path(parts) - rounded_up;
+    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>({samples, batch, fit}));
+    const bool does_one = !on_cuda || does_one_wavefront(paths, paths == samples ? max_depth : 0);
+    const int wavefronts = does_one ? 1 : 2;
     const uint32_t each = (paths - 1) / static_cast<uint32_t>(wavefronts) + 1;
     return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
 }
@@ -94,16 +106,21 @@ PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
       hit_places(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 2, "path counts"),
       seen(queue) {}
 
-void PathIntegrator::Wavefront::split_light(Queue& queue) {
-    if (shadow_diffuse.size() > 0) return;
-    for (Paths& set : sets) set.diffuse = {queue, capacity, "paths"};
-    shadow_diffuse = {queue, capacity, "shadow rays"};
-}
-
-void PathIntegrator::Wavefront::take_times(Queue& queue) {
-    if (path_times.size() > 0) return;
-    path_times = {queue, capacity, "path rays"};
-    shadow_times = {queue, capacity, "shadow rays"};
+void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
+    if (parts.has_times && path_times.size() == 0) {
+        path_times = {queue, capacity, "path rays"};
+        shadow_times = {queue, capacity, "shadow rays"};
+    }
+    if (parts.has_layers && layer_parts.size() == 0) {
+        for (Paths& set : sets) set.states = {queue, capacity, "paths"};
+        layer_diffuse = {queue, capacity, "shadow rays"};
+        layer_parts = {queue, capacity, "shadow rays"};
+    }
+    if (parts.splits_light && shadow_diffuse.size() == 0) {
+        for (Paths& set : sets) set.diffuse = {queue, capacity, "paths"};
+        shadow_diffuse = {queue, capacity, "shadow rays"};
+    }
+    if (parts.tells_bounce && shadow_sent.size() == 0) shadow_sent = {queue, capacity, "shadow rays"};
 }
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round, bool splits_light) const {
@@ -124,37 +141,26 @@ ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light, bool tells
             shadow_times.data()};
 }
 
-void PathIntegrator::Wavefront::take_layers(Queue& queue) {
-    if (layer_parts.size() > 0) return;
-    for (Paths& set : sets) set.states = {queue, capacity, "paths"};
-    layer_diffuse = {queue, capacity, "shadow rays"};
-    layer_parts = {queue, capacity, "shadow rays"};
-}
-
 LayerQueueView PathIntegrator::Wavefront::layered(uint32_t of_round) const {
     return {sets[of_round % 2].states.data(), sets[(of_round + 1) % 2].states.data(), layer_diffuse.data(),
             layer_parts.data()};
 }
 
-std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers,
-                                            bool has_times) {
-    constexpr std::size_t without = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
-                                    sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
-    const std::size_t of_path =
-        without + (has_layers ? LayerQueueView::kBytesOfPath : 0) + (has_times ? 2 * sizeof(float) : 0);
-    const Size size = size_for(samples, batch, on_cuda);
-    return static_cast<std::size_t>(size.wavefronts) * (of_path * size.capacity + 2 * sizeof(RoundCounts)) +
+std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
+                                            const PathParts& parts) {
+    const Size size = size_for(samples, batch, on_cuda, max_depth, parts);
+    return static_cast<std::size_t>(size.wavefronts) *
+               (bytes_of_path(parts) * size.capacity + 2 * sizeof(RoundCounts)) +
            sizeof(RenderCounts);
 }
 
-std::size_t PathIntegrator::bytes() const {
-    const std::size_t of_raster = raster_ ? raster_->bytes() : 0;
-    if (wavefronts_.empty()) return of_raster;
-    const uint64_t paths = wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
-    const bool has_layers = wavefronts_.front().layer_parts.size() > 0;
-    const bool has_times = wavefronts_.front().path_times.size() > 0;
-    return of_raster + wavefront_bytes(paths, static_cast<uint32_t>(paths), queue_.is_cuda(), has_layers, has_times);
+std::size_t PathIntegrator::queue_bytes() const {
+    if (wavefronts_.empty()) return 0;
+    const std::size_t of_wavefront = bytes_of_path(parts_) * wavefronts_.front().capacity + 2 * sizeof(RoundCounts);
+    return wavefronts_.size() * of_wavefront + sizeof(RenderCounts);
 }
+
+std::size_t PathIntegrator::bytes() const { return queue_bytes() + (raster_ ? raster_->bytes() : 0); }
 
 PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch,
                                bool rasterises)
@@ -169,12 +175,7 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     if (raster_) raster_->begin(picture);
     if (layers_ && !layers_on_device_) layers_on_device_.emplace(queue_, *layers_);
     if (trees_of_loop() != nullptr) return;
-    take_wavefronts(samples);
-    if (picture.scene.motions.is_there()) {
-        for (Wavefront& wavefront : wavefronts_) wavefront.take_times(queue_);
-    }
-    if (!layers_) return;
-    for (Wavefront& wavefront : wavefronts_) wavefront.take_layers(queue_);
+    take_wavefronts(samples, {.has_times = picture.scene.motions.is_there(), .has_layers = layers_ != nullptr});
 }
 
 void PathIntegrator::set_layers(std::shared_ptr<const LightPathLayers> layers) {
@@ -190,14 +191,22 @@ LightPathView PathIntegrator::layers_for(const FilmView& film) const {
     return layers_on_device_->view(film.aovs);
 }
 
-void PathIntegrator::take_wavefronts(uint32_t samples) {
+void PathIntegrator::take_wavefronts(uint32_t samples, const PathParts& parts) {
+    parts_.has_times |= parts.has_times;
+    parts_.has_layers |= parts.has_layers;
+    parts_.splits_light |= parts.splits_light;
+    parts_.tells_bounce |= parts.tells_bounce;
     const uint64_t all = uint64_t(picture_.camera.width) * picture_.camera.height * samples;
-    const Size size = size_for(all, batch_, queue_.is_cuda());
-    const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts);
-    if (are_enough && wavefronts_.front().capacity >= size.capacity) return;
-    wavefronts_.clear(); // before there is more
-    if (render_counts_.size() == 0) render_counts_ = {queue_, 1, "path counts"};
-    for (int i = 0; i < size.wavefronts; ++i) wavefronts_.emplace_back(queue_, size.capacity);
+    const Size size = size_for(all, batch_, queue_.is_cuda(), settings_.max_depth, parts_);
+    const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts) &&
+                            wavefronts_.front().capacity >= size.capacity;
+    const bool are_too_many = queue_bytes() > kMostQueueBytes; // by new parts of each path
+    if (!are_enough || are_too_many) {
+        wavefronts_.clear(); // before there is more
+        if (render_counts_.size() == 0) render_counts_ = {queue_, 1, "path counts"};
+        for (int i = 0; i < size.wavefronts; ++i) wavefronts_.emplace_back(queue_, size.capacity);
+    }
+    for (Wavefront& wavefront : wavefronts_) wavefront.take(queue_, parts_);
 }
 
 const HostTrees* PathIntegrator::trees_of_loop() const {
@@ -243,13 +252,15 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
+    take_wavefronts(
+        count, {.splits_light = film.frame.splits_light(), .tells_bounce = film.frame.first_bounce.tells_bounce()});
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
     const Work work = {{0, pixels, first, count}, film, layers_for(film), settings_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
     const uint64_t all = work.samples.count();
-    const bool is_small = all < kSharedPaths || work.settings.max_depth > kManyRounds;
-    const bool does_one = in_turns || (is_small && all <= wavefronts_.front().capacity);
+    const bool fits_one = all <= wavefronts_.front().capacity;
+    const bool does_one = in_turns || (fits_one && does_one_wavefront(all, settings_.max_depth));
     const int going = does_one ? 1 : static_cast<int>(wavefronts_.size());
     // Where all paths fit in at once, as in a frame, wavefronts have equal shares and end together.
     const uint64_t share = (all - 1) / static_cast<uint64_t>(going) + 1;
@@ -260,10 +271,6 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
         w.round = 0;
         w.known = {};
         w.is_done = false;
-        if (film.frame.splits_light()) w.split_light(queue_);
-        if (film.frame.first_bounce.tells_bounce() && w.shadow_sent.size() == 0) {
-            w.shadow_sent = {queue_, w.capacity, "shadow rays"};
-        }
         w.counts.zero();
         w.path_stream = i;
         w.light_stream = in_turns ? i : going + i;
@@ -306,14 +313,15 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     RoundCounts* const counts = w.counts.data() + w.round % 2;
     // Once all paths have begun, a round has no more of them than the one before.
     const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.in_flight;
+    const auto pool = [&](RayKind kind) { return counts->taken + static_cast<int>(kind); };
     {
         const Queue::OnStream on(queue_, w.path_stream);
         launch(queue_, "plan_round", 1,
-               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, render_counts_.data(), w.in_flight,
-                         work.samples.count()});
-        w.seen.take(counts);
+               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, w.seen.place(), render_counts_.data(),
+                         w.in_flight, work.samples.count()});
+        w.seen.mark();
         if (w.round > 0) {
-            tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits);
+            tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits, pool(RayKind::Bounce));
             queue_.let_wait(w.path_stream, w.light_stream); // for places of paths that have ended
         }
         if (w.known.all_begun == 0) {
@@ -324,7 +332,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
             if (raster_) {
                 tracer_->find_hits(*raster_, paths.query_back(last), fresh, camera_hits);
             } else {
-                tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits);
+                tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits, pool(RayKind::Camera));
             }
         }
         const WorkCount active = {most, &counts->active};
@@ -343,7 +351,8 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     queue_.let_wait(w.light_stream, w.path_stream);
     const Queue::OnStream on(queue_, w.light_stream);
     const WorkCount asked = {most, &counts->shadows};
-    tracer_->find_occlusions(shadows.query(), asked, {nullptr, shadows.keys}); // a ray's key has been used by then
+    tracer_->find_occlusions(shadows.query(), asked, {nullptr, shadows.keys}, // a ray's key has been used by then
+                             pool(RayKind::Shadow));
     launch(queue_, "add_light", asked, AddLight{shadows, next, work.film.frame.first_bounce});
     if (work.layers.is_there()) {
         launch(queue_, "add_light_to_layers", asked, AddLightToLayers{shadows, work.film, work.layers, layered});

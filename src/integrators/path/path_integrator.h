@@ -31,14 +31,16 @@ namespace pertev {
 
 class PathIntegrator final : public Integrator {
 public:
-    /// `queue` outlives the integrator. `batch`: most paths in flight of the wavefronts together,
-    /// rounded up to 32 each. `rasterises`: what the camera sees is found by rasterisation
-    /// (render/raster/camera_raster.h), which changes no sample; the camera has no lens then.
+    /// `queue` outlives the integrator. `batch`: most paths in flight of the wavefronts together, rounded up to 32
+    /// each; fewer where their queues would pass kMostQueueBytes. `rasterises`: what the camera sees is found by
+    /// rasterisation (render/raster/camera_raster.h), which changes no sample; the camera has no lens then.
     PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch, bool rasterises = false);
 
-    /// Bytes that begin() takes for so many samples of all pixels together, by the wavefront; those of a CameraRaster
-    /// come on top. `has_times`: something moves while the shutter is open.
-    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, bool has_layers, bool has_times);
+    static constexpr std::size_t kMostQueueBytes = 600'000'000;
+    /// Bytes that so many samples of all pixels together take by the wavefront, of at most `max_depth` scatterings;
+    /// those of a CameraRaster come on top.
+    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
+                                       const PathParts& parts);
 
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
@@ -68,7 +70,8 @@ private:
     };
     PathSettings settings_for(const FilmView& film) const;
     struct Wavefront;
-    void take_wavefronts(uint32_t samples);
+    void take_wavefronts(uint32_t samples, const PathParts& parts);
+    std::size_t queue_bytes() const;
     LightPathView layers_for(const FilmView& film) const;
     void give_rounds(int going, const Work& work);
     void give_round(Wavefront& wavefront, const Work& work);
@@ -86,15 +89,11 @@ private:
     // The queues of one wavefront, one element a path in flight.
     struct Wavefront {
         Wavefront(Queue& queue, uint32_t capacity);
+        /// Memory for what is not there yet; it is kept.
+        void take(Queue& queue, const PathParts& parts);
         /// Of a round: rounds read and write two sets of arrays in turns.
-        /// Takes what a frame that splits light needs; it is kept.
-        void split_light(Queue& queue);
         PathQueueView paths(uint32_t of_round, bool splits_light) const;
         ShadowQueueView shadows(bool splits_light, bool tells_bounce) const;
-        /// Takes what rays with a time need; it is kept.
-        void take_times(Queue& queue);
-        /// Takes what layers need; it is kept.
-        void take_layers(Queue& queue);
         LayerQueueView layered(uint32_t of_round) const;
 
         struct Paths {
@@ -118,14 +117,15 @@ private:
         Buffer<Uint4> layer_parts;              // likewise
         Buffer<uint32_t> hit_instances;
         Buffer<RoundCounts> counts; // of two rounds in turns
-        Readback<RoundCounts> seen; // of the round given last, at its start
+        Readback<SeenCounts> seen;  // of the round given last, at its start
         uint32_t round = 0;
-        RoundCounts known = {}; // of the round before the last one given
+        SeenCounts known = {}; // of the round before the last one given
         bool is_done = false;
         // Shadow rays of a round and the rays of the next go side by side.
         int path_stream = 0, light_stream = 0;
     };
     std::vector<Wavefront> wavefronts_;
+    PathParts parts_; // that they have
     Buffer<RenderCounts> render_counts_;
     bool is_meter_ = false;
     std::shared_ptr<const LightPathLayers> layers_;

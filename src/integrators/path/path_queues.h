@@ -112,8 +112,8 @@ struct ShadowQueueView {
     }
 };
 
-/// Of one round.
-struct RoundCounts {
+/// Of one round; on cache lines of its own, since kernels of two rounds go side by side.
+struct alignas(128) RoundCounts {
     uint64_t first;       // number of the first fresh path's sample (BeginOrder::at)
     uint32_t going_on;    // paths from the round before, at the front
     uint32_t fresh;       // paths that begin in it, from the end on
@@ -121,6 +121,12 @@ struct RoundCounts {
     uint32_t shadows;     // rays that its vertices ask for
     uint32_t next, ended; // of the active paths, those that go on after it and those that do not
     uint32_t all_begun;   // 1: no path begins after it
+    uint32_t taken[3];    // of its rays, by RayKind, what a tracer has taken from its pool
+};
+
+/// What the host knows of a round.
+struct SeenCounts {
+    uint32_t active, all_begun; // RoundCounts'
 };
 
 /// Where a vertex stores its path for the next round, or for the film, and its shadow ray.

@@ -24,6 +24,14 @@ enum class Roulette : uint8_t { Throughput, NearCubeRoot, FourthRoot };
 /// Loop is for the CPU, and for tracers that it can walk by itself (SceneTracer::host_trees); else it is Wavefront.
 enum class PathBody : uint8_t { Loop, Wavefront };
 
+/// What a path in flight has in the queues of a wavefront beside what all have. It takes memory there.
+struct PathParts {
+    bool has_times = false;    // something moves while the shutter is open
+    bool has_layers = false;   // light goes to layers of the film too
+    bool splits_light = false; // a frame of samples tells kinds of light apart (FilmView::frame)
+    bool tells_bounce = false; // a frame tells its first bounce
+};
+
 struct PathSettings {
     uint32_t max_depth = 16; // scattering vertices: 0 emission only, 1 direct light
     Roulette roulette = Roulette::FourthRoot;

@@ -15,6 +15,7 @@ namespace pertev {
 struct PlanRound {
     const RoundCounts* before;
     RoundCounts* round;
+    SeenCounts* seen;
     RenderCounts* render; // shared by several that go round at once
     uint32_t capacity;
     uint64_t samples;
@@ -33,6 +34,7 @@ struct PlanRound {
         round->active = going_on + fresh;
         round->first = first;
         round->all_begun = left <= room ? 1 : 0;
+        *seen = {round->active, round->all_begun};
     }
 };
 

@@ -94,18 +94,19 @@ void SceneTracer::timed(double& seconds, const Trace& trace) {
     seconds += watch.seconds();
 }
 
-void SceneTracer::find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits) {
+void SceneTracer::find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits,
+                            uint32_t* pool) {
     timed(kind == RayKind::Camera ? seconds_.camera : seconds_.bounce,
-          [&] { tracer(kind).find_hits(query_of(kind, rays), count, hits); });
+          [&] { tracer(kind).find_hits(query_of(kind, rays), count, hits, pool); });
 }
 
 void SceneTracer::find_hits(CameraRaster& raster, const RayQueueView& rays, WorkCount count, const HitQueueView& hits) {
     timed(seconds_.camera, [&] { raster.find_hits(rays, count, hits); });
 }
 
-void SceneTracer::find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits) {
+void SceneTracer::find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits, uint32_t* pool) {
     timed(seconds_.shadow,
-          [&] { tracer(RayKind::Shadow).find_occlusions(query_of(RayKind::Shadow, rays), count, hits); });
+          [&] { tracer(RayKind::Shadow).find_occlusions(query_of(RayKind::Shadow, rays), count, hits, pool); });
 }
 
 } // namespace pertev

@@ -37,12 +37,14 @@ public:
     /// are as long as rays are traced.
     void set_surfaces(const SceneView& scene);
 
-    /// What rays [0, count) meet first. Queued: the work may still be under way. Throws Error(DeviceFault).
-    void find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
+    /// What rays [0, count) meet first. Queued: the work may still be under way. `pool`: Tracer::find_hits. Throws
+    /// Error(DeviceFault).
+    void find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits,
+                   uint32_t* pool = nullptr);
     /// The same of rays of the camera, by its raster.
     void find_hits(CameraRaster& raster, const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
     /// Whether shadow rays meet anything.
-    void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
+    void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits, uint32_t* pool = nullptr);
 
     /// What a loop over rays on the host may walk by itself, by render/find_hits.h. Null unless rays of all kinds are
     /// traced so.

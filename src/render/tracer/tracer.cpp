@@ -11,8 +11,18 @@ Tracer::Tracer(Queue& queue, const Combination& combination, std::shared_ptr<con
     PERTEV_CHECK(closest_ != nullptr && any_ != nullptr);
 }
 
-void Tracer::trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits) const {
-    if (count.most > 0) kernel.trace(queue_, structure_->trees(), batch(query, count), hits);
+/// The current stream's, 0 for what it is given next; null where rays come from no pool.
+uint32_t* Tracer::empty_pool() const {
+    if (combination_.distribution == Distribution::OneAThread) return nullptr;
+    uint32_t* const pool = pool_.data() + queue_.stream_index();
+    queue_.zero(pool, sizeof *pool);
+    return pool;
+}
+
+void Tracer::trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits,
+                   uint32_t* pool) const {
+    if (count.most == 0) return;
+    kernel.trace(queue_, structure_->trees(), {query, count, pool != nullptr ? pool : empty_pool()}, hits);
 }
 
 bool Tracer::count_work(bool any_hit, const TraceQuery& query, uint32_t count, RayWork* work) const {
@@ -25,7 +35,7 @@ bool Tracer::count_work(bool any_hit, const TraceQuery& query, uint32_t count, R
         counting = find_kernel(plain, any_hit, queue_.is_cuda());
     }
     if (counting == nullptr || counting->count == nullptr) return false;
-    counting->count(queue_, structure_->trees(), batch(query, count), work);
+    counting->count(queue_, structure_->trees(), {query, count}, work); // one ray a thread
     return true;
 }
 
@@ -35,7 +45,7 @@ std::optional<LaneCounts> Tracer::count_lanes(bool any_hit, const TraceQuery& qu
     if (structure_->built().has_instances()) return std::nullopt; // it is compiled for scenes of one tree
     Buffer<LaneCounts> counts(queue_, 1, "lane counts");
     counts.zero();
-    counting(queue_, structure_->trees(), batch(query, count), counts.data());
+    counting(queue_, structure_->trees(), {query, count, empty_pool()}, counts.data());
     return counts.download().front();
 }
 

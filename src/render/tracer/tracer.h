@@ -25,14 +25,16 @@ public:
     Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const BuiltStructure> structure)
         : Tracer(queue, combination, std::make_shared<const StructureOnDevice>(queue, std::move(structure))) {}
 
-    /// What rays [0, count) meet first. Queued: the work may still be under way. At most kMaxPoolCount of them. Throws
-    /// Error(DeviceFault).
-    void find_hits(const TraceQuery& query, WorkCount count, const HitQueueView& hits) const {
-        trace(*closest_, query, count, hits);
+    /// What rays [0, count) meet first. Queued: the work may still be under way. At most kMaxPoolCount of them.
+    /// `pool`: a number in the queue's memory that is 0 by then, which spares a launch that sets one of the tracer's
+    /// own to 0, as it does for null; it is changed where rays come from a pool. Throws Error(DeviceFault).
+    void find_hits(const TraceQuery& query, WorkCount count, const HitQueueView& hits, uint32_t* pool = nullptr) const {
+        trace(*closest_, query, count, hits, pool);
     }
     /// Whether they meet anything.
-    void find_occlusions(const TraceQuery& query, WorkCount count, const HitQueueView& hits) const {
-        trace(*any_, query, count, hits);
+    void find_occlusions(const TraceQuery& query, WorkCount count, const HitQueueView& hits,
+                         uint32_t* pool = nullptr) const {
+        trace(*any_, query, count, hits, pool);
     }
 
     // For measurements.
@@ -48,10 +50,9 @@ public:
     const StructureOnDevice& structure() const { return *structure_; }
 
 private:
-    void trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits) const;
-    RayBatch batch(const TraceQuery& query, WorkCount count) const {
-        return {query, count, pool_.data() + queue_.stream_index()};
-    }
+    void trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits,
+               uint32_t* pool) const;
+    uint32_t* empty_pool() const;
     const WalkKernel& kernel(bool any_hit) const { return any_hit ? *any_ : *closest_; }
 
     Queue& queue_;

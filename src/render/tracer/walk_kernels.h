@@ -19,7 +19,8 @@
 
 namespace pertev {
 
-/// One launch's arguments: device pointers. `pool` is one counter, used where rays come from a pool.
+/// One launch's arguments: device pointers. `pool` is one number, 0 when the launch runs, where rays come from
+/// a pool.
 struct RayBatch {
     TraceQuery query;
     WorkCount count = 0;

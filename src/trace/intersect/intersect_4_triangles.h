@@ -80,11 +80,18 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
         _mm_min_ps(_mm_andnot_ps(sign, ea), _mm_min_ps(_mm_andnot_ps(sign, eb), _mm_andnot_ps(sign, ec)));
     const unsigned asked = (1u << count) - 1;
     // Not "less than": NaN goes the slow way too, where it is a miss.
-    unsigned slow = asked & static_cast<unsigned>(_mm_movemask_ps(_mm_cmpnge_ps(least, _mm_set1_ps(0x1p-100f))));
+    unsigned slow = asked & static_cast<unsigned>(_mm_movemask_ps(_mm_cmpnge_ps(least, _mm_set1_ps(kSureEdge))));
 
     const __m128 below = _mm_min_ps(ea, _mm_min_ps(eb, ec)), above = _mm_max_ps(ea, _mm_max_ps(eb, ec));
     const __m128 outside = _mm_and_ps(_mm_cmplt_ps(below, zero), _mm_cmpgt_ps(above, zero));
     unsigned hit = asked & ~slow & ~static_cast<unsigned>(_mm_movemask_ps(outside));
+    if (slow != 0) { // is_surely_outside
+        const __m128 sure =
+            _mm_and_ps(_mm_cmple_ps(below, _mm_set1_ps(-kSureEdge)), _mm_cmpge_ps(above, _mm_set1_ps(kSureEdge)));
+        const __m128 plain =
+            _mm_and_ps(_mm_cmpgt_ps(below, _mm_set1_ps(-kPlainEdge)), _mm_cmplt_ps(above, _mm_set1_ps(kPlainEdge)));
+        slow &= ~static_cast<unsigned>(_mm_movemask_ps(_mm_and_ps(sure, plain)));
+    }
     if ((hit | slow) == 0) return 0;
     if (hit != 0) {
         const __m128 det = _mm_add_ps(_mm_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0

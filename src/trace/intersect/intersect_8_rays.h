@@ -48,7 +48,7 @@ struct TriangleHit8 {
     const __m256 least = _mm256_min_ps(_mm256_andnot_ps(sign, ea),
                                        _mm256_min_ps(_mm256_andnot_ps(sign, eb), _mm256_andnot_ps(sign, ec)));
     // Not "less than": NaN goes the slow way too, where it is a miss.
-    unsigned slow = asked & mask_of(_mm256_cmp_ps(least, _mm256_set1_ps(0x1p-100f), _CMP_NGE_UQ));
+    unsigned slow = asked & mask_of(_mm256_cmp_ps(least, _mm256_set1_ps(kSureEdge), _CMP_NGE_UQ));
     const __m256 below = _mm256_min_ps(ea, _mm256_min_ps(eb, ec)), above = _mm256_max_ps(ea, _mm256_max_ps(eb, ec));
     const __m256 outside =
         _mm256_and_ps(_mm256_cmp_ps(below, zero, _CMP_LT_OQ), _mm256_cmp_ps(above, zero, _CMP_GT_OQ));

@@ -52,6 +52,14 @@ HD inline float least_size(float a, float b, float c) {
 #endif
 }
 
+inline constexpr float kSureEdge = 0x1p-100f; // an edge function of this size or more has its exact sign
+inline constexpr float kPlainEdge = 0x1p40f;  // beside one of less than this, such a one is never lost
+
+/// Of the least and the greatest of three edge functions: whether the triangle is missed, whatever the third one is.
+HD inline bool is_surely_outside(float least, float greatest) {
+    return least <= -kSureEdge && greatest >= kSureEdge && least > -kPlainEdge && greatest < kPlainEdge;
+}
+
 /// Hit on the front or back face with t_min < t < t_max; false when there is none. `hit` is written on true only. A
 /// triangle without area, or with a vertex that is not finite, is never hit.
 HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min, float t_max, Vec3 a, Vec3 b, Vec3 c,
@@ -61,7 +69,9 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
     float ea = difference_of_products(pc.x, pb.y, pc.y, pb.x);
     float eb = difference_of_products(pa.x, pc.y, pa.y, pc.x);
     float ec = difference_of_products(pb.x, pa.y, pb.y, pa.x);
-    if (least_size(ea, eb, ec) < 0x1p-100f) {
+    if (least_size(ea, eb, ec) < kSureEdge) {
+        // An edge along the ray, as rays along axes meet at every other wall: zero, and the others differ in sign.
+        if (is_surely_outside(min(ea, min(eb, ec)), max(ea, max(eb, ec)))) return false;
         // Zero, or products may have underflown: exact in double. Only their ratios matter below, so they are brought
         // up to where floats hold them; one that is still lost beside the others counts as zero, which is inside.
         const double da = difference_of_products_in_double(pc.x, pb.y, pc.y, pb.x);

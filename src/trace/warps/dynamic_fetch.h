@@ -124,7 +124,7 @@ __global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
 /// Walks a scene (SceneTrees or SingleTree) for rays [0, count), count <= kMaxPoolCount. `rays` has `Ray load(uint32_t
 /// i) const`, `accept(uint32_t i) const`, an Accept (trace/trace_closest.h) with a member `i` that names its ray, and
 /// `void store(uint32_t i, const Hit&) const`, all host-device; of an any-hit search the hit's instance alone counts:
-/// kNoHit or not. `pool` is one number in the queue's memory; it is set to 0 first. The queue is of a GPU.
+/// kNoHit or not. `pool` is one number in the queue's memory, 0 when the launch runs. The queue is of a GPU.
 template <class Walk, bool kAny, class Scene, class Rays, class Counter = NoWalkCounter>
 void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, const Rays& rays, WorkCount count,
                           uint32_t* pool, const Counter& counter = {}) {
@@ -134,7 +134,6 @@ void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, co
     static LimitsByDevice limits;
     const uint32_t blocks =
         blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count.most, queue.streams());
-    queue.zero(pool, sizeof *pool);
     run_dynamic_fetch<Walk, kAny>
         <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);
     queue.check_launch();

@@ -37,8 +37,8 @@ __global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage
 
 #if defined(__CUDACC__)
 
-/// Runs stage(i) for each i in [0, count), count <= kMaxPoolCount. `pool` is one number in the queue's memory; it is
-/// set to 0 first. The queue is of a GPU.
+/// Runs stage(i) for each i in [0, count), count <= kMaxPoolCount. `pool` is one number in the queue's memory, 0
+/// when the launch runs. The queue is of a GPU.
 template <class Stage>
 void launch_persistent(Queue& queue, const char* name, WorkCount count, const Stage& stage, uint32_t* pool) {
     PERTEV_CHECK(queue.is_cuda() && count.most <= kMaxPoolCount);
@@ -46,7 +46,6 @@ void launch_persistent(Queue& queue, const char* name, WorkCount count, const St
     const Queue::Scope scope(queue, name);
     static LimitsByDevice limits;
     const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count.most, queue.streams());
-    queue.zero(pool, sizeof *pool);
     run_stage_persistent<<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count, pool);
     queue.check_launch();
 }
