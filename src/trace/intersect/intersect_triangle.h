@@ -24,13 +24,24 @@ struct TriangleHit {
     float u, v; // weights of the second and third vertex: u, v >= 0, u + v <= 1 up to 2 ulp
 };
 
+/// x / z, z not 0. The device divides 0 by a long way round, which all rays along axes would take.
+HD inline float slope(float x, float z) {
+#if PERTEV_ON_DEVICE
+    const float quotient = (x == 0 ? 1.0f : x) / z;
+    return x == 0 ? x * z : quotient; // a zero of the same sign
+#else
+    return x / z;
+#endif
+}
+
 /// Shear of a ray. `direction` is finite; its largest component is within [2^-40, 2^40].
 HD inline RayShear make_ray_shear(Vec3 direction) {
     const Vec3 size = abs(direction);
     const int kz = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
     const int kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
     const float dz = component(direction, kz);
-    return {kx, ky, kz, component(direction, kx) / dz, component(direction, ky) / dz, reciprocal_of_normal(dz)};
+    return {
+        kx, ky, kz, slope(component(direction, kx), dz), slope(component(direction, ky), dz), reciprocal_of_normal(dz)};
 }
 
 /// `p`, relative to the ray's origin, with the direction turned to +z. Same rounding for every caller.
