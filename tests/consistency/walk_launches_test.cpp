@@ -61,10 +61,12 @@ struct BatchOnDevice {
 
     BatchOnDevice(Queue& queue, const std::vector<Ray>& values)
         : rays(queue, std::span<const Ray>(values), "rays"), hits(queue, values.size(), "hits"),
-          pool(queue, 1, "pool") {
+          pool(queue, 1, "pool") {}
+    /// For one launch.
+    WalkBatch view() {
         pool.zero();
+        return {rays.data(), hits.data(), static_cast<uint32_t>(rays.size()), pool.data()};
     }
-    WalkBatch view() const { return {rays.data(), hits.data(), static_cast<uint32_t>(rays.size()), pool.data()}; }
 };
 
 Bvh linked_bvh(const std::vector<BvhTriangle>& triangles) {
@@ -180,7 +182,7 @@ TEST_CASE("live lanes add up to the visits of the rays") {
         trace_closest<WhileWhileWalk<WalkOptions{}>>(SingleTree<BvhView>{view_of(bvh)}, ray, AcceptAll{}, hit,
                                                      WalkCounter{&nodes, &triangles});
     }
-    const BatchOnDevice batch(queue, rays);
+    BatchOnDevice batch(queue, rays);
     for (const LaneLaunch count_lanes : lane_launches(queue.is_cuda())) {
         Buffer<LaneCounts> counts(queue, 1, "counts");
         counts.zero();

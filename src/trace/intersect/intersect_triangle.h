@@ -54,22 +54,24 @@ HD inline Vec3 shear(Vec3 p, const RayShear& ray) {
     return {fma(-ray.sx, z, x), fma(-ray.sy, z, y), z};
 }
 
-/// The least |x| of three. Where one is NaN the triangle is not hit, whatever comes out.
-HD inline float least_size(float a, float b, float c) {
+// The device's minimum and maximum are one instruction each, where min() takes two. They leave NaN out: where an edge
+// is NaN the triangle is not hit, whatever comes out.
+HD inline float least_of(float a, float b) {
 #if PERTEV_ON_DEVICE
-    return ::fminf(abs(a), ::fminf(abs(b), abs(c))); // two instructions, where min() takes four
+    return ::fminf(a, b);
 #else
-    return min(abs(a), min(abs(b), abs(c)));
+    return min(a, b);
+#endif
+}
+HD inline float greatest_of(float a, float b) {
+#if PERTEV_ON_DEVICE
+    return ::fmaxf(a, b);
+#else
+    return max(a, b);
 #endif
 }
 
 inline constexpr float kSureEdge = 0x1p-100f; // an edge function of this size or more has its exact sign
-inline constexpr float kPlainEdge = 0x1p40f;  // beside one of less than this, such a one is never lost
-
-/// Of the least and the greatest of three edge functions: whether the triangle is missed, whatever the third one is.
-HD inline bool is_surely_outside(float least, float greatest) {
-    return least <= -kSureEdge && greatest >= kSureEdge && least > -kPlainEdge && greatest < kPlainEdge;
-}
 
 /// Hit on the front or back face with t_min < t < t_max; false when there is none. `hit` is written on true only. A
 /// triangle without area, or with a vertex that is not finite, is never hit.
@@ -80,9 +82,11 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
     float ea = difference_of_products(pc.x, pb.y, pc.y, pb.x);
     float eb = difference_of_products(pa.x, pc.y, pa.y, pc.x);
     float ec = difference_of_products(pb.x, pa.y, pb.y, pa.x);
-    if (least_size(ea, eb, ec) < kSureEdge) {
-        // An edge along the ray, as rays along axes meet at every other wall: zero, and the others differ in sign.
-        if (is_surely_outside(min(ea, min(eb, ec)), max(ea, max(eb, ec)))) return false;
+    // Two that differ in sign for sure make it a miss, whatever the third is: zero, say, of an edge along the ray,
+    // which rays along axes meet at every other wall.
+    const float below = least_of(ea, least_of(eb, ec)), above = greatest_of(ea, greatest_of(eb, ec));
+    if (least_of(-below, above) >= kSureEdge) return false;
+    if (least_of(abs(ea), least_of(abs(eb), abs(ec))) < kSureEdge) {
         // Zero, or products may have underflown: exact in double. Only their ratios matter below, so they are brought
         // up to where floats hold them; one that is still lost beside the others counts as zero, which is inside.
         const double da = difference_of_products_in_double(pc.x, pb.y, pc.y, pb.x);
@@ -90,10 +94,9 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
         const double dc = difference_of_products_in_double(pb.x, pa.y, pb.y, pa.x);
         const double scale = 1 / ((da < 0 ? -da : da) + (db < 0 ? -db : db) + (dc < 0 ? -dc : dc));
         ea = static_cast<float>(da * scale), eb = static_cast<float>(db * scale), ec = static_cast<float>(dc * scale);
+        // Zero counts as inside for both neighbours, so an edge may be hit twice but never missed.
+        if ((ea < 0 || eb < 0 || ec < 0) && (ea > 0 || eb > 0 || ec > 0)) return false;
     }
-    // Zero counts as inside for both neighbours, so an edge may be hit twice but never missed.
-    if ((ea < 0 || eb < 0 || ec < 0) && (ea > 0 || eb > 0 || ec > 0)) return false;
-
     const float det = ea + eb + ec;
     if (det == 0) return false;
     // Of three numbers alike in sign, each at least 2^-100, or of numbers whose sizes add up to 1. Nor is it 2^126: it
