@@ -24,7 +24,7 @@ for part in "${parts[@]}"; do
     tests)
         files='*/consistency/*,*/watertight_test.cpp,*/ray_sets_test.cpp,*/glowing_room_test.cpp,*/path_parts_test.cpp'
         files+=',*/light_leak_test.cpp,*/meter_exposure_test.cpp,*/session_test.cpp,*/lamp_faces_test.cpp,*/hidden_back_test.cpp'
-        files+=',*/shadow_terminator_test.cpp,*/film_test.cpp,*/film_add_test.cpp,*/scene_on_device_test.cpp,*/predicted_bytes_test.cpp,*/queue_test.cpp,*/device_builder_test.cpp,*/structure_on_device_test.cpp,*/viewer_frames_test.cpp,*/raster_test.cpp,*/reyes_test.cpp,*/subpaths_test.cpp,*/bidirectional_test.cpp,*/photon_map_test.cpp,*/irradiance_cache_test.cpp,*/irradiance_picture_test.cpp,*/frame_bias_test.cpp,*/motion_blur_test.cpp'
+        files+=',*/shadow_terminator_test.cpp,*/film_test.cpp,*/film_add_test.cpp,*/scene_on_device_test.cpp,*/predicted_bytes_test.cpp,*/queue_test.cpp,*/isolated_rays_test.cpp,*/device_builder_test.cpp,*/structure_on_device_test.cpp,*/viewer_frames_test.cpp,*/raster_test.cpp,*/reyes_test.cpp,*/subpaths_test.cpp,*/bidirectional_test.cpp,*/photon_map_test.cpp,*/irradiance_cache_test.cpp,*/irradiance_picture_test.cpp,*/frame_bias_test.cpp,*/motion_blur_test.cpp'
         files+=',*/cast_test.cpp,*/whitted_test.cpp,*/distributed_test.cpp,*/light_paths_test.cpp,*/measure_irradiance_test.cpp,*/thesis_pictures_test.cpp,*/motion_vectors_test.cpp,*/restir_test.cpp'
         run "$bin/pertev_tests" --device cuda --source-file="$files"
         ;;
@@ -36,7 +36,7 @@ for part in "${parts[@]}"; do
     sanitizers)
         for tool in memcheck racecheck initcheck synccheck; do
             run compute-sanitizer --tool "$tool" --error-exitcode 1 "$bin/pertev_tests" --device cuda \
-                --test-case='the GPU gives the bytes*,BSDFs have the same bits*,light samples*,each way of handing out rays*,so they do over instances*,live lanes*,each kind of ray may have*,two queues used*,a picture whose samples are shared*,a new camera takes*,a GPU makes the bytes*,frames of what moves*,a step in time uploads*,a frame with ReSTIR counts*,a denoised picture takes*,pictures of trees of rays*,pictures of walks from the lights*,hybrid has path*kinds of surfaces*,rasterised pictures do not*,pictures of micropolygons do not*,pictures by photons*,pictures by irradiance caching*,pictures of a radiosity*,layers do not depend*,blurred*,a blur of the camera alone*,every tracer finds the same in a scene that moves'
+                --test-case='the GPU gives the bytes*,pictures and frames that two wavefronts*,frames that split light after*,rays are sheared alike*,BSDFs have the same bits*,light samples*,each way of handing out rays*,so they do over instances*,live lanes*,each kind of ray may have*,two queues used*,a picture whose samples are shared*,a new camera takes*,a GPU makes the bytes*,frames of what moves*,a step in time uploads*,a frame with ReSTIR counts*,a denoised picture takes*,pictures of trees of rays*,pictures of walks from the lights*,hybrid has path*kinds of surfaces*,rasterised pictures do not*,pictures of micropolygons do not*,pictures by photons*,pictures by irradiance caching*,pictures of a radiosity*,layers do not depend*,blurred*,a blur of the camera alone*,every tracer finds the same in a scene that moves'
         done
         ;;
     references)
@@ -45,21 +45,26 @@ for part in "${parts[@]}"; do
         done
         ;;
     bench)
-        for job in S5 S8; do
-            run "$bin/pertev" bench render --job $job --scene "$scenes/crytek-sponza/sponza.obj"
-        done
+        sponza=$scenes/crytek-sponza/sponza.obj
         box=$(mktemp --suffix=.gltf)
         python3 "$here/../tests/images/mitsuba_to_gltf.py" "$scenes/bitterli/cornell-box/scene_mitsuba3.xml" >"$box"
-        for job in cornell-box-65 cornell-box-8; do
-            run "$bin/pertev" bench render --job $job --scene "$box"
+        for job in "S5 --scene $sponza" "S8 --scene $sponza" "cornell-box-65 --scene $box" "cornell-box-8 --scene $box"; do
+            # shellcheck disable=SC2086 # words
+            run "$bin/pertev" bench render --isolated --job $job
+            # shellcheck disable=SC2086
+            run "$bin/pertev" bench render --spp 64 --moves 60 --job $job
         done
         rm "$box"
+        run "$bin/pertev" bench render --job S5 --spp 16 --moves 60 --size 3840x2160 --scene "$sponza"
+        for tree in sbvh reinsertion hploc; do
+            run "$bin/pertev" bench render --job S5 --structure $tree --scene "$sponza"
+        done
         run "$bin/pertev" bench
-        run "$bin/pertev" bench rays --check
+        run "$bin/pertev" bench rays --check --axes
         run "$bin/pertev" bench build --compare
-        run "$bin/pertev" bench render --job S5 --spp 64 --moves 60 --scene "$scenes/crytek-sponza/sponza.obj"
+        run "$here/time_start.sh" "$bin/pertev" "$sponza"
         for size in 1920x1080 3840x2160; do
-            run "$bin/pertev" bench frames "$scenes/crytek-sponza/sponza.obj" --size $size
+            run "$bin/pertev" bench frames "$sponza" --size $size
         done
         ;;
     viewer) # nvJPEG is found in the bundle's lib/, too (the file libnvjpeg.so.13 of PyPI's nvidia-nvjpeg), or by LD_LIBRARY_PATH

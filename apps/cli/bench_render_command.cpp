@@ -19,6 +19,7 @@
 #include "device/device_timer.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
+#include "integrators/path/path_integrator.h"
 #include "lab/isolated_rays.h"
 #include "lab/record_jobs.h"
 #include "lab/stored_figures.h"
@@ -42,7 +43,8 @@ RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
 }
 
 struct JobBytes {
-    std::size_t of_queues = 0;           // of paths in flight
+    std::size_t of_queues = 0; // of paths in flight
+    std::size_t of_path = PathIntegrator::bytes_of_path({});
     std::optional<double> of_structures; // on a GPU, a triangle; on a CPU trees are not copied
 };
 
@@ -130,11 +132,11 @@ int bench_job(const JobFlags& flags) {
                                                        prepared.triangles, mean, samples_per_second});
     if (flags.picture.report.json) {
         reporter.event(fmt::format(
-            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"ratio_to_isolated_rays":{},"queue_bytes":{},"structure_bytes_per_triangle":{},"moved_samples_per_second":{},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
+            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"ratio_to_isolated_rays":{},"queue_bytes":{},"bytes_per_path":{},"structure_bytes_per_triangle":{},"moved_samples_per_second":{},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
             job.name, json_string(device), settings.width, settings.height, settings.samples, prepared.triangles,
             load_s, prepared.build_seconds, result.render_seconds, samples_per_second, rays_per_second,
             static_cast<double>(result.rays.total()) / samples,
-            of_isolated ? fmt::format("{:.4f}", *of_isolated) : "null", bytes.of_queues,
+            of_isolated ? fmt::format("{:.4f}", *of_isolated) : "null", bytes.of_queues, bytes.of_path,
             bytes.of_structures ? fmt::format("{:.2f}", *bytes.of_structures) : "null",
             moved_per_second ? fmt::format("{:.0f}", *moved_per_second) : "null", mean, result.invalid_samples, hash,
             ratios_json(ratios)));
@@ -147,9 +149,9 @@ int bench_job(const JobFlags& flags) {
                         millions_a_second(result.rays.total(), result.render_seconds),
                         static_cast<double>(result.rays.total()) / samples, ratios_line(ratios, job), mean, hash));
         if (bytes.of_structures) {
-            reporter.answer(
-                fmt::format("queues of paths {:.1f} MB, trees with their triangles {:.1f} bytes a triangle\n",
-                            static_cast<double>(bytes.of_queues) * 1e-6, *bytes.of_structures));
+            reporter.answer(fmt::format(
+                "queues of paths {:.1f} MB, {} bytes a path, trees with their triangles {:.1f} bytes a triangle\n",
+                static_cast<double>(bytes.of_queues) * 1e-6, bytes.of_path, *bytes.of_structures));
         }
         if (of_isolated) {
             reporter.answer(fmt::format("rays a second: {:.3f} of the same mix of the record's rays by themselves\n",

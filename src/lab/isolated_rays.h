@@ -1,7 +1,8 @@
 #pragma once
 
-// The record's sets of rays (lab/ray_sets.h) in any scene, traced by themselves as pictures trace rays of their kind:
-// what `pertev bench rays` measures, and what `pertev bench render` holds the rays of whole pictures to.
+// The record's sets of rays (lab/ray_sets.h) in any scene, traced by themselves by what pictures trace rays of their
+// kind by: what `pertev bench rays` measures, and what `pertev bench render` holds the rays of whole pictures to. On a
+// CPU they go one after the other, where pictures go by packets and several in flight (trace/wide/trace_many.h).
 
 #include <cstdint>
 #include <functional>

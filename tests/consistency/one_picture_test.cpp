@@ -194,6 +194,14 @@ TEST_CASE("pictures and frames that two wavefronts share, or one with the memory
     check(700, 500, 1);  // one of them
     settings.path.max_depth = 17;
     check(1000, 521, 1); // one again, for its many rounds
+    // A pass of one sample would do with one wavefront; the picture has two.
+    settings.width = 1300, settings.height = 1100;
+    on_gpu.set_settings(settings);
+    on_gpu.render(3);
+    const uint64_t allocations = gpu.allocation_count();
+    on_gpu.cut();
+    on_gpu.render(3);
+    CHECK(gpu.allocation_count() == allocations);
 }
 
 TEST_CASE("frames that split light after a picture of many samples keep to the bytes of queues, and to their own") {

@@ -7,4 +7,5 @@ template void launch(Queue&, const char*, WorkCount, const test::ScatterRandomly
 template void launch(Queue&, const char*, WorkCount, const test::DrawLights&);
 template void launch(Queue&, const char*, WorkCount, const test::DeformAndFold&);
 template void launch(Queue&, const char*, WorkCount, const test::EvaluateMath&);
+template void launch(Queue&, const char*, WorkCount, const test::ShearRays&);
 } // namespace pertev

@@ -75,6 +75,36 @@ struct DrawLights {
     }
 };
 
+/// The shears of rays whose directions have components of any sign and size, of up to 2^-150 of the largest, 0 among
+/// them: 256 an index.
+struct ShearRays {
+    uint32_t* out;
+
+    HD void operator()(uint32_t i) const {
+        uint32_t hash = 1;
+        for (uint32_t k = 0; k < 256; ++k) {
+            const Hash4 h = hash_words(i, k, 23, 29);
+            // The largest is within [2^-40, 2^40], each of the others a number of 23 random bits below it.
+            const auto number = [](uint32_t bits, int least, int greatest) {
+                const int exponent = least + static_cast<int>((bits >> 24) % static_cast<uint32_t>(greatest - least));
+                if (exponent < -126) return float_of((bits & 0x80000000u) | (bits & 0x7fffffu) >> (-126 - exponent));
+                return float_of((bits & 0x807fffffu) | static_cast<uint32_t>(exponent + 127) << 23);
+            };
+            const float largest = number(h.x, -39, 40);
+            const int top = static_cast<int>(bits_of(largest) >> 23 & 0xffu) - 127;
+            const auto other = [&](uint32_t bits) {
+                return (bits & 0x700000u) == 0 ? float_of(bits & 0x80000000u) : number(bits, top - 110, top);
+            };
+            Vec3 d = {largest, other(h.y), other(h.z)};
+            if (k % 3 == 1) d = {d.y, d.x, d.z};
+            if (k % 3 == 2) d = {d.z, d.y, d.x};
+            const RayShear shear = make_ray_shear(d);
+            hash = fold(fold(fold(hash, shear.sx), shear.sy), shear.sz);
+        }
+        out[i] = hash;
+    }
+};
+
 /// Deforms a vertex.
 struct DeformAndFold {
     DeformVertices deform;

@@ -27,16 +27,9 @@ struct Size {
     uint32_t capacity;
 };
 
-std::size_t bytes_of_path(const PathParts& parts) {
-    constexpr std::size_t always = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
-                                   sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
-    return always + (parts.has_times ? 2 * sizeof(float) : 0) + (parts.has_layers ? LayerQueueView::kBytesOfPath : 0) +
-           (parts.splits_light ? 3 * sizeof(Float4) : 0) + (parts.tells_bounce ? sizeof(Float4) : 0);
-}
-
 Size size_for(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth, const PathParts& parts) {
     constexpr std::size_t rounded_up = 128; // paths, more than capacities grow below, with the counts of rounds
-    const std::size_t fit = PathIntegrator::kMostQueueBytes / bytes_of_path(parts) - rounded_up;
+    const std::size_t fit = PathIntegrator::kMostQueueBytes / PathIntegrator::bytes_of_path(parts) - rounded_up;
     const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>({samples, batch, fit}));
     const bool does_one = !on_cuda || does_one_wavefront(paths, paths == samples ? max_depth : 0);
     const int wavefronts = does_one ? 1 : 2;
@@ -107,7 +100,7 @@ PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
       seen(queue) {}
 
 void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
-    if (parts.has_times && path_times.size() == 0) {
+    if (parts.has_times && shadow_times.size() == 0) {
         path_times = {queue, capacity, "path rays"};
         shadow_times = {queue, capacity, "shadow rays"};
     }
@@ -144,6 +137,13 @@ ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light, bool tells
 LayerQueueView PathIntegrator::Wavefront::layered(uint32_t of_round) const {
     return {sets[of_round % 2].states.data(), sets[(of_round + 1) % 2].states.data(), layer_diffuse.data(),
             layer_parts.data()};
+}
+
+std::size_t PathIntegrator::bytes_of_path(const PathParts& parts) {
+    constexpr std::size_t always = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
+                                   sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
+    return always + (parts.has_times ? 2 * sizeof(float) : 0) + (parts.has_layers ? LayerQueueView::kBytesOfPath : 0) +
+           (parts.splits_light ? 3 * sizeof(Float4) : 0) + (parts.tells_bounce ? sizeof(Float4) : 0);
 }
 
 std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
@@ -198,8 +198,10 @@ void PathIntegrator::take_wavefronts(uint32_t samples, const PathParts& parts) {
     parts_.tells_bounce |= parts.tells_bounce;
     const uint64_t all = uint64_t(picture_.camera.width) * picture_.camera.height * samples;
     const Size size = size_for(all, batch_, queue_.is_cuda(), settings_.max_depth, parts_);
+    // Two serve for one, so that a picture's passes of few samples and of many go by the same memory.
+    const uint64_t held = wavefronts_.empty() ? 0 : wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
     const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts) &&
-                            wavefronts_.front().capacity >= size.capacity;
+                            held >= static_cast<uint64_t>(size.wavefronts) * size.capacity;
     const bool are_too_many = queue_bytes() > kMostQueueBytes; // by new parts of each path
     if (!are_enough || are_too_many) {
         wavefronts_.clear(); // before there is more

@@ -37,6 +37,8 @@ public:
     PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch, bool rasterises = false);
 
     static constexpr std::size_t kMostQueueBytes = 600'000'000;
+    /// Of a path in flight in all queues, its shadow ray's and its hit's among them.
+    static std::size_t bytes_of_path(const PathParts& parts);
     /// Bytes that so many samples of all pixels together take by the wavefront, of at most `max_depth` scatterings;
     /// those of a CameraRaster come on top.
     static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
@@ -89,7 +91,7 @@ private:
     // The queues of one wavefront, one element a path in flight.
     struct Wavefront {
         Wavefront(Queue& queue, uint32_t capacity);
-        /// Memory for what is not there yet; it is kept.
+        /// Memory for what is not there yet. It is kept.
         void take(Queue& queue, const PathParts& parts);
         /// Of a round: rounds read and write two sets of arrays in turns.
         PathQueueView paths(uint32_t of_round, bool splits_light) const;
@@ -125,7 +127,7 @@ private:
         int path_stream = 0, light_stream = 0;
     };
     std::vector<Wavefront> wavefronts_;
-    PathParts parts_; // that they have
+    PathParts parts_; // that they have: all that were ever asked for, so that frames and pictures in turns take none
     Buffer<RenderCounts> render_counts_;
     bool is_meter_ = false;
     std::shared_ptr<const LightPathLayers> layers_;

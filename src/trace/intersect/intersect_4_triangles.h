@@ -85,9 +85,10 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
     const __m128 below = _mm_min_ps(ea, _mm_min_ps(eb, ec)), above = _mm_max_ps(ea, _mm_max_ps(eb, ec));
     const __m128 outside = _mm_and_ps(_mm_cmplt_ps(below, zero), _mm_cmpgt_ps(above, zero));
     unsigned hit = asked & ~slow & ~static_cast<unsigned>(_mm_movemask_ps(outside));
-    const __m128 apart =
-        _mm_min_ps(_mm_xor_ps(below, sign), above); // the way of those that are missed for sure is short
-    slow &= ~static_cast<unsigned>(_mm_movemask_ps(_mm_cmpge_ps(apart, _mm_set1_ps(kSureEdge))));
+    if (slow != 0) { // those that are missed for sure need no second look
+        const __m128 apart = _mm_min_ps(_mm_xor_ps(below, sign), above);
+        slow &= ~static_cast<unsigned>(_mm_movemask_ps(_mm_cmpge_ps(apart, _mm_set1_ps(kSureEdge))));
+    }
     if ((hit | slow) == 0) return 0;
     if (hit != 0) {
         const __m128 det = _mm_add_ps(_mm_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0

@@ -53,8 +53,10 @@ struct TriangleHit8 {
     const __m256 outside =
         _mm256_and_ps(_mm256_cmp_ps(below, zero, _CMP_LT_OQ), _mm256_cmp_ps(above, zero, _CMP_GT_OQ));
     unsigned hit = asked & ~slow & ~mask_of(outside);
-    const __m256 apart = _mm256_min_ps(_mm256_xor_ps(below, sign), above); // as in intersect_triangle
-    slow &= ~mask_of(_mm256_cmp_ps(apart, _mm256_set1_ps(kSureEdge), _CMP_GE_OQ));
+    if (slow != 0) { // those that miss it for sure need no second look
+        const __m256 apart = _mm256_min_ps(_mm256_xor_ps(below, sign), above);
+        slow &= ~mask_of(_mm256_cmp_ps(apart, _mm256_set1_ps(kSureEdge), _CMP_GE_OQ));
+    }
     if (hit != 0) {
         const __m256 det = _mm256_add_ps(_mm256_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0
         const __m256 inv = _mm256_div_ps(_mm256_set1_ps(1.0f), det);

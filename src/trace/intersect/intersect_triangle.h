@@ -24,11 +24,15 @@ struct TriangleHit {
     float u, v; // weights of the second and third vertex: u, v >= 0, u + v <= 1 up to 2 ulp
 };
 
-/// x / z, z not 0. The device divides 0 by a long way round, which all rays along axes would take.
-HD inline float slope(float x, float z) {
-#if PERTEV_ON_DEVICE
-    const float quotient = (x == 0 ? 1.0f : x) / z;
-    return x == 0 ? x * z : quotient; // a zero of the same sign
+/// x / z to the bit, |x| <= |z|, z within [2^-40, 2^40] and of either sign; `inv` is reciprocal_of_normal(z). On the
+/// device by the instructions that the compiler takes too, but without its long way round for 0, which all rays along
+/// axes have.
+HD inline float slope(float x, float z, [[maybe_unused]] float inv) {
+#if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
+    if (abs(x) < 0x1p-60f && x != 0) return x / z; // where floats might not hold what is left over
+    const float quotient = x * inv;
+    const float corrected = ::fmaf(inv, ::fmaf(-z, quotient, x), quotient);
+    return x == 0 ? quotient : corrected; // of the right sign
 #else
     return x / z;
 #endif
@@ -40,8 +44,8 @@ HD inline RayShear make_ray_shear(Vec3 direction) {
     const int kz = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
     const int kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
     const float dz = component(direction, kz);
-    return {
-        kx, ky, kz, slope(component(direction, kx), dz), slope(component(direction, ky), dz), reciprocal_of_normal(dz)};
+    const float sz = reciprocal_of_normal(dz);
+    return {kx, ky, kz, slope(component(direction, kx), dz, sz), slope(component(direction, ky), dz, sz), sz};
 }
 
 /// `p`, relative to the ray's origin, with the direction turned to +z. Same rounding for every caller.
