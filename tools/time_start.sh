@@ -12,9 +12,10 @@ render() {
         { cat "$folder/log" >&2 && exit 1; }
 }
 render
-for ((i = 0; i < runs; ++i)); do
+times=$(for ((i = 0; i < runs; ++i)); do
     from=${EPOCHREALTIME/[.,]/}
     render
     echo $((${EPOCHREALTIME/[.,]/} - from))
-done | sort -n | awk '{ t[NR] = $1 / 1e6 } END { printf "%.3f s from a start to a picture (median of %d; %.3f to %.3f)\n",
+done)
+sort -n <<<"$times" | awk '{ t[NR] = $1 / 1e6 } END { printf "%.3f s from a start to a picture (median of %d; %.3f to %.3f)\n",
     (t[int((NR + 1) / 2)] + t[int(NR / 2) + 1]) / 2, NR, t[1], t[NR] }'

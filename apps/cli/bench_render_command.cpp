@@ -51,10 +51,12 @@ struct JobBytes {
 JobBytes bytes_of(const RenderSettings& settings, const PreparedScene& prepared, const Queue& queue) {
     JobBytes bytes;
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
-    bytes.of_queues = predicted_bytes(settings, pixels, settings.samples, queue.is_cuda(), !queue.is_cuda());
+    const TracerChoice tracers = tracers_of(settings, queue.is_cuda());
+    bytes.of_queues = predicted_bytes(settings, pixels, settings.samples, queue.is_cuda(),
+                                      can_walk_on_host(tracers, queue.is_cuda()));
     if (queue.is_cuda() && prepared.triangles > 0) {
-        bytes.of_structures = static_cast<double>(prepared.structures->device_bytes(tracers_of(settings, true))) /
-                              static_cast<double>(prepared.triangles);
+        bytes.of_structures =
+            static_cast<double>(prepared.structures->device_bytes(tracers)) / static_cast<double>(prepared.triangles);
     }
     return bytes;
 }

@@ -75,8 +75,8 @@ struct DrawLights {
     }
 };
 
-/// The shears of rays whose directions have components of any sign and size, of up to 2^-150 of the largest, 0 among
-/// them: 256 an index.
+/// The shears of rays whose directions have components of any sign and size down to 2^-110 of the largest, 0, as large
+/// ones and denormal ones among them: 256 an index.
 struct ShearRays {
     uint32_t* out;
 
@@ -84,7 +84,7 @@ struct ShearRays {
         uint32_t hash = 1;
         for (uint32_t k = 0; k < 256; ++k) {
             const Hash4 h = hash_words(i, k, 23, 29);
-            // The largest is within [2^-40, 2^40], each of the others a number of 23 random bits below it.
+            // Of 23 random bits; the largest within [2^-39, 2^40], the others no larger.
             const auto number = [](uint32_t bits, int least, int greatest) {
                 const int exponent = least + static_cast<int>((bits >> 24) % static_cast<uint32_t>(greatest - least));
                 if (exponent < -126) return float_of((bits & 0x80000000u) | (bits & 0x7fffffu) >> (-126 - exponent));
@@ -92,10 +92,12 @@ struct ShearRays {
             };
             const float largest = number(h.x, -39, 40);
             const int top = static_cast<int>(bits_of(largest) >> 23 & 0xffu) - 127;
-            const auto other = [&](uint32_t bits) {
-                return (bits & 0x700000u) == 0 ? float_of(bits & 0x80000000u) : number(bits, top - 110, top);
+            const auto other = [&](uint32_t bits, uint32_t kind) {
+                if (kind == 0) return float_of(bits & 0x80000000u);
+                const float size = min(abs(number(bits, top - 110, top + 1)), abs(largest));
+                return (bits & 0x80000000u) != 0 ? -size : size;
             };
-            Vec3 d = {largest, other(h.y), other(h.z)};
+            Vec3 d = {largest, other(h.y, h.w & 7u), other(h.z, h.w >> 3 & 7u)};
             if (k % 3 == 1) d = {d.y, d.x, d.z};
             if (k % 3 == 2) d = {d.z, d.y, d.x};
             const RayShear shear = make_ray_shear(d);
