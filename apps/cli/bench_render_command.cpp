@@ -43,8 +43,7 @@ RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
 }
 
 struct JobBytes {
-    std::size_t of_queues = 0; // of paths in flight
-    std::size_t of_path = PathIntegrator::bytes_of_path({});
+    std::size_t of_queues = 0;           // of paths in flight
     std::optional<double> of_structures; // on a GPU, a triangle; on a CPU trees are not copied
 };
 
@@ -129,6 +128,7 @@ int bench_job(const JobFlags& flags) {
         if (const double mix = rates.of_mix(result.rays); mix > 0) of_isolated = rays_per_second / mix;
     }
     const JobBytes bytes = bytes_of(settings, prepared, *queue);
+    const std::size_t path_bytes = PathIntegrator::bytes_of_path({});
     const std::string device = queue->device_name();
     const std::vector<Ratio> ratios = ratios_of(JobRun{device, &job, settings.width, settings.height, settings.samples,
                                                        prepared.triangles, mean, samples_per_second});
@@ -138,7 +138,7 @@ int bench_job(const JobFlags& flags) {
             job.name, json_string(device), settings.width, settings.height, settings.samples, prepared.triangles,
             load_s, prepared.build_seconds, result.render_seconds, samples_per_second, rays_per_second,
             static_cast<double>(result.rays.total()) / samples,
-            of_isolated ? fmt::format("{:.4f}", *of_isolated) : "null", bytes.of_queues, bytes.of_path,
+            of_isolated ? fmt::format("{:.4f}", *of_isolated) : "null", bytes.of_queues, path_bytes,
             bytes.of_structures ? fmt::format("{:.2f}", *bytes.of_structures) : "null",
             moved_per_second ? fmt::format("{:.0f}", *moved_per_second) : "null", mean, result.invalid_samples, hash,
             ratios_json(ratios)));
@@ -153,7 +153,7 @@ int bench_job(const JobFlags& flags) {
         if (bytes.of_structures) {
             reporter.answer(fmt::format(
                 "queues of paths {:.1f} MB, {} bytes a path, trees with their triangles {:.1f} bytes a triangle\n",
-                static_cast<double>(bytes.of_queues) * 1e-6, bytes.of_path, *bytes.of_structures));
+                static_cast<double>(bytes.of_queues) * 1e-6, path_bytes, *bytes.of_structures));
         }
         if (of_isolated) {
             reporter.answer(fmt::format("rays a second: {:.3f} of the same mix of the record's rays by themselves\n",

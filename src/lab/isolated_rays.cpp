@@ -1,6 +1,5 @@
 #include "lab/isolated_rays.h"
 
-#include "device/device_timer.h"
 #include "lab/measure_rays.h"
 
 namespace pertev {
@@ -52,10 +51,7 @@ IsolatedRates measure_isolated_rays(Queue& queue, const Scene& scene, const Came
         RaysOnDevice rays(queue, set);
         Sum& sum = set.any_hit ? shadows : set.name == "primary" ? camera_rays : bounces;
         sum.rays += static_cast<double>(rays.count());
-        sum.seconds +=
-            time_runs(
-                queue, queue.is_cuda() ? 3 : 1, queue.is_cuda() ? 11 : 3, [&] { rays.trace(tracer); }, between)
-                .median;
+        sum.seconds += rays.time(tracer, queue.is_cuda() ? 3 : 1, queue.is_cuda() ? 11 : 3).median;
         set.rays = {}; // a quarter of a gigabyte on the record
     }
     return {camera_rays.rate(), bounces.rate(), shadows.rate()};

@@ -5,17 +5,18 @@
 #include <memory>
 #include <vector>
 
+#include "lab/isolated_rays.h"
 #include "render/prepare_scene.h"
 #include "render/tracer/tracer.h"
 
 namespace pertev::test {
 
-/// Binary nodes, one ray a thread; and on a CPU eight boxes at a time, which pictures are made with there.
-inline constexpr Combination kBinaryTracer = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
+using pertev::kBinaryTracer;
+/// On a CPU eight boxes at a time, which pictures are made with there.
 inline constexpr Combination kSimdTracer = {.structure = StructureKind::Binned, .walk = WalkKind::Wide8Simd};
 
 inline Tracer make_tracer(Queue& queue, const PreparedScene& prepared, const Combination& combination = kBinaryTracer) {
-    return {queue, combination, prepared.structures->get(combination)};
+    return pertev::make_tracer(queue, combination, prepared);
 }
 
 inline Tracer make_tracer(Queue& queue, const Bvh& bvh, const Combination& combination = kBinaryTracer) {

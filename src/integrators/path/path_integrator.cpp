@@ -37,6 +37,11 @@ Size size_for(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth
     return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
 }
 
+std::size_t bytes_of(const Size& size, const PathParts& parts) {
+    const std::size_t of_wavefront = PathIntegrator::bytes_of_path(parts) * size.capacity + 2 * sizeof(RoundCounts);
+    return static_cast<std::size_t>(size.wavefronts) * of_wavefront + sizeof(RenderCounts);
+}
+
 /// ShadeHits with no more code than materials and film need.
 void shade_hits(Queue& queue, const WorkCount& active, const PictureView& picture, const PathSettings& settings,
                 const FilmView& film, const PathQueueView& paths, const PathQueueView& next, const HitQueueView& hits,
@@ -148,16 +153,12 @@ std::size_t PathIntegrator::bytes_of_path(const PathParts& parts) {
 
 std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
                                             const PathParts& parts) {
-    const Size size = size_for(samples, batch, on_cuda, max_depth, parts);
-    return static_cast<std::size_t>(size.wavefronts) *
-               (bytes_of_path(parts) * size.capacity + 2 * sizeof(RoundCounts)) +
-           sizeof(RenderCounts);
+    return bytes_of(size_for(samples, batch, on_cuda, max_depth, parts), parts);
 }
 
 std::size_t PathIntegrator::queue_bytes() const {
     if (wavefronts_.empty()) return 0;
-    const std::size_t of_wavefront = bytes_of_path(parts_) * wavefronts_.front().capacity + 2 * sizeof(RoundCounts);
-    return wavefronts_.size() * of_wavefront + sizeof(RenderCounts);
+    return bytes_of({static_cast<int>(wavefronts_.size()), wavefronts_.front().capacity}, parts_);
 }
 
 std::size_t PathIntegrator::bytes() const { return queue_bytes() + (raster_ ? raster_->bytes() : 0); }

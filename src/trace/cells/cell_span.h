@@ -11,6 +11,7 @@
 
 #include "base/host_device.h"
 #include "math/bounds3.h"
+#include "trace/intersect/fast_min_max.h"
 #include "trace/intersect/ray_boxes.h"
 
 namespace pertev {
@@ -24,8 +25,8 @@ HD inline CellSpan span_of_bounds(const RayBoxes& r, const Bounds3& bounds, floa
     const float x0 = fma(bounds.lo.x, r.inv.x, r.lo.x), x1 = fma(bounds.hi.x, r.inv.x, r.hi.x);
     const float y0 = fma(bounds.lo.y, r.inv.y, r.lo.y), y1 = fma(bounds.hi.y, r.inv.y, r.hi.y);
     const float z0 = fma(bounds.lo.z, r.inv.z, r.lo.z), z1 = fma(bounds.hi.z, r.inv.z, r.hi.z);
-    return {box_max(box_max(box_min(x0, x1), box_min(y0, y1)), box_max(box_min(z0, z1), t_min)),
-            box_min(box_min(box_max(x0, x1), box_max(y0, y1)), box_min(box_max(z0, z1), t_max))};
+    return {fast_max(fast_max(fast_min(x0, x1), fast_min(y0, y1)), fast_max(fast_min(z0, z1), t_min)),
+            fast_min(fast_min(fast_max(x0, x1), fast_max(y0, y1)), fast_min(fast_max(z0, z1), t_max))};
 }
 
 /// Where a ray passes a plane that has moved out of the cell below it, and out of the one above.
@@ -40,10 +41,10 @@ HD inline PlaneCrossing cross_plane(const RayBoxes& r, int axis, float plane) {
 }
 
 HD inline CellSpan span_below(CellSpan s, const PlaneCrossing& p) {
-    return p.forward ? CellSpan{s.entry, box_min(s.exit, p.below)} : CellSpan{box_max(s.entry, p.below), s.exit};
+    return p.forward ? CellSpan{s.entry, fast_min(s.exit, p.below)} : CellSpan{fast_max(s.entry, p.below), s.exit};
 }
 HD inline CellSpan span_above(CellSpan s, const PlaneCrossing& p) {
-    return p.forward ? CellSpan{box_max(s.entry, p.above), s.exit} : CellSpan{s.entry, box_min(s.exit, p.above)};
+    return p.forward ? CellSpan{fast_max(s.entry, p.above), s.exit} : CellSpan{s.entry, fast_min(s.exit, p.above)};
 }
 
 /// Whether the cell may hold a hit that is of interest.

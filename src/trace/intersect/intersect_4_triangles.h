@@ -75,20 +75,16 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
     const __m128 ea = difference(pc.x, pb.y, pc.y, pb.x);
     const __m128 eb = difference(pa.x, pc.y, pa.y, pc.x);
     const __m128 ec = difference(pb.x, pa.y, pb.y, pa.x);
-    const __m128 sign = _mm_set1_ps(-0.0f), zero = _mm_setzero_ps();
+    const __m128 sign = _mm_set1_ps(-0.0f), sure = _mm_set1_ps(kSureEdge);
+    const auto mask_of = [](__m128 lanes) { return static_cast<unsigned>(_mm_movemask_ps(lanes)); };
+    const __m128 below = _mm_min_ps(ea, _mm_min_ps(eb, ec)), above = _mm_max_ps(ea, _mm_max_ps(eb, ec));
+    const unsigned missed = mask_of(_mm_cmpge_ps(_mm_min_ps(_mm_xor_ps(below, sign), above), sure));
+    const unsigned asked = ((1u << count) - 1) & ~missed;
     const __m128 least =
         _mm_min_ps(_mm_andnot_ps(sign, ea), _mm_min_ps(_mm_andnot_ps(sign, eb), _mm_andnot_ps(sign, ec)));
-    const unsigned asked = (1u << count) - 1;
     // Not "less than": NaN goes the slow way too, where it is a miss.
-    unsigned slow = asked & static_cast<unsigned>(_mm_movemask_ps(_mm_cmpnge_ps(least, _mm_set1_ps(kSureEdge))));
-
-    const __m128 below = _mm_min_ps(ea, _mm_min_ps(eb, ec)), above = _mm_max_ps(ea, _mm_max_ps(eb, ec));
-    const __m128 outside = _mm_and_ps(_mm_cmplt_ps(below, zero), _mm_cmpgt_ps(above, zero));
-    unsigned hit = asked & ~slow & ~static_cast<unsigned>(_mm_movemask_ps(outside));
-    if (slow != 0) { // those that are missed for sure need no second look
-        const __m128 apart = _mm_min_ps(_mm_xor_ps(below, sign), above);
-        slow &= ~static_cast<unsigned>(_mm_movemask_ps(_mm_cmpge_ps(apart, _mm_set1_ps(kSureEdge))));
-    }
+    unsigned slow = asked & mask_of(_mm_cmpnge_ps(least, sure));
+    unsigned hit = asked & ~slow;
     if ((hit | slow) == 0) return 0;
     if (hit != 0) {
         const __m128 det = _mm_add_ps(_mm_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0
@@ -100,7 +96,7 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
         const __m128 in_range =
             _mm_and_ps(_mm_and_ps(_mm_cmpgt_ps(at, _mm_set1_ps(t_min)), _mm_cmplt_ps(at, _mm_set1_ps(t_max))),
                        _mm_cmple_ps(at, _mm_set1_ps(t_limit)));
-        hit &= static_cast<unsigned>(_mm_movemask_ps(in_range));
+        hit &= mask_of(in_range);
         _mm_store_ps(hits.t, at);
         _mm_store_ps(hits.u, u);
         _mm_store_ps(hits.v, v);

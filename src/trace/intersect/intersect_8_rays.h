@@ -44,19 +44,14 @@ struct TriangleHit8 {
     const __m256 eb = difference(pa.x, pc.y, pa.y, pc.x);
     const __m256 ec = difference(pb.x, pa.y, pb.y, pa.x);
     const auto mask_of = [](__m256 lanes) { return static_cast<unsigned>(_mm256_movemask_ps(lanes)); };
-    const __m256 sign = _mm256_set1_ps(-0.0f), zero = _mm256_setzero_ps();
+    const __m256 sign = _mm256_set1_ps(-0.0f), sure = _mm256_set1_ps(kSureEdge);
+    const __m256 below = _mm256_min_ps(ea, _mm256_min_ps(eb, ec)), above = _mm256_max_ps(ea, _mm256_max_ps(eb, ec));
+    asked &= ~mask_of(_mm256_cmp_ps(_mm256_min_ps(_mm256_xor_ps(below, sign), above), sure, _CMP_GE_OQ));
     const __m256 least = _mm256_min_ps(_mm256_andnot_ps(sign, ea),
                                        _mm256_min_ps(_mm256_andnot_ps(sign, eb), _mm256_andnot_ps(sign, ec)));
     // Not "less than": NaN goes the slow way too, where it is a miss.
-    unsigned slow = asked & mask_of(_mm256_cmp_ps(least, _mm256_set1_ps(kSureEdge), _CMP_NGE_UQ));
-    const __m256 below = _mm256_min_ps(ea, _mm256_min_ps(eb, ec)), above = _mm256_max_ps(ea, _mm256_max_ps(eb, ec));
-    const __m256 outside =
-        _mm256_and_ps(_mm256_cmp_ps(below, zero, _CMP_LT_OQ), _mm256_cmp_ps(above, zero, _CMP_GT_OQ));
-    unsigned hit = asked & ~slow & ~mask_of(outside);
-    if (slow != 0) { // those that miss it for sure need no second look
-        const __m256 apart = _mm256_min_ps(_mm256_xor_ps(below, sign), above);
-        slow &= ~mask_of(_mm256_cmp_ps(apart, _mm256_set1_ps(kSureEdge), _CMP_GE_OQ));
-    }
+    unsigned slow = asked & mask_of(_mm256_cmp_ps(least, sure, _CMP_NGE_UQ));
+    unsigned hit = asked & ~slow;
     if (hit != 0) {
         const __m256 det = _mm256_add_ps(_mm256_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0
         const __m256 inv = _mm256_div_ps(_mm256_set1_ps(1.0f), det);

@@ -11,6 +11,7 @@
 #include "base/host_device.h"
 #include "math/difference_of_products.h"
 #include "math/vec3.h"
+#include "trace/intersect/fast_min_max.h"
 
 namespace pertev {
 
@@ -58,23 +59,6 @@ HD inline Vec3 shear(Vec3 p, const RayShear& ray) {
     return {fma(-ray.sx, z, x), fma(-ray.sy, z, y), z};
 }
 
-// The device's minimum and maximum are one instruction each, where min() takes two. They leave NaN out: where an edge
-// is NaN the triangle is not hit, whatever comes out.
-HD inline float least_of(float a, float b) {
-#if PERTEV_ON_DEVICE
-    return ::fminf(a, b);
-#else
-    return min(a, b);
-#endif
-}
-HD inline float greatest_of(float a, float b) {
-#if PERTEV_ON_DEVICE
-    return ::fmaxf(a, b);
-#else
-    return max(a, b);
-#endif
-}
-
 inline constexpr float kSureEdge = 0x1p-100f; // an edge function of this size or more has its exact sign
 
 /// Hit on the front or back face with t_min < t < t_max; false when there is none. `hit` is written on true only. A
@@ -86,11 +70,12 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
     float ea = difference_of_products(pc.x, pb.y, pc.y, pb.x);
     float eb = difference_of_products(pa.x, pc.y, pa.y, pc.x);
     float ec = difference_of_products(pb.x, pa.y, pb.y, pa.x);
+    // Where an edge is NaN the triangle is not hit, whatever comes out.
     // Two that differ in sign for sure make it a miss, whatever the third is: zero, say, of an edge along the ray,
     // which rays along axes meet at every other wall.
-    const float below = least_of(ea, least_of(eb, ec)), above = greatest_of(ea, greatest_of(eb, ec));
-    if (least_of(-below, above) >= kSureEdge) return false;
-    if (least_of(abs(ea), least_of(abs(eb), abs(ec))) < kSureEdge) {
+    const float below = fast_min(ea, fast_min(eb, ec)), above = fast_max(ea, fast_max(eb, ec));
+    if (fast_min(-below, above) >= kSureEdge) return false;
+    if (fast_min(abs(ea), fast_min(abs(eb), abs(ec))) < kSureEdge) {
         // Zero, or products may have underflown: exact in double. Only their ratios matter below, so they are brought
         // up to where floats hold them; one that is still lost beside the others counts as zero, which is inside.
         const double da = difference_of_products_in_double(pc.x, pb.y, pc.y, pb.x);

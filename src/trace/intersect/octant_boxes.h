@@ -9,6 +9,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/fast_min_max.h"
 #include "trace/intersect/ray_boxes.h"
 #include "trace/intersect/ray_segment.h"
 
@@ -49,8 +50,8 @@ HD inline bool enters_child(const RayOctantBoxes& r, const BvhNode& node, int k,
     const auto cross = [k](int axis, const float(&planes)[4], float inv, float lo, float hi, float& near, float& far) {
         const float a = fma_saturated(planes[k], inv, lo), b = fma_saturated(planes[k + 2], inv, hi);
         const bool backwards = (kOctant >> axis & 1) != 0;
-        near = kOctant == kAnyOctant ? box_min(a, b) : backwards ? b : a;
-        far = kOctant == kAnyOctant ? box_max(a, b) : backwards ? a : b;
+        near = kOctant == kAnyOctant ? fast_min(a, b) : backwards ? b : a;
+        far = kOctant == kAnyOctant ? fast_max(a, b) : backwards ? a : b;
     };
     const Vec3 inv = r.segment.inv;
     float near_x, near_y, near_z, far_x, far_y, far_z;

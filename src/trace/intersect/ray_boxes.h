@@ -11,19 +11,12 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/fast_min_max.h"
 #include "trace/ray.h"
 
 namespace pertev {
 
-// Their operands are never NaN, and of equal zeros either will do: no picture depends on the sign of an entry's zero.
-// On the device they are one instruction where math/scalar.h's take two.
-#if PERTEV_ON_DEVICE
-HD inline float box_min(float a, float b) { return ::fminf(a, b); }
-HD inline float box_max(float a, float b) { return ::fmaxf(a, b); }
-#else
-HD inline float box_min(float a, float b) { return a < b ? a : b; }
-HD inline float box_max(float a, float b) { return a > b ? a : b; }
-#endif
+// Operands of fast_min and fast_max are never NaN here, and no picture depends on the sign of an entry's zero.
 
 // Least and greatest of three by their bits as integers, which the device does in one instruction. For numbers that are
 // not negative that is the same; among negative ones the order is reversed, so an entry may come out too small and an
@@ -38,7 +31,7 @@ HD inline float least_bits(float a, float b, float c) {
 }
 
 /// The greatest |component|. Where one is NaN it may be left out.
-HD inline float greatest_size(Vec3 v) { return box_max(abs(v.x), box_max(abs(v.y), abs(v.z))); }
+HD inline float greatest_size(Vec3 v) { return fast_max(abs(v.x), fast_max(abs(v.y), abs(v.z))); }
 
 struct RayBoxes {
     Vec3 inv; // 1 / direction, where a component near 0 counts as +-2^-80
@@ -70,11 +63,11 @@ HD inline bool enters_box(const RayBoxes& r, Vec3 lower, Vec3 upper, float t_min
     const float y0 = fma(lower.y, r.inv.y, r.lo.y), y1 = fma(upper.y, r.inv.y, r.hi.y);
     const float z0 = fma(lower.z, r.inv.z, r.lo.z), z1 = fma(upper.z, r.inv.z, r.hi.z);
 #if PERTEV_ON_DEVICE
-    entry = box_max(greatest_bits(box_min(x0, x1), box_min(y0, y1), box_min(z0, z1)), t_min);
-    const float exit = box_min(least_bits(box_max(x0, x1), box_max(y0, y1), box_max(z0, z1)), t_limit);
+    entry = fast_max(greatest_bits(fast_min(x0, x1), fast_min(y0, y1), fast_min(z0, z1)), t_min);
+    const float exit = fast_min(least_bits(fast_max(x0, x1), fast_max(y0, y1), fast_max(z0, z1)), t_limit);
 #else
-    entry = box_max(box_max(box_min(x0, x1), box_min(y0, y1)), box_max(box_min(z0, z1), t_min));
-    const float exit = box_min(box_min(box_max(x0, x1), box_max(y0, y1)), box_min(box_max(z0, z1), t_limit));
+    entry = fast_max(fast_max(fast_min(x0, x1), fast_min(y0, y1)), fast_max(fast_min(z0, z1), t_min));
+    const float exit = fast_min(fast_min(fast_max(x0, x1), fast_max(y0, y1)), fast_min(fast_max(z0, z1), t_limit));
 #endif
     return entry <= exit;
 }

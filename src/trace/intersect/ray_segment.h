@@ -23,6 +23,7 @@
 #include "base/host_device.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
+#include "trace/intersect/fast_min_max.h"
 #include "trace/intersect/ray_boxes.h"
 #include "trace/intersect/ray_tests.h"
 #include "trace/ray.h"
@@ -49,8 +50,8 @@ struct RaySegment {
     /// Nothing beyond parameter t is of interest any more; t >= 0. The segment stays as long as 2^-24 S, so that 1/d
     /// stays finite. (In the few instructions that it is: lanes that hit something do this alone.)
     HD void shorten(float t) {
-        const float slowest = box_min(box_min(abs(inv.x), abs(inv.y)), abs(inv.z));
-        const float now = box_max(t, 0x1p-4f * grow * slowest * end); // 1 / (slowest * end) is |direction|max
+        const float slowest = fast_min(fast_min(abs(inv.x), abs(inv.y)), abs(inv.z));
+        const float now = fast_max(t, 0x1p-4f * grow * slowest * end); // 1 / (slowest * end) is |direction|max
         if (!(now < end)) return;
         inv = inv * (end * fast_reciprocal(now));
         grow *= 1.25f;
@@ -65,8 +66,8 @@ HD inline RaySegment make_ray_segment(const Ray& ray, float bounds_max_abs, floa
     r.grow = Tests::box_growth(ray, bounds_max_abs);
     const float reach = greatest_size(ray.origin) + bounds_max_abs;
     const float last = reach * fast_reciprocal(greatest_size(ray.direction)) * (1 + 0x1p-10f);
-    r.end = box_max(box_min(limit, last), 0x1p-100f);
-    const float least = box_max(0x1p-20f * r.grow, 0x1p-100f);
+    r.end = fast_max(fast_min(limit, last), 0x1p-100f);
+    const float least = fast_max(0x1p-20f * r.grow, 0x1p-100f);
     const auto invert = [&](float d) {
         const float move = d * r.end;
         return fast_reciprocal(abs(move) < least ? copysign(least, move) : move);

@@ -12,6 +12,7 @@
 #include "base/host_device.h"
 #include "math/float4.h"
 #include "trace/binary/walk_stack.h"
+#include "trace/intersect/fast_min_max.h"
 #include "trace/intersect/test_leaf.h"
 #include "trace/load_bvh.h"
 #include "trace/walk_options.h"
@@ -36,10 +37,10 @@ HD inline uint32_t enters_4_children(const RayBoxes& r, const WideBvhNode<kWidth
     const Vec3 near = {back_x ? r.hi.x : r.lo.x, back_y ? r.hi.y : r.lo.y, back_z ? r.hi.z : r.lo.z};
     const Vec3 far = {back_x ? r.lo.x : r.hi.x, back_y ? r.lo.y : r.hi.y, back_z ? r.lo.z : r.hi.z};
     const auto enters = [&](float nx, float ny, float nz, float fx, float fy, float fz, float& entry) {
-        entry = box_max(box_max(fma(nx, r.inv.x, near.x), fma(ny, r.inv.y, near.y)),
-                        box_max(fma(nz, r.inv.z, near.z), t_min));
-        const float exit = box_min(box_min(fma(fx, r.inv.x, far.x), fma(fy, r.inv.y, far.y)),
-                                   box_min(fma(fz, r.inv.z, far.z), t_limit));
+        entry = fast_max(fast_max(fma(nx, r.inv.x, near.x), fma(ny, r.inv.y, near.y)),
+                         fast_max(fma(nz, r.inv.z, near.z), t_min));
+        const float exit = fast_min(fast_min(fma(fx, r.inv.x, far.x), fma(fy, r.inv.y, far.y)),
+                                    fast_min(fma(fz, r.inv.z, far.z), t_limit));
         return entry <= exit ? 1u : 0u;
     };
     uint32_t mask = enters(x0.x, y0.x, z0.x, x1.x, y1.x, z1.x, entries[0]);
