@@ -61,7 +61,7 @@ public:
             json += fmt::format(",{}:{}", json_string(fact.name), fact.json);
             lines += fmt::format("{:24} {}\n", fact.name, fact.text);
         }
-        reporter.event(json + '}');
+        reporter.result(json + '}');
         reporter.answer(lines);
     }
 

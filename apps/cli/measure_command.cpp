@@ -54,7 +54,7 @@ std::string in_words(const Measured& m, double scale = 1) {
 void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, double seconds, Reporter& reporter) {
     const double efficacy = efficacy_of(flags.scene);
     if (reporter.json()) {
-        reporter.event(fmt::format(
+        reporter.result(fmt::format(
             R"({{"event":"measure","scene":{},"at":{},"normal":{},"device":{},"irradiance_rgb":[{},{},{}],"irradiance":{},"illuminance":{},"lumens_per_watt":{},"paths":{},"invalid_paths":{},"rays":{},"max_depth":{},"seed":{},"seconds":{:.3f}}})",
             json_string(flags.scene.scene), json_string(flags.at), json_string(flags.normal),
             json_string(queue.device_name()), in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]),

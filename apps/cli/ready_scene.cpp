@@ -17,15 +17,14 @@
 namespace pertev {
 namespace {
 
-/// --strict: throws Error(BadInput) that repeats the first warning of a texture or a file of materials that is missing.
-void refuse_missing(const Messages& messages) {
-    const std::vector<Message>& all = messages.all();
-    const auto missing = static_cast<uint64_t>(std::ranges::count_if(all, &Message::is_missing));
-    if (missing == 0) return;
+/// Throws Error(BadInput) that repeats the first warning of something left out (--strict).
+void refuse_what_is_left_out(const Messages& messages) {
+    const std::vector<std::string> left_out = messages.left_out();
+    if (left_out.empty()) return;
+    const std::size_t others = left_out.size() - 1;
     throw Error(ErrorCode::BadInput,
-                fmt::format("--strict: {}{}; nothing is rendered",
-                            std::ranges::find_if(all, &Message::is_missing)->text,
-                            missing > 1 ? fmt::format(" (and {} like it)", counted(missing - 1, "warning")) : ""));
+                fmt::format("--strict: {}{}; nothing is rendered", left_out.front(),
+                            others > 0 ? fmt::format(" (and {} like it)", counted(others, "warning")) : ""));
 }
 
 } // namespace
@@ -59,7 +58,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     const Stopwatch watch;
     auto ready = std::make_unique<ReadyScene>();
     Scene scene = load_scene(flags.scene, messages);
-    if (flags.strict) refuse_missing(messages);
+    if (flags.strict) refuse_what_is_left_out(messages);
     RenderSettings& settings = ready->settings;
     settings = render_settings(flags, scene);
     settings.tracers = tracers;
@@ -94,7 +93,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     return ready;
 }
 
-PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready) {
+PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready, const Messages& messages) {
     PictureRecord record = {.scene = source_of(open_options(options), ready.scene()),
                             .camera = {},
                             .settings = ready.settings,
@@ -102,6 +101,8 @@ PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready) {
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
+    record.scene.made_up = messages.made_up();
+    record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;
     record.scene.build_seconds = ready.prepared().build_seconds;
     place_frame(ready.sequence.first, *ready.moving, {*ready.camera, ready.sequence}, record);

@@ -134,7 +134,7 @@ int render(const RenderFlags& flags) {
     reporter.say_messages();
     listen_for_interrupt();
     report_start(flags, ready->scene(), ready->prepared(), settings, queue, ready->load_s, reporter);
-    PictureRecord record = picture_record(flags.scene, *ready);
+    PictureRecord record = picture_record(flags.scene, *ready, reporter.messages());
     report_camera(record.camera, reporter);
     reporter.set_work("handing the scene to the device");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);

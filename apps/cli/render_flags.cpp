@@ -345,10 +345,10 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     add_time_flags(verb, flags, false);
     add_motion_flags(verb, flags);
     add_real_time_flags(verb, flags);
-    verb.add_flag("--strict", flags.strict,
-                  "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
-                  "where a sample is "
-                  "not finite");
+    verb.add_flag(
+        "--strict", flags.strict,
+        "fail where anything of the scene is left out, before\nrendering, and, after writing, where a sample is "
+        "not finite");
     add_report_flags(verb, flags.report);
 }
 

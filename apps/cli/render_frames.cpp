@@ -277,7 +277,7 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
                              1e3 * tally.update_s / std::max(tally.rendered, 1u),
                              counted(tally.invalid_samples, "invalid sample"),
                              cut_short ? "; interrupted: the same command with --continue goes on" : ""));
-    reporter.event(fmt::format(
+    reporter.result(fmt::format(
         R"({{"event":"sequence","frames":{},"written":{},"kept":{},"rendered_again":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
         sequence.count(), tally.rendered, tally.kept, tally.again, watch.seconds(), tally.update_s,
         tally.invalid_samples, cut_short));

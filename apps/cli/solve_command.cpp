@@ -73,7 +73,7 @@ int solve(const SolveFlags& flags) {
     const std::string hash = solved.solution.hash().hex();
     reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
     const SolveStats& stats = solved.stats;
-    reporter.event(fmt::format(
+    reporter.result(fmt::format(
         R"({{"event":"done","seconds":{:.6f},"total_seconds":{:.6f},"peak_bytes":{},"hash":"{}","interrupted":{}}})",
         stats.factor_seconds + stats.solve_seconds + stats.divide_seconds, total_time.seconds(), peak_memory_bytes(),
         hash, cut_short));

@@ -192,7 +192,7 @@ int view(const ViewFlags& flags) {
     reporter.say_messages();
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
-    const PictureRecord record = picture_record(flags.render.scene, *ready);
+    const PictureRecord record = picture_record(flags.render.scene, *ready, reporter.messages());
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
@@ -234,7 +234,7 @@ int view(const ViewFlags& flags) {
     run_viewer(
         {.host = flags.host, .port = static_cast<uint16_t>(flags.port), .jpeg_queue = jpeg_queue.get()}, start, source,
         [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
-    reporter.event(R"({"event":"done"})");
+    reporter.result(R"({"event":"done"})");
     return 0;
 }
 

@@ -122,6 +122,9 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     append(rows, row_json("Stages", "pack",
                           fmt::format("{:.1f} ms, {} KiB", numbers.pack_ms, (numbers.packed_bytes + 1023) / 1024)));
     append(rows, row_json("Stages", "packed by", numbers.encoder));
+    if (numbers.scene == nullptr) return rows;
+    for (const std::string& text : numbers.scene->made_up) append(rows, row_json("Scene", "made up", text));
+    for (const std::string& text : numbers.scene->left_out) append(rows, row_json("Scene", "left out", text));
     return rows;
 }
 

@@ -99,8 +99,8 @@ int32_t TextureLoader::add_file(const fs::path& from, const std::string& referen
     const std::optional<fs::path> path = access_.find(from, reference, *messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_->warn_of_missing(fmt::format("{}: there is no texture {}; its factor alone is used",
-                                                   from.string(), shortened(reference)));
+            messages_->leave_out(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(),
+                                             shortened(reference)));
         }
         return kNoImage;
     }
@@ -168,7 +168,7 @@ void TextureLoader::decode_within(uint64_t limit) {
 
 void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
-        messages_->warn_of_missing(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
+        messages_->leave_out(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
     const uint64_t limit = budget(scene_bytes);
     decode_within(limit);
@@ -184,7 +184,7 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         messages_->add_all(sources_[i].said);
         if (!sources_[i].fault.empty()) {
-            messages_->warn_of_missing(fmt::format("{}; its factor alone is used", sources_[i].fault));
+            messages_->leave_out(fmt::format("{}; its factor alone is used", sources_[i].fault));
             continue;
         }
         PERTEV_CHECK(sources_[i].image);

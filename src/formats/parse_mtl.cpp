@@ -79,16 +79,16 @@ public:
             if (!key_.empty() && key_[0] != '#') statement(line);
         }
         for (const auto& [key, lines] : left_out_) {
-            messages_.warn(
+            messages_.leave_out(
                 fmt::format("{}:{}: {} of {}: left out", file_, lines.first_line, counted(lines.times, "line"), key));
         }
         if (too_long_.times > 0) {
-            messages_.warn(fmt::format("{}:{}: {} with more than the key takes: the rest left out", file_,
-                                       too_long_.first_line, counted(too_long_.times, "line")));
+            messages_.leave_out(fmt::format("{}:{}: {} with more than the key takes: the rest left out", file_,
+                                            too_long_.first_line, counted(too_long_.times, "line")));
         }
         if (unknown_.times > 0) {
-            messages_.warn(fmt::format("{}:{}: {} not understood ({} is the first): left out", file_,
-                                       unknown_.first_line, counted(unknown_.times, "line"), first_unknown_));
+            messages_.leave_out(fmt::format("{}:{}: {} not understood ({} is the first): left out", file_,
+                                            unknown_.first_line, counted(unknown_.times, "line"), first_unknown_));
         }
         return std::move(materials_);
     }

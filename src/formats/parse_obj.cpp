@@ -316,7 +316,12 @@ private:
 
     void say(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text));
+        std::string said = fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text);
+        if (said.ends_with("left out")) {
+            messages_.leave_out(std::move(said));
+        } else {
+            messages_.warn(std::move(said));
+        }
     }
 
     void parse_pieces(const FoundMaterials& found_materials) {

@@ -180,7 +180,8 @@ void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>&
     Material& to = material.material;
     if (material.normal_may_be_height && to.normal_texture.has_image()) {
         if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
-            messages.warn(fmt::format("{}: a map_bump that is a height map is left out; normal maps are read", file));
+            messages.leave_out(
+                fmt::format("{}: a map_bump that is a height map is left out; normal maps are read", file));
             to.normal_texture = {};
         }
     }

@@ -133,7 +133,7 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
         if (const std::optional<fs::path> path = access.find(place, name, messages)) {
             found.push_back(*path);
         } else {
-            messages.warn_of_missing(
+            messages.leave_out(
                 fmt::format("{}: there is no material file {}; what it describes is grey", place, shortened(name)));
         }
     }
@@ -217,8 +217,8 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     }
 
     if (unknown > 0 && !options.geometry_only) {
-        messages.warn(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
-                                  counted(unknown, "material"), shortened(first_unknown)));
+        messages.leave_out(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
+                                       counted(unknown, "material"), shortened(first_unknown)));
     }
 
     parallel_invoke([&] { loader.load_into(scene); },

@@ -244,7 +244,8 @@ public:
         triangulate();
         warn_of_face_properties(messages);
         if (strays_ > 0) {
-            messages.warn(fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
+            messages.leave_out(
+                fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
         }
         return std::move(mesh_);
     }
@@ -267,9 +268,9 @@ private:
                 has_colour |= slot == kRed || slot == kGreen || slot == kBlue;
                 has_uv |= p.is_list && (p.name == "texcoord" || p.name == "texture_uv" || p.name == "texcoords");
             }
-            if (has_colour) messages.warn(file_ + ": colours of faces are left out; those of vertices are read");
+            if (has_colour) messages.leave_out(file_ + ": colours of faces are left out; those of vertices are read");
             if (has_uv)
-                messages.warn(file_ + ": texture coordinates of faces are left out; those of vertices are read");
+                messages.leave_out(file_ + ": texture coordinates of faces are left out; those of vertices are read");
         }
     }
 

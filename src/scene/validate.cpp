@@ -125,10 +125,15 @@ private:
     }
 
     void report() {
-        const auto say = [&](uint64_t count, const char* thing, const char* what) {
-            if (count > 0) messages_.warn(fmt::format("{}: {} {}", file_, counted(count, thing), what));
+        const auto text = [&](uint64_t count, const char* thing, const char* what) {
+            return fmt::format("{}: {} {}", file_, counted(count, thing), what);
         };
-        say(repairs_.not_finite, "triangle", "with a vertex that is not finite: left out");
+        const auto say = [&](uint64_t count, const char* thing, const char* what) {
+            if (count > 0) messages_.warn(text(count, thing, what));
+        };
+        if (repairs_.not_finite > 0) {
+            messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite: left out"));
+        }
         say(repairs_.without_area, "triangle", "without area: left out");
         say(repairs_.normals, "normal", "of length zero or not finite: replaced by the surface's own");
         say(repairs_.tangents, "tangent", "of length zero or not finite: replaced");

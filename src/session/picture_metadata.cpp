@@ -188,6 +188,8 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
     append(metadata, {{"pertev.spp", static_cast<int32_t>(stats.samples)},
                       {"pertev.device", record.device},
                       {"pertev.hash", hash},
+                      {"pertev.made_up", json_strings(record.scene.made_up)},
+                      {"pertev.left_out", json_strings(record.scene.left_out)},
                       {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
                       {"pertev.load_seconds", record.scene.load_seconds},
                       {"pertev.build_seconds", record.scene.build_seconds},

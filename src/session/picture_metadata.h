@@ -30,6 +30,7 @@ struct SceneSource {
     std::optional<double> time_s;                  // that it is shown at; none: at rest
     std::optional<Shutter> shutter;                // open at that time; none: it is of one moment
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty: none are said
+    std::vector<std::string> made_up, left_out;    // messages: for the scene; of what it has
     double load_seconds = 0, build_seconds = 0;    // of reading; of the trees
 };
 

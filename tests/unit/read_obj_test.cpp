@@ -437,7 +437,7 @@ TEST_CASE("mtl: several files, read beside the geometry or behind it, say all th
         REQUIRE(all.size() >= 2);
         CHECK(all[0].text.find("of points or lines") != std::string::npos);
         CHECK(all[1].text.find("no material file gone.mtl") != std::string::npos);
-        CHECK(all[1].is_missing);
+        CHECK(all[1].is_left_out);
 
         Messages said;
         const fs::path bad =

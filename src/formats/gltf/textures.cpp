@@ -63,7 +63,7 @@ TextureRef Textures::read(const JsonValue& info) {
     texture.uv_set = static_cast<uint8_t>(uv_set);
     const std::optional<JsonValue> reference = source.find("source");
     if (!reference) {
-        messages_.warn_of_missing(
+        messages_.leave_out(
             fmt::format("{}: the texture has no image that is supported; it is left out", source.place()));
         return {};
     }
@@ -115,8 +115,7 @@ int32_t Textures::add_image(const JsonValue& image) {
     }
     std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
     if (!bytes) {
-        messages_.warn_of_missing(
-            fmt::format("{}: the data URI cannot be decoded; the texture is left out", uri->place()));
+        messages_.leave_out(fmt::format("{}: the data URI cannot be decoded; the texture is left out", uri->place()));
         return kNoImage;
     }
     return loader_.add_bytes(name, embedded_.emplace_back(*std::move(bytes)));

@@ -81,8 +81,9 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     }
     const Vec3 eye = camera.world_from_camera.translation;
     const Vec3 target = eye - camera.focus_distance * column(camera.world_from_camera, 2);
-    messages.note(fmt::format("no camera in the scene: {} (--eye {:.4g},{:.4g},{:.4g} --target {:.4g},{:.4g},{:.4g})",
-                              what, eye.x, eye.y, eye.z, target.x, target.y, target.z));
+    messages.make_up(
+        fmt::format("no camera in the scene: {} (--eye {:.4g},{:.4g},{:.4g} --target {:.4g},{:.4g},{:.4g})", what,
+                    eye.x, eye.y, eye.z, target.x, target.y, target.z));
     return camera;
 }
 

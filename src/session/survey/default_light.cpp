@@ -87,11 +87,11 @@ DefaultLight add_default_light(Scene& scene, Messages& messages) {
     const Surroundings around = look_around(scene);
     if (around.is_dark) {
         add_lamps(scene, around);
-        messages.note("no light in the scene, a closed room: it gets a row of lamps");
+        messages.make_up("no light in the scene, a closed room: it gets a row of lamps");
         return DefaultLight::Lamps;
     }
     scene.environment = make_sky();
-    messages.note("no light in the scene: it gets a sky");
+    messages.make_up("no light in the scene: it gets a sky");
     return DefaultLight::Sky;
 }
 
