@@ -95,12 +95,12 @@ TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses
 
 } // namespace
 
-int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference) {
+int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference, const std::string& place) {
     const std::optional<fs::path> path = access_.find(from, reference, *messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_->leave_out(fmt::format("{}: there is no texture {}; its factor alone is used", from.string(),
-                                             shortened(reference)));
+            messages_->leave_out(fmt::format("{}: there is no texture {}; its factor alone is used",
+                                             place.empty() ? from.string() : place, shortened(reference)));
         }
         return kNoImage;
     }

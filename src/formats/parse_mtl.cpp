@@ -76,7 +76,12 @@ public:
         std::string_view line;
         while (lines_.next(line)) {
             key_ = take_word(line);
-            if (!key_.empty() && key_[0] != '#') statement(line);
+            if (key_.empty() || key_[0] == '#') continue;
+            try {
+                statement(line);
+            } catch (const Error& error) {
+                messages_.leave_out(fmt::format("{}; the line is left out", error.what()));
+            }
         }
         for (const auto& [key, lines] : left_out_) {
             messages_.leave_out(

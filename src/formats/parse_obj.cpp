@@ -113,18 +113,14 @@ public:
           data_(data), found_materials_(found_materials), material_(piece.material) {}
 
     void run() {
-        try {
-            for (std::string_view line; lines_.next(line);) statement(line);
-        } catch (const Error& error) {
-            fault = error;
-        }
+        for (std::string_view line; lines_.next(line);) statement(line);
     }
 
-    std::optional<Error> fault; // where it stopped
-    std::vector<Vec4> colors;   // of its positions; or none
+    std::vector<Vec4> colors; // of its positions; or none
     std::vector<RawGroup> groups;
     std::vector<ObjMaterialFiles> material_files;
-    CountedLines bad_numbers, short_faces, points_and_lines, free_form, unknown;
+    std::string first_bad_face; // why its first face was left out
+    CountedLines bad_faces, bad_numbers, short_faces, points_and_lines, free_form, unknown;
 
 private:
     Error fault_here(const std::string& what) const { return fault_at(file_, lines_.number(), what); }
@@ -255,8 +251,15 @@ private:
             current_ = &groups[found->second];
         }
         const std::size_t before = current_->corners.size();
-        for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
-            current_->corners.push_back(corner(word));
+        try {
+            for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
+                current_->corners.push_back(corner(word));
+            }
+        } catch (const Error& error) {
+            current_->corners.resize(before);
+            if (bad_faces.times == 0) first_bad_face = error.what();
+            bad_faces.add(lines_.number());
+            return;
         }
         const std::size_t count = current_->corners.size() - before;
         if (count < 3) {
@@ -291,11 +294,16 @@ public:
         for (PieceParser& parser : parsers_)
             for (ObjMaterialFiles& files : parser.material_files) data_.material_files.push_back(std::move(files));
         data_.groups.resize(groups_.size());
-        std::vector<CountedLines> without_uv(groups_.size());
-        parallel_for(groups_.size(), 1, [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i]); });
+        std::vector<CountedLines> without_uv(groups_.size()), without_vertex(groups_.size());
+        parallel_for(groups_.size(), 1,
+                     [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i], without_vertex[i]); });
         std::erase_if(data_.groups, [](const ObjGroup& group) { return group.corners.empty(); });
         CountedLines missing;
         for (const CountedLines& of_group : without_uv) missing.add(of_group);
+        leave_out_bad_faces();
+        CountedLines no_vertex;
+        for (const CountedLines& of_group : without_vertex) no_vertex.add(of_group);
+        say(no_vertex, "face", "with a vertex that is not in the file: left out");
         say(missing, "face corner", "with a texture coordinate or normal that is not in the file: without it");
         say(all_of(&PieceParser::bad_numbers), "line", "with a number missing or not readable");
         say(all_of(&PieceParser::short_faces), "face", "of fewer than three corners: left out");
@@ -312,6 +320,14 @@ private:
         CountedLines all;
         for (const PieceParser& parser : parsers_) all.add(parser.*what);
         return all;
+    }
+
+    void leave_out_bad_faces() const {
+        const CountedLines bad = all_of(&PieceParser::bad_faces);
+        if (bad.times == 0) return;
+        const auto first =
+            std::ranges::find_if(parsers_, [](const PieceParser& parser) { return parser.bad_faces.times > 0; });
+        messages_.leave_out(fmt::format("{}; {} left out", first->first_bad_face, counted(bad.times, "such face")));
     }
 
     void say(const CountedLines& what, const char* thing, const char* text) const {
@@ -336,9 +352,6 @@ private:
             parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_,
                                   i == 0 && found_materials ? &found_materials : nullptr);
         parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
-        for (const PieceParser& parser : parsers_) {
-            if (parser.fault) throw *parser.fault;
-        }
     }
 
     void join_groups() {
@@ -363,7 +376,7 @@ private:
     }
 
     /// Checks a group's indices and cuts its faces into triangles.
-    void finish(const Parts& parts, ObjGroup& group, CountedLines& without) const {
+    void finish(const Parts& parts, ObjGroup& group, CountedLines& without, CountedLines& without_vertex) const {
         group.material = parts.front()->material;
         group.line = parts.front()->line;
         std::size_t triangles = 0;
@@ -371,18 +384,23 @@ private:
             for (const Face& face : part->faces) triangles += face.corner_count - 2;
         group.corners.reserve(3 * triangles);
         for (RawGroup* part : parts) {
-            cut_faces(*part, group, without);
+            cut_faces(*part, group, without, without_vertex);
             *part = {};
         }
     }
 
-    void cut_faces(RawGroup& raw, ObjGroup& group, CountedLines& without) const {
+    void cut_faces(RawGroup& raw, ObjGroup& group, CountedLines& without, CountedLines& without_vertex) const {
         std::vector<Vec3> polygon;
         std::vector<uint32_t> cut;
         ObjCorner* corners = raw.corners.data();
         for (const Face& face : raw.faces) {
             for (uint32_t i = 0; i < face.corner_count; ++i) check(corners[i], face.line, without);
-            if (face.corner_count == 3) {
+            const bool has_all = std::all_of(corners, corners + face.corner_count, [&](const ObjCorner& corner) {
+                return corner.position < data_.positions.size();
+            });
+            if (!has_all) {
+                without_vertex.add(face.line);
+            } else if (face.corner_count == 3) {
                 group.corners.insert(group.corners.end(), corners, corners + 3);
             } else {
                 polygon.clear();
@@ -397,11 +415,6 @@ private:
     }
 
     void check(ObjCorner& corner, uint32_t line, CountedLines& without) const {
-        if (corner.position >= data_.positions.size()) {
-            throw fault_at(file_, line,
-                           fmt::format("vertex index {} is out of range; the file has {} vertices",
-                                       uint64_t(corner.position) + 1, data_.positions.size()));
-        }
         if (corner.uv != kNoIndex && corner.uv >= data_.uvs.size()) {
             without.add(line);
             corner.uv = kNoIndex;

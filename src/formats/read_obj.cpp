@@ -126,13 +126,26 @@ void wind_after_normals(Mesh& mesh) {
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
                                           Messages& messages) {
     const std::string place = fmt::format("{}:{}", obj.string(), line.line);
-    if (const std::optional<fs::path> whole = access.find(place, line.names, messages)) return {*whole};
+    bool is_refused = false; // where a file may not be read, that has been told
+    const auto find = [&](const std::string& name) -> std::optional<fs::path> {
+        try {
+            return access.find(place, name, messages);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            messages.leave_out(fmt::format("{}; what it describes is grey", error.what()));
+            is_refused = true;
+            return std::nullopt;
+        }
+    };
+    if (const std::optional<fs::path> whole = find(line.names)) return {*whole};
+    if (is_refused) return {};
     std::vector<fs::path> found;
     std::istringstream names(line.names);
     for (std::string name; names >> name;) {
-        if (const std::optional<fs::path> path = access.find(place, name, messages)) {
+        is_refused = false;
+        if (const std::optional<fs::path> path = find(name)) {
             found.push_back(*path);
-        } else {
+        } else if (!is_refused) {
             messages.leave_out(
                 fmt::format("{}: there is no material file {}; what it describes is grey", place, shortened(name)));
         }
@@ -214,6 +227,8 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     if (data.groups.empty()) {
         scene.no_instances =
             fmt::format("{} and no face; expected a line such as f 1 2 3", counted(data.positions.size(), "position"));
+        const std::vector<std::string> left_out = messages.left_out();
+        if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
     }
 
     if (unknown > 0 && !options.geometry_only) {

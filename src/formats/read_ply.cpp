@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -234,15 +235,29 @@ public:
             std::size_t least = 0;
             for (const PlyProperty& p : element.properties)
                 least += body_.least_size(p.is_list ? p.count_type : p.type);
-            body_.expect(element.count, std::max<std::size_t>(least, 1), "elements");
-            if (element.name == "vertex") {
-                vertices(element);
-            } else {
-                lists(element);
+            try {
+                const bool may_be_cut_off = element.name == "face" || element.name == "tristrips";
+                if (!may_be_cut_off) body_.expect(element.count, std::max<std::size_t>(least, 1), "elements");
+                if (element.name == "vertex") {
+                    vertices(element);
+                } else {
+                    lists(element);
+                }
+            } catch (const Error& error) {
+                const bool has_faces = !mesh_.positions.empty() && !sizes_.empty();
+                if (error.code() != ErrorCode::BadInput || element.name == "vertex" || !has_faces) throw;
+                corners_.resize(std::accumulate(sizes_.begin(), sizes_.end(), std::size_t(0)));
+                messages.leave_out(fmt::format("{}; what follows is left out", error.what()));
+                break;
             }
         }
         triangulate();
         warn_of_face_properties(messages);
+        if (bad_indices_ > 0) {
+            messages.leave_out(fmt::format(
+                "{}; what {} left out", first_bad_index_,
+                bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_)));
+        }
         if (strays_ > 0) {
             messages.leave_out(
                 fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
@@ -338,22 +353,34 @@ private:
         }
     }
 
-    uint32_t checked(double value) const {
-        if (!(value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value))) {
-            throw body_.fault(fmt::format("vertex index {} is out of range; there are {} vertices, counted from 0",
-                                          value, vertex_count_));
+    /// Nothing, which counts as a fault, for what is no vertex.
+    std::optional<uint32_t> vertex_of(double value) {
+        if (value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value)) {
+            return static_cast<uint32_t>(value);
         }
-        return static_cast<uint32_t>(value);
+        if (bad_indices_++ == 0) {
+            first_bad_index_ =
+                body_
+                    .fault(fmt::format("vertex index {} is out of range; there are {} vertices, counted from 0", value,
+                                       vertex_count_))
+                    .what();
+        }
+        return std::nullopt;
     }
 
     void face(const PlyProperty& property) {
         const uint64_t count = body_.list_count(property);
         if (count < 3) ++strays_;
+        const std::size_t before = corners_.size();
         for (uint64_t i = 0; i < count; ++i) {
-            const uint32_t corner = checked(body_.value(property.type));
-            if (count >= 3) corners_.push_back(corner);
+            const std::optional<uint32_t> corner = vertex_of(body_.value(property.type));
+            if (corner && count >= 3) corners_.push_back(*corner);
         }
-        if (count >= 3) sizes_.push_back(static_cast<uint32_t>(count));
+        if (count >= 3 && corners_.size() - before == count) {
+            sizes_.push_back(static_cast<uint32_t>(count));
+        } else {
+            corners_.resize(before);
+        }
     }
 
     void strip(const PlyProperty& property) {
@@ -366,7 +393,12 @@ private:
                 length = 0;
                 continue;
             }
-            const uint32_t corner = checked(value);
+            const std::optional<uint32_t> vertex = vertex_of(value);
+            if (!vertex) {
+                length = 0;
+                continue;
+            }
+            const uint32_t corner = *vertex;
             if (length >= 2) {
                 const bool is_odd = length % 2 != 0;
                 corners_.insert(corners_.end(), {before[is_odd ? 1 : 0], before[is_odd ? 0 : 1], corner});
@@ -409,7 +441,8 @@ private:
     uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
     Mesh mesh_;
     std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
-    uint64_t strays_ = 0;
+    uint64_t strays_ = 0, bad_indices_ = 0;
+    std::string first_bad_index_;
 };
 
 } // namespace

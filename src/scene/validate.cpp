@@ -18,6 +18,8 @@
 namespace pertev {
 namespace {
 
+constexpr const char* kTooFar = "lies further out than 2^40 metres";
+
 class Validator {
 public:
     Validator(Scene& scene, const std::string& file, Messages& messages)
@@ -34,7 +36,13 @@ public:
         drop_empty_meshes();
         const std::size_t with_triangles = scene_.instances.size();
         drop_singular_instances();
-        if (scene_.instances.empty()) throw no_geometry(all - with_triangles, with_triangles);
+        if (scene_.instances.empty()) {
+            if (first_misplaced_.ends_with(kTooFar)) {
+                throw Error(ErrorCode::OverLimit, fmt::format("{}: {}; scale the scene down", file_, first_misplaced_));
+            }
+            if (!first_misplaced_.empty()) throw bad(first_misplaced_);
+            throw no_geometry(all - with_triangles, with_triangles);
+        }
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i) camera(i);
         for (std::size_t i = 0; i < scene_.lights.size(); ++i) light(i);
     }
@@ -42,8 +50,7 @@ public:
 private:
     Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what)); }
     Error too_far(const std::string& what) const {
-        return Error(ErrorCode::OverLimit,
-                     fmt::format("{}: {} lies further out than 2^40 metres; scale the scene down", file_, what));
+        return Error(ErrorCode::OverLimit, fmt::format("{}: {} {}; scale the scene down", file_, what, kTooFar));
     }
 
     Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
@@ -167,10 +174,15 @@ private:
         for (const Mesh& mesh : scene_.meshes) bounds.push_back(bounds_of(mesh));
         std::size_t i = 0, dropped = 0;
         std::erase_if(scene_.instances, [&](const Instance& instance) {
-            check_place(i, instance, bounds[instance.mesh]);
-            const bool drops = is_singular(instance.world_from_local) && !moves_[i];
-            if (drops && dropped++ == 0) first_singular_ = place_of(i, instance);
-            ++i;
+            const std::size_t number = i++;
+            if (const std::string fault = fault_of_place(instance, bounds[instance.mesh]); !fault.empty()) {
+                const std::string what = fmt::format("{} {}", place_of(number, instance), fault);
+                if (first_misplaced_.empty()) first_misplaced_ = what;
+                messages_.leave_out(fmt::format("{}: {}; it is left out", file_, what));
+                return true;
+            }
+            const bool drops = is_singular(instance.world_from_local) && !moves_[number];
+            if (drops && dropped++ == 0) first_singular_ = place_of(number, instance);
             return drops;
         });
         for (Instance& instance : scene_.instances) {
@@ -183,10 +195,11 @@ private:
                                    file_, counted(dropped, "instance"), first_singular_));
     }
 
-    void check_place(std::size_t i, const Instance& instance, const Bounds3& local) const {
+    /// Empty where it can be placed so.
+    static std::string fault_of_place(const Instance& instance, const Bounds3& local) {
         const Transform& m = instance.world_from_local;
-        if (!is_finite(m)) throw bad(place_of(i, instance) + ": its transform is not finite");
-        if (!local.is_empty() && !lies_near(m, local)) throw too_far(place_of(i, instance));
+        if (!is_finite(m)) return "has a transform that is not finite";
+        return local.is_empty() || lies_near(m, local) ? "" : kTooFar;
     }
 
     static bool is_near(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
@@ -243,8 +256,8 @@ private:
     const std::string& file_;
     Messages& messages_;
     MeshRepairs repairs_;
-    std::vector<bool> moves_;                       // may_move of the instances there are
-    std::string first_empty_mesh_, first_singular_; // where they are described
+    std::vector<bool> moves_;                                         // may_move of the instances there are
+    std::string first_empty_mesh_, first_singular_, first_misplaced_; // where they are described
 };
 
 } // namespace

@@ -113,7 +113,7 @@ TEST_CASE("numbers that mean nothing leave their channel out with a warning that
 TEST_CASE("an animation that the format does not allow is an error with its pointer") {
     const auto check = [](const std::string& samplers, const std::string& channels, const std::string& message) {
         CAPTURE(message);
-        const std::string error = test::gltf_error(file(samplers, channels));
+        const std::string error = test::gltf_fault(file(samplers, channels));
         CAPTURE(error);
         CHECK(error.find(message) != std::string::npos);
     };

@@ -44,7 +44,7 @@ std::string glb_error(std::vector<std::byte> bytes) {
 } // namespace
 
 TEST_CASE("a required extension that is not supported is an error that names it") {
-    CHECK(test::gltf_error(
+    CHECK(test::gltf_fault(
               document(R"("extensionsUsed":["KHR_x"],"extensionsRequired":["KHR_texture_transform","KHR_x"])")) ==
           "model.gltf: /extensionsRequired/1: the file requires the extension KHR_x, which is not supported; export it "
           "without that extension");
@@ -59,23 +59,23 @@ TEST_CASE("an extension that is used but not required is a warning that names it
 }
 
 TEST_CASE("what is not glTF 2 is refused") {
-    CHECK(test::gltf_error("{]").starts_with("model.gltf: not valid JSON: "));
-    CHECK(test::gltf_error("") == "model.gltf: the file is empty; expected a glTF 2.0 document");
-    CHECK(test::gltf_error("[]") == "model.gltf: /: an array; expected an object");
-    CHECK(test::gltf_error("{}") == "model.gltf: /: \"asset\" is missing; it is required here");
-    CHECK(test::gltf_error(R"({"asset":{"version":"1.0"}})") ==
+    CHECK(test::gltf_fault("{]").starts_with("model.gltf: not valid JSON: "));
+    CHECK(test::gltf_fault("") == "model.gltf: the file is empty; expected a glTF 2.0 document");
+    CHECK(test::gltf_fault("[]") == "model.gltf: /: an array; expected an object");
+    CHECK(test::gltf_fault("{}") == "model.gltf: /: \"asset\" is missing; it is required here");
+    CHECK(test::gltf_fault(R"({"asset":{"version":"1.0"}})") ==
           "model.gltf: /asset/version: glTF 1.0; this reader knows 2.0");
-    CHECK(test::gltf_error(R"({"asset":{"version":"2.1","minVersion":"2.1"}})") ==
+    CHECK(test::gltf_fault(R"({"asset":{"version":"2.1","minVersion":"2.1"}})") ==
           "model.gltf: /asset/minVersion: the file needs glTF 2.1; this reader knows 2.0");
-    CHECK(test::gltf_error(R"({"asset":{"version":"two"}})") ==
+    CHECK(test::gltf_fault(R"({"asset":{"version":"two"}})") ==
           "model.gltf: /asset/version: \"two\" is not a version; expected \"2.0\"");
-    CHECK(test::gltf_error(document("\"extras\":" + std::string(2000, '[') + std::string(2000, ']'))) ==
+    CHECK(test::gltf_fault(document("\"extras\":" + std::string(2000, '[') + std::string(2000, ']'))) ==
           "model.gltf: JSON nested more than 1024 levels deep; expected a glTF 2.0 document");
 }
 
 TEST_CASE("JSON that is not valid is an error with the line, the column and what would be right there") {
     const auto read = [](const std::string& text) {
-        const std::string error = test::gltf_error(text), start = "model.gltf: not valid JSON: ";
+        const std::string error = test::gltf_fault(text), start = "model.gltf: not valid JSON: ";
         CHECK(error.starts_with(start));
         return error.substr(std::min(start.size(), error.size()));
     };
@@ -120,7 +120,7 @@ TEST_CASE("a damaged GLB container is an error with the byte where it stops maki
 }
 
 TEST_CASE("an accessor that leaves its data is an error before anything is allocated") {
-    const auto read = [](const std::string& members) { return test::gltf_error(with_accessor(members)); };
+    const auto read = [](const std::string& members) { return test::gltf_fault(with_accessor(members)); };
     const std::string vec3 = R"("type":"VEC3","componentType":5126,)";
     CHECK(read("\"bufferView\":0," + vec3 + "\"count\":3").empty());
     CHECK(read("\"bufferView\":0," + vec3 + "\"count\":4") ==
@@ -149,13 +149,13 @@ TEST_CASE("an accessor that leaves its data is an error before anything is alloc
 TEST_CASE("an attribute of the wrong type or length is an error with the attribute's pointer") {
     const std::string vec3 = R"("bufferView":0,"type":"VEC3","componentType":5126,"count":3)";
     const std::string place = "model.gltf: /meshes/0/primitives/0/attributes/";
-    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":1)")) ==
+    CHECK(test::gltf_fault(with_accessor(vec3, R"("POSITION":1)")) ==
           place + "POSITION: the accessor's type is SCALAR; expected VEC3");
-    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":0,"COLOR_0":1)")) ==
+    CHECK(test::gltf_fault(with_accessor(vec3, R"("POSITION":0,"COLOR_0":1)")) ==
           place + "COLOR_0: the accessor's type is SCALAR; expected VEC3 or VEC4");
-    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":7)")) ==
+    CHECK(test::gltf_fault(with_accessor(vec3, R"("POSITION":7)")) ==
           place + "POSITION: 7; expected an index into \"accessors\", which has 2 elements");
-    CHECK(test::gltf_error(with_accessor(vec3, R"("POSITION":"0")")) ==
+    CHECK(test::gltf_fault(with_accessor(vec3, R"("POSITION":"0")")) ==
           place + "POSITION: a string; expected a whole number");
 }
 
@@ -163,7 +163,7 @@ TEST_CASE("an index past the vertices is an error with its place and value") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("SCALAR", std::vector<uint32_t>{0, 1, 4294967295u});
-    CHECK(test::gltf_error(builder.json(
+    CHECK(test::gltf_fault(builder.json(
               R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"nodes":[{"mesh":0}])")) ==
           "model.gltf: /meshes/0/primitives/0/indices: index 2 is 4294967295; expected less than 3, the number of "
           "vertices");
@@ -171,7 +171,7 @@ TEST_CASE("an index past the vertices is an error with its place and value") {
 
 TEST_CASE("buffers that are missing, short, badly encoded or elsewhere are errors") {
     const auto read = [](const std::string& members) {
-        return test::gltf_error(document("\"buffers\":[{" + members + "}]"));
+        return test::gltf_fault(document("\"buffers\":[{" + members + "}]"));
     };
     CHECK(read(R"("byteLength":4,"uri":"data:;base64,AAAA")") ==
           "model.gltf: /buffers/0: byteLength is 4, but there are only 3 bytes");
@@ -181,9 +181,9 @@ TEST_CASE("buffers that are missing, short, badly encoded or elsewhere are error
     CHECK(read(R"("byteLength":3,"uri":"%2e%2e/%2e%2e/etc/passwd")").find("--allow-path") != std::string::npos);
     CHECK(read(R"("byteLength":3,"uri":"http://example.org/a.bin")") ==
           "model.gltf: /buffers/0/uri: \"http://example.org/a.bin\"; expected a relative path or a data URI");
-    CHECK(test::gltf_error(with_accessor(R"("bufferView":0,"componentType":5126,"type":"VEC3","count":3)")).empty());
+    CHECK(test::gltf_fault(with_accessor(R"("bufferView":0,"componentType":5126,"type":"VEC3","count":3)")).empty());
     CHECK(
-        test::gltf_error(document(
+        test::gltf_fault(document(
             R"("buffers":[{"byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,)"
             R"("componentType":5126,"type":"VEC3","count":3}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
             R"("nodes":[{"mesh":0}])")) ==
@@ -198,7 +198,7 @@ TEST_CASE("a small file that multiplies itself without bound is refused") {
     for (int i = 0; i < 2'000; ++i) {
         nodes += R"(,{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}})";
     }
-    const std::string error = test::gltf_error(
+    const std::string error = test::gltf_fault(
         builder.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[)" + nodes + "]"));
     CHECK(error.find("times the size of its files") != std::string::npos);
 }

@@ -84,13 +84,13 @@ TEST_CASE("the scene property chooses what is shown, and without scenes all of i
 }
 
 TEST_CASE("cycles, second parents and children listed as roots are errors that name the node") {
-    CHECK(test::gltf_error(only_nodes(R"("nodes":[{"children":[1]},{"children":[0]}])")) ==
+    CHECK(test::gltf_fault(only_nodes(R"("nodes":[{"children":[1]},{"children":[0]}])")) ==
           "model.gltf: /nodes/0: the node is its own ancestor; expected a tree");
-    CHECK(test::gltf_error(only_nodes(R"("nodes":[{"children":[0]}])")) ==
+    CHECK(test::gltf_fault(only_nodes(R"("nodes":[{"children":[0]}])")) ==
           "model.gltf: /nodes/0: the node is its own ancestor; expected a tree");
-    CHECK(test::gltf_error(only_nodes(R"("nodes":[{"children":[2]},{"children":[2]},{}])")) ==
+    CHECK(test::gltf_fault(only_nodes(R"("nodes":[{"children":[2]},{"children":[2]},{}])")) ==
           "model.gltf: /nodes/1/children/0: node 2 is already a child of node 0; expected one parent");
-    CHECK(test::gltf_error(only_nodes(R"("scenes":[{"nodes":[1]}],"nodes":[{"children":[1]},{}])")) ==
+    CHECK(test::gltf_fault(only_nodes(R"("scenes":[{"nodes":[1]}],"nodes":[{"children":[1]},{}])")) ==
           "model.gltf: /scenes/0/nodes/0: node 1 is a child of another node; expected each root once");
 }
 
@@ -177,14 +177,14 @@ TEST_CASE("a spot of equal cone angles has a sharp edge and a warning; other con
     CHECK(narrow.cos_outer < narrow.cos_inner);
 
     const std::string place = "model.gltf: /extensions/KHR_lights_punctual/lights/0/spot: cone angles ";
-    CHECK(test::gltf_error(spot(R"("innerConeAngle":1)")).starts_with(place));
-    CHECK(test::gltf_error(spot(R"("outerConeAngle":0)")).starts_with(place));
-    CHECK(test::gltf_error(spot(R"("outerConeAngle":1.6)")).starts_with(place));
+    CHECK(test::gltf_fault(spot(R"("innerConeAngle":1)")).starts_with(place));
+    CHECK(test::gltf_fault(spot(R"("outerConeAngle":0)")).starts_with(place));
+    CHECK(test::gltf_fault(spot(R"("outerConeAngle":1.6)")).starts_with(place));
 }
 
 TEST_CASE("a light that takes light away is an error with the number's pointer") {
     const auto error = [](const std::string& members) {
-        return test::gltf_error(only_nodes(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)" +
+        return test::gltf_fault(only_nodes(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)" +
                                            members +
                                            R"(}]}},"nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}])"));
     };
@@ -247,7 +247,7 @@ TEST_CASE("a joint that the skin does not have is an error with the attribute's 
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC4", std::vector<uint16_t>{0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0});
     builder.add("VEC4", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
-    CHECK(test::gltf_error(
+    CHECK(test::gltf_fault(
               builder.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}}]}],)"
                            R"("skins":[{"joints":[1]}],"nodes":[{"mesh":0,"skin":0},{}])")) ==
           "model.gltf: /meshes/0/primitives/0/attributes/JOINTS_0: vertex 2 has joint 2; expected less than 1, the "

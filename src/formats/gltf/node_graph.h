@@ -17,7 +17,7 @@ namespace pertev::gltf {
 
 class NodeGraph {
 public:
-    /// Throws Error(BadInput) for a cycle, a node with two parents, or a scene that lists a child as its root.
+    /// A cycle is cut, and of two parents the first counts, each with a warning.
     NodeGraph(const Document& document, Messages& messages);
 
     /// The scene's nodes, each before its children, in the order of the file.
@@ -29,8 +29,9 @@ public:
     std::vector<Node> take_nodes() { return std::move(nodes_); }
 
 private:
-    void read_children(const Document& document);
-    void place_nodes(const Document& document);
+    void read_children(const Document& document, Messages& messages);
+    void cut_cycles(const Document& document, Messages& messages);
+    void place_nodes(const Document& document, Messages& messages);
     std::vector<uint32_t> scene_roots(const Document& document, Messages& messages) const;
     template <class Visit>
     void for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const;
