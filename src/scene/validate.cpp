@@ -11,6 +11,7 @@
 #include "base/message_text.h"
 #include "math/double_vec3.h"
 #include "scene/shape_mesh.h"
+#include "scene/tangents/make_tangents.h"
 #include "scene/validate_materials.h"
 #include "scene/validate_mesh.h"
 #include "scene/validate_nodes.h"
@@ -45,6 +46,7 @@ public:
         }
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i) camera(i);
         for (std::size_t i = 0; i < scene_.lights.size(); ++i) light(i);
+        make_tangents(scene_);
     }
 
 private:
@@ -115,20 +117,8 @@ private:
             const std::size_t joints = shape->skin == kNoSkin ? 0 : scene_.skins[shape->skin].joints.size();
             const MeshRepairs repairs = repair_shape(*shape, mesh, joints, of);
             repairs_ += repairs;
-            if (repairs.normals + repairs.tangents > 0) shape_at_rest(*shape);
+            if (repairs.normals + repairs.tangents > 0) shape_at_rest(scene_, {&shape, 1});
         }
-    }
-
-    /// By what the shape has become.
-    void shape_at_rest(MeshShape& shape) {
-        std::vector<Transform> joints;
-        if (shape.skin != kNoSkin) {
-            joints =
-                joint_transforms(scene_.skins[shape.skin], world_from_nodes(scene_.nodes, parents_first(scene_.nodes)));
-        }
-        const std::span<const float> weights =
-            shape.node == kNoNode ? std::span<const float>() : scene_.nodes[shape.node].morph_weights;
-        shape_mesh(shape, weights, joints, scene_.meshes[shape.mesh]);
     }
 
     void report() {
