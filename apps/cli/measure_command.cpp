@@ -130,7 +130,7 @@ void add_measure_command(CLI::App& app, int& status) {
     verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
         ->type_name("SECONDS")
         ->check(number_between(-1e9f, 1e9f));
-    add_allow_path(verb, flags->scene.allowed_paths);
+    add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     add_machine_flags(verb, flags->machine, "Machine");
     verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");

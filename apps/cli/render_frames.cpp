@@ -39,9 +39,9 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
     for (const auto& [name, value] : settings_metadata(record)) {
         // They stand there only where they are; a run without them must be told apart from one with them.
         constexpr std::string_view kSometimes[] = {
-            "pertev.denoise",     "pertev.ambient",        "pertev.shading",     "pertev.wireframe", "pertev.lpe",
-            "pertev.lamp",        "pertev.quantity",       "pertev.false_color", "pertev.shutter",   "pertev.frame",
-            "pertev.first_frame", "pertev.reconstruction", "pertev.displacement"};
+            "pertev.denoise", "pertev.ambient", "pertev.shading",     "pertev.wireframe",      "pertev.lpe",
+            "pertev.up_axis", "pertev.unit",    "pertev.lamp",        "pertev.quantity",       "pertev.false_color",
+            "pertev.shutter", "pertev.frame",   "pertev.first_frame", "pertev.reconstruction", "pertev.displacement"};
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
@@ -63,6 +63,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
+                                     {"--up-axis", flags.scene.up_axis},
+                                     {"--unit", flags.scene.unit},
                                      {"--lamp", lamps},
                                      {"--displacement", displacements},
                                      {"--efficacy", fmt::format("{}", flags.scene.efficacy)},

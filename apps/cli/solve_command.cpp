@@ -99,7 +99,7 @@ void add_solve_command(CLI::App& app, int& status) {
     verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
         ->type_name("SECONDS")
         ->check(number_between(-1e9f, 1e9f));
-    add_allow_path(verb, flags->scene.allowed_paths);
+    add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     verb.add_option("--threads", flags->threads, "of the CPU (all)")
         ->type_name("N")

@@ -13,6 +13,7 @@
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
+#include "image/exr_primaries.h"
 #include "image/image_format.h"
 #include "image/srgb.h"
 
@@ -40,9 +41,10 @@ Image to_rgba(const Image& image) {
     return rgba;
 }
 
-/// What an image is read as: values as stored, or colours that are still sRGB-encoded.
+/// What an image is read as: values as stored, or colours that are still sRGB-encoded. Colours are converted to Rec.
+/// 709.
 struct Uses {
-    bool as_srgb = false, as_data = false;
+    bool as_srgb = false, as_data = false, as_color = false;
 };
 
 std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
@@ -52,6 +54,7 @@ std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
             if (!ref->has_image()) continue;
             Uses& use = uses.at(static_cast<std::size_t>(ref->image));
             (ref->is_srgb ? use.as_srgb : use.as_data) = true;
+            use.as_color |= ref == &material.base_color_texture || ref == &material.emission_texture;
         }
     }
     return uses;
@@ -147,6 +150,9 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.texture_bytes = texture_bytes(read_image_header(bytes, name));
         if ((all_bytes += source.texture_bytes) > limit) return;
         source.is_png = recognise_image(bytes) == ImageFormat::Png;
+        if (recognise_image(bytes) == ImageFormat::Exr) {
+            source.color_matrix = exr_color_matrix(bytes, name, &source.said);
+        }
         source.image = decode_image(bytes, name, &source.said);
     } catch (const Error& error) {
         source.fault = error.what();
@@ -178,7 +184,9 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     std::vector<TextureImage> textures(sources_.size());
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
         Source& source = sources_[i];
-        if (source.image) textures[i] = texture_of(*std::move(source.image), source.is_png, uses[i], source.name);
+        if (!source.image) return;
+        textures[i] = texture_of(*std::move(source.image), source.is_png, uses[i], source.name);
+        if (source.color_matrix && uses[i].as_color) convert_colors(*source.color_matrix, textures[i].rgba_float);
     });
     std::vector<int32_t> renumbered(sources_.size(), kNoImage);
     for (std::size_t i = 0; i < sources_.size(); ++i) {

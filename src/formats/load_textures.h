@@ -16,6 +16,7 @@
 
 #include "base/messages.h"
 #include "formats/file_access.h"
+#include "image/color_primaries.h"
 #include "image/image.h"
 #include "scene/scene.h"
 
@@ -57,6 +58,7 @@ private:
 
         uint64_t texture_bytes = 0;                           // that the picture will take; 0: not known yet
         std::optional<std::variant<Rgba8Image, Image>> image; // once it is decoded
+        std::optional<ColorMatrix> color_matrix;              // to Rec. 709, where its colours are others
         bool is_png = false;
         std::string fault; // why it never will be
         Messages said = {};

@@ -1,13 +1,14 @@
 #include "formats/read_obj.h"
 
 #include <algorithm>
-#include <bit>
 #include <future>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -18,41 +19,12 @@
 #include "formats/load_textures.h"
 #include "formats/parse_obj.h"
 #include "formats/read_mtl.h"
+#include "formats/vertex_table.h"
 
 namespace fs = std::filesystem;
 
 namespace pertev {
 namespace {
-
-/// Gives each different (position, uv, normal) of a group one vertex, in the order of first use. Open addressing: time
-/// and memory follow the group's own size, whatever its indices are.
-class VertexTable {
-public:
-    explicit VertexTable(std::size_t corners) : slots_(std::bit_ceil(2 * corners + 1), kNoIndex) {}
-
-    uint32_t vertex_of(const ObjCorner& corner) {
-        const std::size_t mask = slots_.size() - 1;
-        uint64_t hash = corner.position * 0x9e3779b97f4a7c15u;
-        hash = (hash ^ (hash >> 29) ^ corner.uv) * 0xbf58476d1ce4e5b9u;
-        hash = (hash ^ (hash >> 32) ^ corner.normal) * 0x94d049bb133111ebu;
-        for (std::size_t at = (hash >> 20) & mask;; at = (at + 1) & mask) {
-            if (slots_[at] == kNoIndex) {
-                slots_[at] = static_cast<uint32_t>(vertices_.size());
-                vertices_.push_back(corner);
-                return slots_[at];
-            }
-            const ObjCorner& known = vertices_[slots_[at]];
-            if (known.position == corner.position && known.uv == corner.uv && known.normal == corner.normal) {
-                return slots_[at];
-            }
-        }
-    }
-    const std::vector<ObjCorner>& vertices() const { return vertices_; }
-
-private:
-    std::vector<uint32_t> slots_;
-    std::vector<ObjCorner> vertices_;
-};
 
 bool has_texture(const Material& m) {
     return std::ranges::any_of(m.textures(), [](const TextureRef* texture) { return texture->has_image(); });
@@ -60,25 +32,40 @@ bool has_texture(const Material& m) {
 
 void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& data, const std::string& file,
                                           Messages& messages) {
-    std::size_t materials = 0;
+    std::set<uint32_t> materials;
     std::string first;
     for (std::size_t i = 0; i < data.groups.size(); ++i) {
+        const uint32_t material = scene.instances[i].material;
         const std::vector<ObjCorner>& corners = data.groups[i].corners;
-        if (!has_texture(scene.materials[i]) ||
+        if (!has_texture(scene.materials[material]) || materials.contains(material) ||
             std::none_of(corners.begin(), corners.end(), [](const ObjCorner& c) { return c.uv == kNoIndex; })) {
             continue;
         }
-        if (materials++ == 0) first = data.groups[i].material;
+        if (materials.empty()) first = data.groups[i].material;
+        materials.insert(material);
     }
-    if (materials == 0) return;
+    if (materials.empty()) return;
     messages.warn(fmt::format("{}: {} with a texture, but on faces without texture coordinates ({} is the first): "
                               "its corner is seen there",
-                              file, counted(materials, "material"), shortened(first)));
+                              file, counted(materials.size(), "material"), shortened(first)));
+}
+
+/// A texture tells the colour where there is one: scanners write the same colours to the vertices as well.
+void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages& messages) {
+    std::size_t dropped = 0;
+    for (const Instance& instance : scene.instances) {
+        std::vector<Vec4>& colors = scene.meshes[instance.mesh].colors;
+        if (colors.empty() || !scene.materials[instance.material].base_color_texture.has_image()) continue;
+        colors.clear();
+        ++dropped;
+    }
+    if (dropped == 0) return;
+    messages.warn(fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
 }
 
 Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     Mesh mesh;
-    mesh.name = group.material;
+    mesh.name = group.name.empty() ? group.material : group.name;
     mesh.origin = fmt::format("line {}", group.line);
     VertexTable table(group.corners.size());
     mesh.indices.reserve(group.corners.size());
@@ -210,18 +197,25 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
                  const std::string& file, const ReadOptions& options, Messages& messages) {
     Scene scene;
     scene.meshes.resize(data.groups.size());
+    std::unordered_map<std::string_view, uint32_t> numbers; // of materials
     std::size_t unknown = 0;
     std::string first_unknown;
     for (uint32_t i = 0; i < data.groups.size(); ++i) {
         const std::string& name = data.groups[i].material;
-        const auto known = materials.find(name);
-        if (known != materials.end()) {
-            scene.materials.push_back(known->second.material);
-        } else {
-            scene.materials.push_back(grey_material(name, data));
-            if (!name.empty() && unknown++ == 0) first_unknown = name;
+        const auto [number, is_new] = numbers.try_emplace(name, static_cast<uint32_t>(scene.materials.size()));
+        if (is_new) {
+            const auto known = materials.find(name);
+            if (known != materials.end()) {
+                scene.materials.push_back(known->second.material);
+            } else {
+                scene.materials.push_back(grey_material(name, data));
+                if (!name.empty() && unknown++ == 0) first_unknown = name;
+            }
         }
-        scene.instances.push_back({.name = name, .mesh = i, .material = i, .world_from_local = {}});
+        scene.instances.push_back({.name = data.groups[i].name.empty() ? name : data.groups[i].name,
+                                   .mesh = i,
+                                   .material = number->second,
+                                   .world_from_local = {}});
     }
 
     if (data.groups.empty()) {
@@ -240,7 +234,8 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
                     [&] {
                         parallel_for(data.groups.size(), 1, [&](uint64_t i) {
                             scene.meshes[i] = make_mesh(data.groups[i], data);
-                            if (scene.materials[i].is_emissive()) wind_after_normals(scene.meshes[i]);
+                            const Material& material = scene.materials[scene.instances[i].material];
+                            if (material.is_emissive()) wind_after_normals(scene.meshes[i]);
                         });
                     });
 
@@ -253,6 +248,7 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
         material = finished.material;
     }
     warn_of_textures_without_coordinates(scene, data, file, messages);
+    drop_colors_beside_textures(scene, file, messages);
     return scene;
 }
 

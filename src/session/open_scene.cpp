@@ -60,6 +60,32 @@ void show_back_faces(Scene& scene, Messages& messages) {
 
 } // namespace
 
+FileSpace file_space(const std::string& up_axis, const std::string& unit) {
+    FileSpace space;
+    if (!up_axis.empty()) {
+        const std::optional<UpAxis> read = parse_up_axis(up_axis);
+        if (!read) throw Error(ErrorCode::BadInput, fmt::format("--up-axis {}: expected x, y or z", up_axis));
+        space.up_axis = *read;
+    }
+    if (!unit.empty()) {
+        const std::optional<double> read = parse_unit(unit);
+        if (!read) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--unit {}: expected {} or a number of metres above 0", unit, kUnitNames));
+        }
+        space.unit_m = *read;
+    }
+    return space;
+}
+
+ReadOptions read_options(const OpenOptions& options) {
+    ReadOptions read;
+    read.allowed_paths = options.allowed_paths;
+    read.two_sided_lights = options.two_sided_lights;
+    read.space = file_space(options.up_axis, options.unit);
+    return read;
+}
+
 std::string environment_text(const OpenOptions& options) {
     if (!options.environment_radiance) return options.environment.string();
     const Rgb radiance = *options.environment_radiance;
@@ -68,15 +94,16 @@ std::string environment_text(const OpenOptions& options) {
 
 Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_scene(path, options, messages);
+    if (!(options.space == FileSpace()) && tells_space(path)) {
+        messages.warn(fmt::format("--up-axis, --unit: {} is in metres with y up; these flags are for .obj and .ply",
+                                  path.string()));
+    }
     if (!options.two_sided_lights && !tells_lamp_sides(path)) say_lamp_fronts(scene, path.string(), messages);
     return scene;
 }
 
 Scene open_scene(const OpenOptions& options, Messages& messages) {
-    ReadOptions read;
-    read.allowed_paths = options.allowed_paths;
-    read.two_sided_lights = options.two_sided_lights;
-    Scene scene = read_scene_and_lamps(options.scene, read, messages);
+    Scene scene = read_scene_and_lamps(options.scene, read_options(options), messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         messages.warn("--two-sided-lights: no surface of the scene gives light");
     }

@@ -19,6 +19,8 @@ namespace pertev {
 struct OpenOptions {
     std::string scene; // a file, or a built-in scene's name
     std::vector<std::filesystem::path> allowed_paths;
+    std::string up_axis;                     // x, y or z, of OBJ and PLY; empty: y
+    std::string unit;                        // of OBJ and PLY, a name or metres; empty: m
     std::filesystem::path environment;       // an .hdr or .exr panorama; empty: none
     std::optional<Rgb> environment_radiance; // instead of a panorama: from everywhere, W/(sr m2), at least 0
     float environment_rotation_deg = 0;      // about +y, added to the environment's own
@@ -28,6 +30,12 @@ struct OpenOptions {
     bool two_sided_lights = false; // surfaces emit from both faces, whatever the file says
     bool show_back_faces = false;  // the camera sees backs that a glTF file hides
 };
+
+/// How the file's coordinates are meant, by the words of --up-axis and --unit. Throws Error(BadInput) for others.
+FileSpace file_space(const std::string& up_axis, const std::string& unit);
+
+/// Reading as these options say it.
+ReadOptions read_options(const OpenOptions& options);
 
 /// The environment that is asked for, in the words of --environment: a file, or a radiance R,G,B; empty: none.
 std::string environment_text(const OpenOptions& options);

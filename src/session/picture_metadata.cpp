@@ -64,6 +64,8 @@ SceneSource source_of(const OpenOptions& options, const Scene& scene) {
             .environment = environment_text(options),
             .environment_scale = options.environment_scale,
             .environment_rotation_deg = options.environment_rotation_deg,
+            .up_axis = options.up_axis,
+            .unit = options.unit,
             .lamps = lamps,
             .has_environment = scene.environment.has_value(),
             .two_sided_lights = options.two_sided_lights,
@@ -172,6 +174,8 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     }
     append(metadata, camera_metadata(record.camera));
     append(metadata, environment_metadata(scene));
+    if (!scene.up_axis.empty()) metadata.emplace_back("pertev.up_axis", scene.up_axis);
+    if (!scene.unit.empty()) metadata.emplace_back("pertev.unit", scene.unit);
     if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && record.display->false_colors) {

@@ -24,6 +24,7 @@ struct SceneSource {
     std::string environment;     // asked for: file or colour; empty: none was
     float environment_scale = 1; // factor
     float environment_rotation_deg = 0;
+    std::string up_axis, unit;    // of the file's coordinates, asked for; empty: not
     std::string lamps;            // set to amounts of light, a line each; empty: none
     bool has_environment = false; // the scene has one: asked for, its own or the default
     bool two_sided_lights = false, show_back_faces = false;
