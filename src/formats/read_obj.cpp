@@ -18,6 +18,7 @@
 #include "formats/load_textures.h"
 #include "formats/parse_obj.h"
 #include "formats/read_mtl.h"
+#include "scene/scene_origin.h"
 
 namespace fs = std::filesystem;
 
@@ -196,6 +197,7 @@ Material grey_material(const std::string& name, const ObjData& data) {
 Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
                  const std::string& file, const ReadOptions& options, Messages& messages) {
     Scene scene;
+    set_origin(data.box, scene);
     scene.meshes.resize(data.groups.size());
     std::size_t unknown = 0;
     std::string first_unknown;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <string_view>
 
@@ -14,11 +15,13 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
+#include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "formats/parse_number.h"
 #include "formats/ply_header.h"
 #include "formats/triangulate_polygon.h"
 #include "image/srgb.h"
+#include "scene/scene_origin.h"
 
 namespace fs = std::filesystem;
 
@@ -39,6 +42,7 @@ public:
         element_ = element;
         number_ = number;
     }
+    bool is_binary() const { return format_ != PlyFormat::Ascii; }
     void set_number(uint64_t number) { number_ = number; }
 
     /// The fewest bytes that a value takes: in text a digit and a space.
@@ -108,8 +112,8 @@ private:
         const std::string_view text = word();
         std::string_view rest = text;
         if (type == PlyType::Float32 || type == PlyType::Float64) {
-            const std::optional<float> number = parse_float(rest);
-            if (number && rest.empty()) return static_cast<double>(*number);
+            const std::optional<double> number = parse_float<double>(rest);
+            if (number && rest.empty()) return *number;
         } else {
             int64_t number = 0;
             const auto [after, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -222,6 +226,9 @@ public:
         }
     }
 
+    /// Round what the faces name, in the coordinates of the file: origin_for() it has been taken off the mesh.
+    const DoubleBounds3& box() const { return box_; }
+
     Mesh run(Messages& messages) {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
             throw Error(ErrorCode::BadInput, file_ +
@@ -241,6 +248,7 @@ public:
                 lists(element);
             }
         }
+        move_to_origin();
         triangulate();
         warn_of_face_properties(messages);
         if (strays_ > 0) {
@@ -293,6 +301,9 @@ private:
         const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
         const auto count = static_cast<std::size_t>(element.count);
         mesh_.positions.resize(count);
+        const auto is_float = [&](Slot slot) { return body_.is_binary() && types[slot] == PlyType::Float32; };
+        const bool is_rounded = !(is_float(kX) && is_float(kY) && is_float(kZ)); // by a mesh's positions
+        if (is_rounded) exact_.reserve(count);
         if (has_normal) mesh_.normals.resize(count);
         if (has_colour) mesh_.colors.resize(count);
         if (has_uv) mesh_.uv[0].resize(count);
@@ -310,7 +321,9 @@ private:
                     values[slots[k]] = body_.value(element.properties[k].type);
                 }
             }
-            mesh_.positions[i] = {number(kX), number(kY), number(kZ)};
+            const DoubleVec3 position = {values[kX], values[kY], values[kZ]};
+            mesh_.positions[i] = to_float(position);
+            if (is_rounded) exact_.push_back(position);
             if (has_normal) mesh_.normals[i] = {number(kNormalX), number(kNormalY), number(kNormalZ)};
             if (has_colour) {
                 mesh_.colors[i] = {channel(kRed), channel(kGreen), channel(kBlue),
@@ -377,6 +390,24 @@ private:
         }
     }
 
+    /// Takes off in double what lies between the file's origin and the faces.
+    void move_to_origin() {
+        const auto position = [&](std::size_t i) { return exact_.empty() ? to_double(mesh_.positions[i]) : exact_[i]; };
+        std::mutex guard;
+        parallel_for_ranges(corners_.size(), 1 << 14, [&](uint64_t begin, uint64_t end) {
+            DoubleBounds3 box;
+            for (uint64_t i = begin; i < end; ++i) box.extend(position(corners_[i]));
+            const std::lock_guard lock(guard);
+            box_.extend(box);
+        });
+        const DoubleVec3 origin = origin_for(box_);
+        if (!(origin == DoubleVec3{0, 0, 0})) {
+            for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
+                mesh_.positions[i] = to_float(position(i) - origin);
+        }
+        exact_ = {};
+    }
+
     void triangulate() {
         std::size_t triangles = 0;
         for (const uint32_t size : sizes_) triangles += size - 2;
@@ -407,6 +438,8 @@ private:
     const std::string& file_;
     uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
     Mesh mesh_;
+    std::vector<DoubleVec3> exact_; // positions, where the file has more digits than floats
+    DoubleBounds3 box_;
     std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
     uint64_t strays_ = 0;
 };
@@ -418,7 +451,9 @@ Scene read_ply(const fs::path& path, const FileAccess&, const ReadOptions& optio
     const std::vector<std::byte> bytes = read_file(path);
     const PlyHeader header = parse_ply_header(bytes, file);
     Scene scene;
-    scene.meshes.push_back(Reader(bytes, header, file).run(messages));
+    Reader reader(bytes, header, file);
+    scene.meshes.push_back(reader.run(messages));
+    set_origin(reader.box(), scene);
     Mesh& mesh = scene.meshes.back();
     mesh.name = path.stem().string();
     if (options.geometry_only) mesh.colors.clear();

@@ -116,8 +116,9 @@ private:
     void shape_at_rest(MeshShape& shape) {
         std::vector<Transform> joints;
         if (shape.skin != kNoSkin) {
-            joints =
-                joint_transforms(scene_.skins[shape.skin], world_from_nodes(scene_.nodes, parents_first(scene_.nodes)));
+            joints = joint_transforms(
+                scene_.skins[shape.skin],
+                world_from_nodes(places_of(scene_.nodes, parents_first(scene_.nodes)), scene_.origin_in_file));
         }
         const std::span<const float> weights =
             shape.node == kNoNode ? std::span<const float>() : scene_.nodes[shape.node].morph_weights;

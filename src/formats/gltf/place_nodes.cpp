@@ -41,7 +41,12 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
     std::vector<Transform> placements;
     for (std::size_t i = 0; i < *count; ++i) {
         const Vec4 rotation = r.empty() || r[i] == Vec4{} ? Vec4{0, 0, 0, 1} : r[i];
-        placements.push_back(transform_of({t.empty() ? Vec3{} : t[i], rotation, s.empty() ? Vec3{1, 1, 1} : s[i]}));
+        NodePose pose;
+        pose.rotation = {static_cast<double>(rotation.x), static_cast<double>(rotation.y),
+                         static_cast<double>(rotation.z), static_cast<double>(rotation.w)};
+        if (!t.empty()) pose.translation = to_double(t[i]);
+        if (!s.empty()) pose.scale = to_double(s[i]);
+        placements.push_back(world_from_node(place_of(pose), {0, 0, 0}));
     }
     return placements;
 }
@@ -62,7 +67,7 @@ std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
 
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Messages& messages) {
-    const auto place_mesh = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
+    const auto place_mesh = [&](const JsonValue& node, uint32_t index) {
         const std::vector<Meshes::Part>& parts = meshes.parts_of(index);
         const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
         const bool has_skin = node.find("skin").has_value(); // its joints have moved it already
@@ -71,7 +76,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         const std::string name = node.string_or("name", "");
         buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : node_from_local) {
-            const Transform world_from_local = has_skin ? Transform() : placed_in(world_from_node, m);
+            const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.place(index), m, {0, 0, 0});
             for (const Meshes::Part& part : parts) {
                 scene.instances.push_back({.name = name,
                                            .mesh = part.mesh,
@@ -88,14 +93,14 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
 
     for (const uint32_t index : nodes.scene_nodes()) {
         const JsonValue& node = document.table("nodes")[index];
-        const Transform& world_from_node = nodes.world_from_node(index);
-        if (node.find("mesh")) place_mesh(node, index, world_from_node);
+        const Transform& world_from_local = nodes.world_from_node(index);
+        if (node.find("mesh")) place_mesh(node, index);
         if (const std::optional<JsonValue> reference = node.find("camera")) {
             Camera camera = read_camera(document.item("cameras", *reference));
             if (camera.name.empty()) camera.name = node.string_or("name", "");
             camera.origin = node.pointer();
             camera.node = index;
-            if (const std::optional<Transform> rigid = without_scale(world_from_node)) {
+            if (const std::optional<Transform> rigid = without_scale(world_from_local)) {
                 camera.world_from_camera = *rigid;
                 scene.cameras.push_back(std::move(camera));
             } else {
@@ -107,7 +112,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             if (light.name.empty()) light.name = node.string_or("name", "");
             light.origin = node.pointer();
             light.node = index;
-            if (place_light(world_from_node, light)) {
+            if (place_light(world_from_local, light)) {
                 scene.lights.push_back(std::move(light));
             } else {
                 messages.warn(fmt::format("{}: the light is squashed to nothing and left out", node.place()));
