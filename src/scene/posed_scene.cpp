@@ -129,6 +129,7 @@ PosedScene::Places PosedScene::places_at(double time_s) {
 }
 
 void PosedScene::read_channels(double time_s) {
+    const bool is_moved = !(scene_.origin_in_file == DoubleVec3{0, 0, 0});
     for (const Animation& animation : scene_.animations) {
         for (const AnimationChannel& channel : animation.channels) {
             value_.resize(numbers_in_value(channel, scene_));
@@ -136,7 +137,8 @@ void PosedScene::read_channels(double time_s) {
             const std::vector<float>& v = value_;
             switch (channel.part) {
             case AnimatedPart::Translation:
-                node_poses_[channel.target].translation = to_double(Vec3{v[0], v[1], v[2]});
+                node_poses_[channel.target].translation =
+                    is_moved ? sample_translation(channel, time_s) : to_double(Vec3{v[0], v[1], v[2]});
                 break;
             case AnimatedPart::Rotation:
                 std::ranges::copy(v, node_poses_[channel.target].rotation.begin());

@@ -250,6 +250,22 @@ TEST_CASE("what moves below a far node moves as at the origin") {
     }
 }
 
+TEST_CASE("a far node that moves by keys is between them at every time") {
+    test::GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.add("VEC3", std::vector<float>{448262, 5411933, 0, 448263, 5411933, 0});
+    builder.add("SCALAR", std::vector<float>{0, 1});
+    PosedScene posed(test::read_gltf_text(builder.json(
+        R"("scenes":[{"nodes":[0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+        R"("nodes":[{"mesh":0,"translation":[448262,5411933,0]}],"animations":[{"samplers":[{"input":2,"output":1}],)"
+        R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}])")));
+    for (const double time_s : {0.0, 0.3, 0.7001, 1.0}) {
+        CAPTURE(time_s);
+        posed.set_time(time_s);
+        CHECK(off(posed.scene(), placed(posed.scene(), 0, 0), {448262 + time_s, 5411933, 0}) < 1e-6);
+    }
+}
+
 TEST_CASE("the metadata of a camera far from the origin says it again to the bit") {
     const Scene scene = load("far.obj", square_obj(kEast, kNorth));
     Messages messages;
