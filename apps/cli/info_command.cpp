@@ -20,6 +20,7 @@
 #include "image/read_exr.h"
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
+#include "scene/scene_origin.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {
@@ -39,6 +40,10 @@ public:
     }
     void add(const std::string& name, float number) {
         facts_.push_back({name, fmt::format("{}", number), json_number(static_cast<double>(number))});
+    }
+    void add(const std::string& name, DoubleVec3 v) {
+        facts_.push_back({name, fmt::format("{:.12g} {:.12g} {:.12g}", v.x, v.y, v.z),
+                          fmt::format("[{},{},{}]", json_number(v.x), json_number(v.y), json_number(v.z))});
     }
     template <std::integral Whole>
     void add(const std::string& name, Whole number) {
@@ -109,8 +114,13 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
     facts.add("emissive_triangles", emissive);
     facts.add("environment", scene.environment ? "yes" : "no");
     const Bounds3 bounds = bounds_of(scene);
-    facts.add("bounds_low", bounds.lo);
-    facts.add("bounds_high", bounds.hi);
+    if (scene.origin_in_file == DoubleVec3{0, 0, 0}) {
+        facts.add("bounds_low", bounds.lo);
+        facts.add("bounds_high", bounds.hi);
+    } else {
+        facts.add("bounds_low", in_file(scene, bounds.lo));
+        facts.add("bounds_high", in_file(scene, bounds.hi));
+    }
     std::vector<std::string> cameras;
     for (const Camera& camera : scene.cameras) { // what --camera takes
         cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);

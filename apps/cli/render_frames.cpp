@@ -127,6 +127,7 @@ void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& cam
         const double time_s = sequence.shutter->time_at(sequence.time_of(frame).value(), share);
         Scene cameras; // nothing else of a scene moves a camera
         cameras.cameras = moving.cameras_at(time_s);
+        cameras.origin_in_file = moving.scene().origin_in_file;
         const CameraSource at = camera_at(camera.camera, cameras, time_s, sequence.turn_at(frame, share));
         return std::vector{std::optional(at.camera.world_from_camera)};
     });
@@ -194,7 +195,7 @@ void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, 
 
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
     const CameraChoice choice = camera.choice_at(time_s);
-    CameraSource source = source_of(choice, camera.at(scene, time_s));
+    CameraSource source = source_of(choice, camera.at(scene, time_s), scene.origin_in_file);
     if (turn == 0) return source;
     source.camera = camera.turned(source.camera, turn);
     source.target.reset(); // its words say where the camera began

@@ -7,6 +7,7 @@
 
 #include "apps/viewer/panel_text.h"
 #include "base/error.h"
+#include "scene/scene_origin.h"
 #include "session/write_picture.h"
 
 namespace pertev {
@@ -292,7 +293,7 @@ PictureRecord RenderLoop::record() const {
     record.camera.target.reset();
     record.camera.up.reset();
     if (camera_.is_said_by_pose()) {
-        record.camera.target = camera_.pose().target;
+        record.camera.target = in_file(*start_.scene, camera_.pose().target);
         record.camera.up = camera_.pose().up;
     }
     if (!camera_.is_at_start() || camera_.is_own()) record.camera.name = camera_.name();

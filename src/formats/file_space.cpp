@@ -26,6 +26,19 @@ Transform metres_from(const FileSpace& space) {
     return make_scale({unit, unit, unit});
 }
 
+DoubleVec3 in_metres(const FileSpace& space, DoubleVec3 p) {
+    p = {space.unit_m * p.x, space.unit_m * p.y, space.unit_m * p.z};
+    switch (space.up_axis) {
+    case UpAxis::X:
+        return {-p.y, p.x, p.z};
+    case UpAxis::Y:
+        break;
+    case UpAxis::Z:
+        return {p.x, p.z, -p.y};
+    }
+    return p;
+}
+
 } // namespace
 
 std::optional<UpAxis> parse_up_axis(std::string_view text) {
@@ -47,6 +60,7 @@ std::optional<double> parse_unit(std::string_view text) {
 void place_in_metres(const FileSpace& space, Scene& scene) {
     if (space == FileSpace()) return;
     const Transform metres = metres_from(space);
+    scene.origin_in_file = in_metres(space, scene.origin_in_file);
     for (Instance& instance : scene.instances) instance.world_from_local = compose(metres, instance.world_from_local);
 }
 

@@ -13,10 +13,12 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
+#include "formats/obj_positions.h"
 #include "formats/obj_text.h"
 #include "formats/parse_number.h"
 #include "formats/triangulate_polygon.h"
 #include "formats/vertex_colors.h"
+#include "scene/scene_origin.h"
 
 namespace pertev {
 namespace {
@@ -312,6 +314,7 @@ public:
 
     ObjData run(const FoundMaterials& found_materials) {
         parse_pieces(found_materials);
+        move_to_origin();
         if (!join_groups(false)) {
             messages_.note(fmt::format("{}: more than {} objects and groups: faces are put together by material alone",
                                        file_, kMostObjGroups));
@@ -379,6 +382,37 @@ private:
             parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_,
                                   i == 0 && found_materials ? &found_materials : nullptr);
         parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
+    }
+
+    /// Round the positions that faces name. `position_at(i)`: of number i.
+    template <class PositionAt>
+    DoubleBounds3 box_of_faces(const PositionAt& position_at) const {
+        std::vector<DoubleBounds3> boxes(parsers_.size());
+        parallel_for(parsers_.size(), 1, [&](uint64_t i) {
+            for (const RawGroup& group : parsers_[i].groups) {
+                for (const ObjCorner& corner : group.corners) {
+                    if (corner.position < data_.positions.size()) boxes[i].extend(position_at(corner.position));
+                }
+            }
+        });
+        DoubleBounds3 box;
+        for (const DoubleBounds3& of_piece : boxes) box.extend(of_piece);
+        return box;
+    }
+
+    /// Where the faces lie away from 0, reads the positions in double and takes off what lies between.
+    void move_to_origin() {
+        data_.box = box_of_faces([&](uint32_t i) { return to_double(data_.positions[i]); });
+        if (origin_for(data_.box) == DoubleVec3{0, 0, 0}) return;
+        std::vector<DoubleVec3> exact(data_.positions.size());
+        parallel_for(pieces_.size(), 1, [&](uint64_t i) {
+            const std::size_t begin = pieces_[i].counts.positions;
+            const std::size_t end = i + 1 < pieces_.size() ? pieces_[i + 1].counts.positions : exact.size();
+            read_obj_positions(pieces_[i].text, end_of_line_, std::span(exact).subspan(begin, end - begin));
+        });
+        data_.box = box_of_faces([&](uint32_t i) { return exact[i]; });
+        const DoubleVec3 origin = origin_for(data_.box);
+        parallel_for(exact.size(), 4096, [&](uint64_t i) { data_.positions[i] = to_float(exact[i] - origin); });
     }
 
     /// Puts the parts of each group together. Returns false where there are more than kMostObjGroups.

@@ -17,6 +17,7 @@
 
 #include "base/messages.h"
 #include "formats/vertex_table.h"
+#include "math/double_bounds3.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
 #include "math/vec4.h"
@@ -48,8 +49,9 @@ struct ObjMaterialFiles {
 using FoundMaterials = std::function<void(const ObjMaterialFiles&)>;
 
 struct ObjData {
-    std::vector<Vec3> positions;
-    std::vector<Vec4> colors; // [positions], linear; or empty
+    std::vector<Vec3> positions; // relative to origin_for(box), which is taken off in double
+    DoubleBounds3 box;           // round those that faces name, in the coordinates of the file
+    std::vector<Vec4> colors;    // [positions], linear; or empty
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;        // v as in the file: upwards
     std::vector<ObjGroup> groups; // by object, group and material, in the order of first use; none is empty

@@ -9,6 +9,7 @@
 #include "formats/gltf/place_nodes.h"
 #include "formats/gltf/textures.h"
 #include "formats/load_textures.h"
+#include "scene/scene_origin.h"
 
 namespace pertev {
 
@@ -31,6 +32,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     scene.nodes = nodes.take_nodes();
     gltf::read_node_shapes(document, buffers, scene, messages);
     gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
+    take_off_centre(scene);
     gltf::read_animations(document, buffers, scene, messages);
     loader.load_into(scene, buffers.file_bytes());
     materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));

@@ -20,6 +20,7 @@
 #include "formats/parse_obj.h"
 #include "formats/read_mtl.h"
 #include "formats/vertex_table.h"
+#include "scene/scene_origin.h"
 
 namespace fs = std::filesystem;
 
@@ -196,6 +197,7 @@ Material grey_material(const std::string& name, const ObjData& data) {
 Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
                  const std::string& file, const ReadOptions& options, Messages& messages) {
     Scene scene;
+    set_origin(data.box, scene);
     scene.meshes.resize(data.groups.size());
     std::unordered_map<std::string_view, uint32_t> numbers; // of materials
     std::size_t unknown = 0;

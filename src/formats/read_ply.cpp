@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
+#include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "formats/load_textures.h"
 #include "formats/parse_number.h"
@@ -24,6 +26,7 @@
 #include "formats/triangulate_polygon.h"
 #include "formats/vertex_colors.h"
 #include "image/srgb.h"
+#include "scene/scene_origin.h"
 
 namespace fs = std::filesystem;
 
@@ -46,6 +49,7 @@ public:
         element_ = element;
         number_ = number;
     }
+    bool is_binary() const { return format_ != PlyFormat::Ascii; }
     void set_number(uint64_t number) { number_ = number; }
 
     /// The fewest bytes that a value takes: in text a digit and a space.
@@ -145,8 +149,8 @@ private:
         const std::string_view text = word();
         std::string_view rest = text;
         if (type == PlyType::Float32 || type == PlyType::Float64) {
-            const std::optional<float> number = parse_float(rest);
-            if (number && rest.empty()) return static_cast<double>(*number);
+            const std::optional<double> number = parse_float<double>(rest);
+            if (number && rest.empty()) return *number;
         } else {
             int64_t number = 0;
             const auto [after, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -220,6 +224,9 @@ public:
         }
     }
 
+    /// Round what the faces name, in the coordinates of the file: origin_for() it has been taken off the mesh.
+    const DoubleBounds3& box() const { return box_; }
+
     /// The file's mesh. Its faces are those of sizes() and of_faces().
     Mesh run(Messages& messages) {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
@@ -251,6 +258,7 @@ public:
                 break;
             }
         }
+        move_to_origin();
         if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, messages);
         if (!of_faces_.textures.empty() && of_faces_.textures.size() != sizes_.size()) {
             messages.leave_out(file_ + ": textures of faces beside triangle strips are left out");
@@ -326,6 +334,9 @@ private:
         const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
         const auto count = static_cast<std::size_t>(element.count);
         mesh_.positions.resize(count);
+        const auto is_exact = [&](PlySlot slot) { return body_.is_binary() && types[slot] == PlyType::Float32; };
+        const bool is_rounded = !(is_exact(kX) && is_exact(kY) && is_exact(kZ)); // by a mesh's positions
+        if (is_rounded) exact_.reserve(count);
         if (has_normal) mesh_.normals.resize(count);
         if (has_colour) mesh_.colors.resize(count);
         if (has_uv) mesh_.uv[0].resize(count);
@@ -344,7 +355,9 @@ private:
                     values[slots[k]] = body_.value(element.properties[k].type);
                 }
             }
-            mesh_.positions[i] = {number(kX), number(kY), number(kZ)};
+            const DoubleVec3 position = {values[kX], values[kY], values[kZ]};
+            mesh_.positions[i] = to_float(position);
+            if (is_rounded) exact_.push_back(position);
             if (has_normal) mesh_.normals[i] = {number(kNormalX), number(kNormalY), number(kNormalZ)};
             if (has_colour) {
                 mesh_.colors[i] = {channel(kRed), channel(kGreen), channel(kBlue),
@@ -471,6 +484,24 @@ private:
         return 0;
     }
 
+    /// Takes off in double what lies between the file's origin and the faces.
+    void move_to_origin() {
+        const auto position = [&](std::size_t i) { return exact_.empty() ? to_double(mesh_.positions[i]) : exact_[i]; };
+        std::mutex guard;
+        parallel_for_ranges(corners_.size(), 1 << 14, [&](uint64_t begin, uint64_t end) {
+            DoubleBounds3 box;
+            for (uint64_t i = begin; i < end; ++i) box.extend(position(corners_[i]));
+            const std::lock_guard lock(guard);
+            box_.extend(box);
+        });
+        const DoubleVec3 origin = origin_for(box_);
+        if (!(origin == DoubleVec3{0, 0, 0})) {
+            for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
+                mesh_.positions[i] = to_float(position(i) - origin);
+        }
+        exact_ = {};
+    }
+
     void triangulate() {
         std::size_t triangles = 0;
         for (const uint32_t size : sizes_) triangles += size - 2;
@@ -501,6 +532,8 @@ private:
     const std::string& file_;
     uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
     Mesh mesh_;
+    std::vector<DoubleVec3> exact_; // positions, where the file has more digits than floats
+    DoubleBounds3 box_;
     std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
     PlyFaceTextures of_faces_;
     std::vector<float> face_uvs_; // of the face that is read
@@ -525,7 +558,9 @@ Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions
     mesh.name = path.stem().string();
     if (options.geometry_only) mesh.colors.clear();
     TextureLoader loader(access, messages);
-    return make_ply_scene(std::move(mesh), reader.sizes(), reader.of_faces(), header, file, loader, messages);
+    Scene scene = make_ply_scene(std::move(mesh), reader.sizes(), reader.of_faces(), header, file, loader, messages);
+    set_origin(reader.box(), scene);
+    return scene;
 }
 
 } // namespace pertev

@@ -44,7 +44,7 @@ private:
             const InstanceView& instance = scene.instances[hit.instance];
             const uint32_t channel = channel_offset(film.aovs, kAovPosition);
             add_channels(film, pixel, channel, place_triangle(instance, scene.meshes[instance.mesh], hit).position);
-            add_channels(film, pixel, channel, scene.centre);
+            add_channels(film, pixel, channel, scene.position_shift);
         }
     }
 };

@@ -30,10 +30,10 @@ HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t samp
         add_channel(film, pixel, channel_offset(film.aovs, kAovDepth),
                     dot(surface.position - ray.origin, picture.camera.axis_at(time)));
     }
-    if ((film.aovs & kAovPosition) != 0) { // in the file's coordinates: the film adds both without rounding
+    if ((film.aovs & kAovPosition) != 0) { // the film adds both without rounding
         const uint32_t channel = channel_offset(film.aovs, kAovPosition);
         add_channels(film, pixel, channel, surface.position);
-        add_channels(film, pixel, channel, picture.scene.centre);
+        add_channels(film, pixel, channel, picture.scene.position_shift);
     }
     if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {hit.instance, hit.primitive, surface.material};
 }

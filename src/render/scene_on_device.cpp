@@ -43,6 +43,8 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
     view.any_alpha = 0;
     view.any_hidden_back = 0;
     view.centre = prepared.centre;
+    // In the file's coordinates; a far scene's positions are in its own, since floats could not tell them apart there.
+    view.position_shift = scene.is_far ? prepared.centre : to_float(scene.origin_in_file + to_double(prepared.centre));
     instances.views.reserve(scene.instances.size());
     instances.passing.resize((scene.instances.size() + 31) / 32);
     view.instance_count = static_cast<uint32_t>(scene.instances.size());

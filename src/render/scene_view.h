@@ -51,7 +51,8 @@ struct SceneView {
     LightSetView lights;
     uint32_t any_alpha;       // 0 lets every hit skip the look at its instance
     uint32_t any_hidden_back; // the same for hits of the camera's rays
-    Vec3 centre;              // of the moved world, in the file's coordinates, metres (render/place_meshes.h)
+    Vec3 centre;              // of the moved world, in the scene's coordinates, metres (render/place_meshes.h)
+    Vec3 position_shift;      // what the layer of positions adds to those of the moved world, metres
     // Triangles of all instances, numbered in their order: those of instance i are first_triangle[i] and on, up to
     // first_triangle[i + 1]. Null where there are more than 32 bits count.
     const uint32_t* first_triangle; // [instance_count + 1]

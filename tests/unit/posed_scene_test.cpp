@@ -164,7 +164,7 @@ TEST_CASE("a scene of which all is hidden at rest can be looked at") {
     CHECK(!is_singular(camera.world_from_camera));
     CHECK(is_finite(world_centre(posed.scene())));
     CameraChoice choice;
-    choice.eye = Vec3{1, 2, 3};
+    choice.eye = DoubleVec3{1, 2, 3};
     choice.aperture = 0.1f;
     CHECK(!is_singular(choose_camera(choice, posed.scene(), 1, messages).world_from_camera));
 }
@@ -231,7 +231,9 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     shape.weights = {1, 0.5f, 0}; // of any sum; the third vertex stays
     const float root = 0.70710678f;
     scene.animations[0].channels = {channel(0, AnimatedPart::Rotation, {0, 1}, {0, 0, 0, 1, 0, root, 0, root})};
-    shape_mesh(shape, {}, joint_transforms(scene.skins[0], world_from_nodes(scene.nodes, parents_first(scene.nodes))),
+    shape_mesh(shape, {},
+               joint_transforms(scene.skins[0],
+                                world_from_nodes(places_of(scene.nodes, parents_first(scene.nodes)), {0, 0, 0})),
                mesh);
     CHECK(close(mesh.positions[0], {-1, 0, 0}));
     PosedScene posed = pose(std::move(scene));

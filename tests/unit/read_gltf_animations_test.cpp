@@ -58,9 +58,9 @@ TEST_CASE("a glTF file's nodes keep their numbers, parents and poses") {
     REQUIRE(scene.nodes.size() == 3);
     CHECK(scene.nodes[0].name == "root");
     CHECK(scene.nodes[0].parent == kNoNode);
-    CHECK(std::get<NodePose>(scene.nodes[0].pose).translation == Vec3{1, 2, 3});
-    CHECK(std::get<NodePose>(scene.nodes[0].pose).scale == Vec3{2, 2, 2});
-    CHECK(std::get<Transform>(scene.nodes[1].pose).translation == Vec3{7, 8, 9});
+    CHECK(std::get<NodePose>(scene.nodes[0].pose).translation == DoubleVec3{1, 2, 3});
+    CHECK(std::get<NodePose>(scene.nodes[0].pose).scale == DoubleVec3{2, 2, 2});
+    CHECK(std::get<DoubleTransform>(scene.nodes[1].pose).translation == DoubleVec3{7, 8, 9});
     CHECK(scene.nodes[1].morph_weights == std::vector<float>{0.25f, 0});
     CHECK(scene.nodes[2].parent == 0);
     CHECK(scene.nodes[2].skin == 0);

@@ -117,6 +117,12 @@ float JsonValue::to_float() const {
     return static_cast<float>(std::clamp(number, -largest, largest));
 }
 
+double JsonValue::to_double() const {
+    to_float(); // throws for what no float can hold
+    double number = 0;
+    return element_.get(number) ? 0 : number;
+}
+
 bool JsonValue::to_bool() const {
     bool value = false;
     if (element_.get(value)) throw error(fmt::format("{}; expected true or false", type_name(element_)));
@@ -155,6 +161,12 @@ void JsonValue::read_floats(float* numbers, std::size_t count) const {
     const std::vector<JsonValue> values = elements();
     if (values.size() != count) throw error(fmt::format("{} values; expected {}", values.size(), count));
     for (std::size_t i = 0; i < count; ++i) numbers[i] = values[i].to_float();
+}
+
+void JsonValue::read_doubles(double* numbers, std::size_t count) const {
+    const std::vector<JsonValue> values = elements();
+    if (values.size() != count) throw error(fmt::format("{} values; expected {}", values.size(), count));
+    for (std::size_t i = 0; i < count; ++i) numbers[i] = values[i].to_double();
 }
 
 } // namespace pertev::gltf

@@ -48,6 +48,8 @@ public:
     uint64_t to_unsigned() const;
     /// A number; one beyond the largest float, as some exporters write for "no limit", becomes the largest float.
     float to_float() const;
+    /// The same number, not rounded to a float.
+    double to_double() const;
     bool to_bool() const;
     std::string_view to_string() const;
     /// `count` numbers.
@@ -55,6 +57,12 @@ public:
     std::array<float, count> to_floats() const {
         std::array<float, count> numbers{};
         read_floats(numbers.data(), count);
+        return numbers;
+    }
+    template <std::size_t count>
+    std::array<double, count> to_doubles() const {
+        std::array<double, count> numbers{};
+        read_doubles(numbers.data(), count);
         return numbers;
     }
     /// The value as JSON text without spaces: equal texts are equal values.
@@ -71,8 +79,15 @@ public:
         return member ? member->to_floats<count>() : fallback;
     }
 
+    template <std::size_t count>
+    std::array<double, count> doubles_or(std::string_view key, std::array<double, count> fallback) const {
+        const std::optional<JsonValue> member = find(key);
+        return member ? member->to_doubles<count>() : fallback;
+    }
+
 private:
     void read_floats(float* numbers, std::size_t count) const;
+    void read_doubles(double* numbers, std::size_t count) const;
     JsonValue child(std::string_view key, simdjson::dom::element element) const;
 
     const std::string* file_;

@@ -11,18 +11,18 @@
 namespace pertev::gltf {
 namespace {
 
-std::variant<NodePose, Transform> pose_of(const JsonValue& node) {
+std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node) {
     if (const std::optional<JsonValue> matrix = node.find("matrix")) {
-        const std::array<float, 16> values = matrix->to_floats<16>();
-        float columns[16];
-        std::copy(values.begin(), values.end(), columns);
-        return transform_from_columns(columns);
+        const std::array<double, 16> m = matrix->to_doubles<16>(); // by columns
+        return DoubleTransform{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[12], m[13], m[14]}};
     }
-    const std::array<float, 3> t = node.floats_or<3>("translation", {0, 0, 0});
-    const std::array<float, 4> r = node.floats_or<4>("rotation", {0, 0, 0, 1});
-    const std::array<float, 3> s = node.floats_or<3>("scale", {1, 1, 1});
-    if (r == std::array<float, 4>{0, 0, 0, 0}) throw node.at("rotation").error("expected a unit quaternion");
-    return NodePose{{t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}, {s[0], s[1], s[2]}};
+    const std::array<double, 3> t = node.doubles_or<3>("translation", {0, 0, 0});
+    const std::array<double, 4> r = node.doubles_or<4>("rotation", {0, 0, 0, 1});
+    const std::array<double, 3> s = node.doubles_or<3>("scale", {1, 1, 1});
+    if (std::ranges::all_of(r, [](double x) { return static_cast<float>(x) == 0; })) {
+        throw node.at("rotation").error("expected a unit quaternion");
+    }
+    return NodePose{{t[0], t[1], t[2]}, r, {s[0], s[1], s[2]}};
 }
 
 } // namespace
@@ -91,7 +91,8 @@ void NodeGraph::place_nodes(const Document& document, Messages& messages) {
         attempt("the name", [&] { nodes_[node].name = nodes[node].string_or("name", ""); });
         attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node]); });
     }
-    world_from_node_ = world_from_nodes(nodes_, order);
+    places_ = places_of(nodes_, order);
+    world_from_node_ = world_from_nodes(places_, {0, 0, 0});
 }
 
 std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages& messages) const {

@@ -22,7 +22,8 @@ public:
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
-    /// World from local of any node, in the scene or not, at rest.
+    /// The place of any node, in the scene or not, at rest, and its transform in the coordinates of the file.
+    const NodePlace& place(uint32_t node) const { return places_[node]; }
     const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
     const std::vector<Transform>& world_from_node() const { return world_from_node_; }
     /// All nodes of the document, by their numbers.
@@ -38,6 +39,7 @@ private:
 
     std::vector<std::vector<uint32_t>> children_;
     std::vector<Node> nodes_;
+    std::vector<NodePlace> places_;
     std::vector<Transform> world_from_node_;
     std::vector<uint32_t> scene_nodes_;
 };

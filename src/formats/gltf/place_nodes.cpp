@@ -42,7 +42,12 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
     std::vector<Transform> placements;
     for (std::size_t i = 0; i < *count; ++i) {
         const Vec4 rotation = r.empty() || r[i] == Vec4{} ? Vec4{0, 0, 0, 1} : r[i];
-        placements.push_back(transform_of({t.empty() ? Vec3{} : t[i], rotation, s.empty() ? Vec3{1, 1, 1} : s[i]}));
+        NodePose pose;
+        pose.rotation = {static_cast<double>(rotation.x), static_cast<double>(rotation.y),
+                         static_cast<double>(rotation.z), static_cast<double>(rotation.w)};
+        if (!t.empty()) pose.translation = to_double(t[i]);
+        if (!s.empty()) pose.scale = to_double(s[i]);
+        placements.push_back(world_from_node(place_of(pose), {0, 0, 0}));
     }
     return placements;
 }
@@ -68,7 +73,7 @@ std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Messages& messages) {
     const std::size_t before = messages.left_out().size();
-    const auto place_mesh = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
+    const auto place_mesh = [&](const JsonValue& node, uint32_t index) {
         const std::vector<Meshes::Part>& parts = meshes.parts_of(index);
         const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
         const bool has_skin = scene.nodes[index].skin != kNoSkin; // its joints have moved it already
@@ -80,7 +85,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         const std::string& name = scene.nodes[index].name;
         buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : node_from_local) {
-            const Transform world_from_local = has_skin ? Transform() : placed_in(world_from_node, m);
+            const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.place(index), m, {0, 0, 0});
             for (const Meshes::Part& part : parts) {
                 scene.instances.push_back({.name = name,
                                            .mesh = part.mesh,
@@ -133,7 +138,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), messages, place);
         };
         attempt("mesh", [&] {
-            if (node.find("mesh")) place_mesh(node, index, world_from_node);
+            if (node.find("mesh")) place_mesh(node, index);
         });
         attempt("camera", [&] {
             if (const auto reference = node.find("camera")) place_camera(node, *reference, index, world_from_node);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "math/portable_math.h"
+#include "session/place_text.h"
 #include "session/survey/aisle.h"
 #include "session/survey/surroundings.h"
 
@@ -81,9 +82,8 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     }
     const Vec3 eye = camera.world_from_camera.translation;
     const Vec3 target = eye - camera.focus_distance * column(camera.world_from_camera, 2);
-    messages.make_up(
-        fmt::format("no camera in the scene: {} (--eye {:.4g},{:.4g},{:.4g} --target {:.4g},{:.4g},{:.4g})", what,
-                    eye.x, eye.y, eye.z, target.x, target.y, target.z));
+    messages.make_up(fmt::format("no camera in the scene: {} (--eye {} --target {})", what, place_text(scene, eye, 4),
+                                 place_text(scene, target, 4)));
     return camera;
 }
 
