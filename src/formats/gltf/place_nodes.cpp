@@ -81,6 +81,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : node_from_local) {
             const Transform world_from_local = has_skin ? Transform() : placed_in(world_from_node, m);
+            if (!is_near(world_from_local)) throw node.error("the mesh lies further out than 2^40 metres");
             for (const Meshes::Part& part : parts) {
                 scene.instances.push_back({.name = name,
                                            .mesh = part.mesh,
