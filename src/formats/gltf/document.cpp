@@ -134,7 +134,7 @@ Error Document::bad_json(std::string_view text, simdjson::error_code failure) co
 }
 
 void Document::check_version(Messages& messages) const {
-    const auto parts = [](const JsonValue& value) {
+    const auto parts = [&](const JsonValue& value) {
         const std::string_view text = value.to_string();
         std::array<unsigned, 2> numbers = {0, 0}; // major, minor
         const char *begin = text.data(), *end = begin + text.size();
@@ -144,7 +144,11 @@ void Document::check_version(Messages& messages) const {
             const auto minor = std::from_chars(major.ptr + 1, end, numbers[1]);
             good = minor.ec == std::errc() && minor.ptr == end;
         }
-        if (!good) throw value.error(fmt::format("\"{}\" is not a version; expected \"2.0\"", text));
+        if (!good) {
+            messages.warn(
+                fmt::format("{}: \"{}\" is not a version; it is read as \"2.0\"", value.place(), shortened(text)));
+            numbers = {2, 0};
+        }
         return numbers;
     };
     const std::optional<JsonValue> asset = root().find("asset");
