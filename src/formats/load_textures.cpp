@@ -13,7 +13,7 @@
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
-#include "image/exr_primaries.h"
+#include "image/picture_primaries.h"
 #include "image/image_format.h"
 #include "image/srgb.h"
 
@@ -150,9 +150,7 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.texture_bytes = texture_bytes(read_image_header(bytes, name));
         if ((all_bytes += source.texture_bytes) > limit) return;
         source.is_png = recognise_image(bytes) == ImageFormat::Png;
-        if (recognise_image(bytes) == ImageFormat::Exr) {
-            source.color_matrix = exr_color_matrix(bytes, name, &source.said);
-        }
+        source.color_matrix = color_matrix_of(bytes, name, &source.said);
         source.image = decode_image(bytes, name, &source.said);
     } catch (const Error& error) {
         source.fault = error.what();

@@ -3,11 +3,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <string>
 
 #include "formats/load_textures.h"
 #include "image/color_primaries.h"
 #include "image/decode_image.h"
-#include "image/exr_primaries.h"
+#include "image/picture_primaries.h"
 #include "image/read_image.h"
 #include "image/write_exr.h"
 #include "tests/support/options.h"
@@ -126,6 +128,30 @@ TEST_CASE(
     const float infinity = std::numeric_limits<float>::infinity();
     const Image bright = {1, 1, 3, {infinity, 1, 1}};
     CHECK(read_image(with_chromaticities(encode_exr(bright), kAcesCg), "t.exr").pixels == bright.pixels);
+}
+
+TEST_CASE("a Radiance HDR's line PRIMARIES counts like an EXR's chromaticities, and zeros like none") {
+    const auto read = [](const std::string& line, Messages& messages) {
+        std::string text = "#?RADIANCE\n" + line + "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n";
+        for (const int byte : {64, 128, 32, 129}) text += static_cast<char>(byte); // (.5, 1, .25)
+        return read_image(std::as_bytes(std::span(text)), "t.hdr", &messages);
+    };
+    Messages messages;
+    CHECK(read("", messages).pixels == std::vector<float>{0.5f, 1, 0.25f});
+    CHECK(read("PRIMARIES=0 0 0 0 0 0 0 0\n", messages).pixels == std::vector<float>{0.5f, 1, 0.25f});
+    CHECK(read("PRIMARIES=0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290\n", messages).pixels ==
+          std::vector<float>{0.5f, 1, 0.25f});
+    CHECK(messages.all().empty());
+    // P3's green is outside of Rec. 709.
+    check_pixel(read("PRIMARIES= 0.680 0.320 0.265 0.690 0.150 0.060 0.3127 0.3290\r\n", messages),
+                {0.38753, 1.02103, 0.18612});
+    CHECK(messages.all().empty());
+    for (const char* line : {"PRIMARIES=0.64 0.33 x\n", "PRIMARIES=\n", "PRIMARIES=0.6 0.3 0.6 0.3 0.1 0 0.3 0.3\n"}) {
+        CAPTURE(line);
+        Messages said;
+        CHECK(read(line, said).pixels == std::vector<float>{0.5f, 1, 0.25f});
+        CHECK(said.all().size() == (std::string(line) == "PRIMARIES=\n" ? 0 : 1));
+    }
 }
 
 TEST_CASE("degenerate chromaticities, and some of another type, are left out with a warning") {
