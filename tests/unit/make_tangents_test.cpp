@@ -4,15 +4,20 @@
 #include "scene/tangents/make_tangents.h"
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include <doctest/doctest.h>
 
+#include "formats/read_scene.h"
+#include "image/write_png.h"
 #include "scene/posed_scene.h"
 #include "scene/shape_mesh.h"
 #include "scene/tangents/corner_tangents.h"
 #include "scene/validate.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/options.h"
+#include "tests/support/write_text.h"
 
 using namespace pertev;
 
@@ -231,4 +236,20 @@ TEST_CASE(
     };
     CHECK(read(0) == std::vector<Vec4>(3, Vec4{1, 0, 0, 1}));
     CHECK(read(1) == std::vector<Vec4>(3, Vec4{0, 1, 0, 1}));
+}
+
+TEST_CASE("a normal map of an OBJ file has tangents, x to the right and y up") {
+    const std::filesystem::path folder = test::scratch_folder();
+    Rgba8Image image = {2, 2, {}};
+    for (int i = 0; i < 4; ++i) image.pixels.insert(image.pixels.end(), {128, 128, 255, 255});
+    write_png(folder / "normal.png", image, false);
+    test::write_text(folder / "a.mtl", "newmtl wall\nKd 1 1 1\nnorm normal.png\n");
+    Messages messages;
+    const Scene scene = read_scene(test::write_text(folder / "a.obj", "mtllib a.mtl\nusemtl wall\n"
+                                                                      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                                                                      "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                                                      "f 1/1 2/2 3/3 4/4\n"),
+                                   {}, messages);
+    REQUIRE(scene.materials.at(0).normal_texture.has_image());
+    CHECK(scene.meshes.at(0).tangents == std::vector<Vec4>(4, Vec4{1, 0, 0, 1}));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "base/parallel_for.h"
@@ -14,40 +15,43 @@
 namespace pertev {
 namespace {
 
-/// One mesh, or each corner of it by itself where it has no normals: those of its triangles are taken then.
+/// The vertices of a mesh, or each of its corners by itself where it has no normals: those of its triangles are taken
+/// then.
 class Vertices {
 public:
-    /// `indices` as the file winds them.
+    /// `indices` as the file winds them. Both outlive this object.
     Vertices(std::span<const uint32_t> indices, std::span<const Vec2> uv, bool has_normals)
-        : has_normals_(has_normals), indices_(indices.begin(), indices.end()), uv_(uv.begin(), uv.end()) {
+        : has_normals_(has_normals), indices_(indices), uv_(uv) {
         if (has_normals) return;
-        corner_vertices_ = indices_;
-        for (std::size_t i = 0; i < indices_.size(); ++i) indices_[i] = static_cast<uint32_t>(i);
-        uv_ = expanded(uv);
+        corner_uv_ = expanded(uv);
+        corner_numbers_.resize(indices.size());
+        for (std::size_t i = 0; i < indices.size(); ++i) corner_numbers_[i] = static_cast<uint32_t>(i);
     }
 
-    /// The mesh with its vertices at these places; normals are of any length but 0. Valid until the next call.
+    /// The mesh with its vertices at these places; normals are of any length but 0. Valid until the next call, and as
+    /// long as `positions` are.
     TangentMesh at(std::span<const Vec3> positions, std::span<const Vec3> normals) {
         if (has_normals_) {
-            positions_.assign(positions.begin(), positions.end());
             normals_.resize(normals.size());
             for (std::size_t i = 0; i < normals.size(); ++i) normals_[i] = unit_or_up(normals[i]);
-        } else {
-            positions_ = expanded(positions);
-            normals_.resize(positions_.size());
-            for (std::size_t i = 0; i < normals_.size(); i += 3) {
-                const Vec3 ab = positions_[i + 1] - positions_[i], ac = positions_[i + 2] - positions_[i];
-                normals_[i] = normals_[i + 1] = normals_[i + 2] = unit_or_up(cross(ab, ac));
-            }
+            return {.positions = positions, .normals = normals_, .uv = uv_, .indices = indices_};
         }
-        return {.positions = positions_, .normals = normals_, .uv = uv_, .indices = indices_};
+        corner_positions_ = expanded(positions);
+        normals_.resize(corner_positions_.size());
+        for (std::size_t i = 0; i < normals_.size(); i += 3) {
+            const DoubleVec3 a = to_double(corner_positions_[i]), ab = to_double(corner_positions_[i + 1]) - a,
+                             ac = to_double(corner_positions_[i + 2]) - a, area = cross(ab, ac);
+            const Vec3 normal = unit_or_up(to_float(area / std::sqrt(dot(area, area))));
+            normals_[i] = normals_[i + 1] = normals_[i + 2] = normal;
+        }
+        return {.positions = corner_positions_, .normals = normals_, .uv = corner_uv_, .indices = corner_numbers_};
     }
 
 private:
     template <class T>
     std::vector<T> expanded(std::span<const T> of_vertices) const {
-        std::vector<T> of_corners(corner_vertices_.size());
-        for (std::size_t i = 0; i < of_corners.size(); ++i) of_corners[i] = of_vertices[corner_vertices_[i]];
+        std::vector<T> of_corners(indices_.size());
+        for (std::size_t i = 0; i < of_corners.size(); ++i) of_corners[i] = of_vertices[indices_[i]];
         return of_corners;
     }
     static Vec3 unit_or_up(Vec3 v) {
@@ -56,9 +60,11 @@ private:
     }
 
     bool has_normals_;
-    std::vector<uint32_t> indices_, corner_vertices_;
-    std::vector<Vec2> uv_;
-    std::vector<Vec3> positions_, normals_;
+    std::span<const uint32_t> indices_;
+    std::span<const Vec2> uv_;
+    std::vector<uint32_t> corner_numbers_;
+    std::vector<Vec2> corner_uv_;
+    std::vector<Vec3> corner_positions_, normals_;
 };
 
 template <class T>
@@ -125,7 +131,8 @@ void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
         for (MorphTarget& target : shape->targets) {
             target.tangents.clear();
             if (target.positions.empty() && target.normals.empty()) continue;
-            const TangentMesh moved = vertices.at(sum(positions, target.positions), sum(normals, target.normals));
+            const std::vector<Vec3> moved_positions = sum(positions, target.positions);
+            const TangentMesh moved = vertices.at(moved_positions, sum(normals, target.normals));
             target.tangents = tangent_offsets(at_vertices(corner_tangents(moved, groups), split), mesh.tangents);
         }
     }
