@@ -9,6 +9,7 @@
 #include "base/version.h"
 #include "image/tone_map_image.h"
 #include "session/settings_text.h"
+#include "session/survey/ground.h"
 
 namespace pertev {
 namespace {
@@ -66,6 +67,7 @@ SceneSource source_of(const OpenOptions& options, const Scene& scene) {
             .environment_rotation_deg = options.environment_rotation_deg,
             .lamps = lamps,
             .has_environment = scene.environment.has_value(),
+            .has_ground = has_ground(scene),
             .two_sided_lights = options.two_sided_lights,
             .show_back_faces = options.show_back_faces};
 }
@@ -172,6 +174,7 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     }
     append(metadata, camera_metadata(record.camera));
     append(metadata, environment_metadata(scene));
+    if (scene.has_ground) metadata.emplace_back("pertev.ground", std::string("on"));
     if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && record.display->false_colors) {
