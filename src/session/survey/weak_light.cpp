@@ -21,6 +21,7 @@ double share_lit_from(const Camera& camera, const Scene& scene) {
     settings.width = kWidth, settings.height = kHeight, settings.samples = kSamples;
     settings.filter = PixelFilter::Box;
     settings.transparent = true;
+    settings.tracers = default_tracers(false, TreeBuild::Fast); // the trees of so few rays must be there soon
     Messages unsaid;
     const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), unsaid);
     Session session(queue, prepared, camera, settings);
