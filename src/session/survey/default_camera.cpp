@@ -16,7 +16,7 @@ namespace {
 constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 degrees, of the smaller side
 constexpr float kAside = 28, kAbove = 18;                          // degrees, of a view from outside
 constexpr uint64_t kMostTrianglesSeen = 8'000'000;                 // a second on one core
-constexpr int kLooks = 12;                                         // rays along each side of a view that is tried
+constexpr int kLooks = 8;                                          // rays along each side of a view that is tried
 
 Camera look(Vec3 eye, Vec3 target, float fov_y, const char* name) {
     Camera camera;
@@ -65,12 +65,8 @@ Vec3 way(float aside, float above) {
     return {sin(a) * cos(b), sin(b), cos(a) * cos(b)};
 }
 
-/// Of the rays of a view along `direction`, those that meet anything, and those that meet what the camera sees of it.
-struct Looks {
-    int met = 0, shown = 0;
-};
-
-Looks look_along(const Scene& scene, const Bounds3& box, Vec3 direction) {
+/// Of the rays of a view from `direction` (unit, towards the eye), those that meet something.
+int count_hits(const Scene& scene, const Bounds3& box, Vec3 direction, Backs backs) {
     const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
     const Vec3 size = box.size(), right = column(view, 0), up = column(view, 1);
     const float half_x = 0.5f * dot(abs(right), size), half_y = 0.5f * dot(abs(up), size);
@@ -81,11 +77,7 @@ Looks look_along(const Scene& scene, const Bounds3& box, Vec3 direction) {
         rays.push_back(
             {box.centre() + length(size) * direction + (x * half_x) * right + (y * half_y) * up, -direction});
     }
-    const auto count = [&](Backs backs) {
-        const std::vector<LookHit> hits = cast_rays(scene, rays, backs);
-        return static_cast<int>(std::ranges::count_if(hits, &LookHit::is_hit));
-    };
-    return {count(Backs::All), count(Backs::Shown)};
+    return static_cast<int>(std::ranges::count_if(cast_rays(scene, rays, backs), &LookHit::is_hit));
 }
 
 /// Where to look from: a little to the side of +z, the front of glTF's models, and above; or, where hardly anything but
@@ -99,14 +91,13 @@ Vec3 way_to_look_from(const Scene& scene, const Bounds3& box) {
         hides_any = hides_any || !scene.materials[instance.material].double_sided;
     }
     if (!hides_any || triangles > kMostTrianglesSeen) return front;
-    const Looks from_front = look_along(scene, box, front);
-    if (2 * from_front.shown >= from_front.met) return front;
+    if (2 * count_hits(scene, box, front, Backs::Shown) >= count_hits(scene, box, front, Backs::All)) return front;
     std::vector<Vec3> ways;
     std::vector<int> shown;
     for (const float above : {kAbove, -kAbove}) {
         for (const float aside : {kAside, -kAside, 65.0f, -65.0f, 115.0f, -115.0f, 180 - kAside, kAside - 180}) {
             ways.push_back(way(aside, above));
-            shown.push_back(look_along(scene, box, ways.back()).shown);
+            shown.push_back(count_hits(scene, box, ways.back(), Backs::Shown));
         }
     }
     const int most = std::ranges::max(shown);
@@ -127,7 +118,7 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
 Camera make_default_camera(const Scene& scene, float aspect, Messages& messages) {
     Surroundings around = look_around(scene);
     if (around.bounds.is_empty()) around.bounds = {{-1, -1, -1}, {1, 1, 1}}; // all is hidden at rest
-    const char* what = "a view from outside and above";
+    const char* what = "a view from outside";
     Camera camera;
     switch (around.kind) {
     case SurroundingsKind::Object:
