@@ -15,6 +15,7 @@ namespace {
 
 constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 degrees, of the smaller side
 constexpr float kAside = 28, kAbove = 18;                          // degrees, of a view from outside
+constexpr float kAboveFlat = 38;                                   // degrees, of what lies flat
 constexpr uint64_t kMostTrianglesSeen = 8'000'000;                 // a second on one core
 constexpr int kLooks = 8;                                          // rays along each side of a view that is tried
 
@@ -83,7 +84,10 @@ int count_hits(const Scene& scene, const Bounds3& box, Vec3 direction, Backs bac
 /// Where to look from: a little to the side of +z, the front of glTF's models, and above; or, where hardly anything but
 /// hidden backs would be seen from there, from the first other direction that shows at least half of the most.
 Vec3 way_to_look_from(const Scene& scene, const Bounds3& box) {
-    const Vec3 front = way(kAside, kAbove);
+    const Vec3 size = box.size();
+    const float flat = clamp(1 - 4 * size.y / max(size.x, size.z), 0.0f, 1.0f); // NaN, of a point, becomes a bound
+    const float above = kAbove + (kAboveFlat - kAbove) * flat;
+    const Vec3 front = way(kAside, above);
     uint64_t triangles = 0;
     bool hides_any = false;
     for (const Instance& instance : scene.instances) {
@@ -94,9 +98,9 @@ Vec3 way_to_look_from(const Scene& scene, const Bounds3& box) {
     if (2 * count_hits(scene, box, front, Backs::Shown) >= count_hits(scene, box, front, Backs::All)) return front;
     std::vector<Vec3> ways;
     std::vector<int> shown;
-    for (const float above : {kAbove, -kAbove}) {
+    for (const float up : {above, -above}) {
         for (const float aside : {kAside, -kAside, 65.0f, -65.0f, 115.0f, -115.0f, 180 - kAside, kAside - 180}) {
-            ways.push_back(way(aside, above));
+            ways.push_back(way(aside, up));
             shown.push_back(count_hits(scene, box, ways.back(), Backs::Shown));
         }
     }
