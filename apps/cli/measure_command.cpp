@@ -82,7 +82,7 @@ int measure(const MeasureFlags& flags) {
     settings.samples = flags.samples;
     settings.path.max_depth = flags.max_depth;
     settings.path.seed = flags.seed;
-    Scene scene = load_scene(flags.scene, messages);
+    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = true;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/render_frames.h"
 #include "base/error.h"
 #include "base/message_text.h"
@@ -25,6 +26,21 @@ void refuse_what_is_left_out(const Messages& messages) {
     throw Error(ErrorCode::BadInput,
                 fmt::format("--strict: {}{}; nothing is rendered", left_out.front(),
                             others > 0 ? fmt::format(" (and {} like it)", counted(others, "warning")) : ""));
+}
+
+/// Auto where the view is made up, too, and shows a background: an alpha channel leaves it out, and integrators that
+/// find a part of the light alone show a ground that differs from the studio's floor.
+Ground ground_of(const RenderFlags& flags) {
+    refuse(
+        flags.ground == "on" && flags.transparent,
+        "--ground on: the ground is a part of the background, which --transparent leaves out; leave out one of them");
+    if (flags.ground == "on") return Ground::On;
+    const bool has_camera = !flags.scene.eye.empty() || !flags.scene.camera.empty() || !flags.camera_path.empty();
+    RenderSettings settings;
+    set_integrator(settings, flags.integrator);
+    const bool is_off =
+        flags.ground == "off" || has_camera || flags.transparent || !finds_all_light(settings.integrator);
+    return is_off ? Ground::Off : Ground::Auto;
 }
 
 } // namespace
@@ -57,7 +73,9 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const Stopwatch watch;
     auto ready = std::make_unique<ReadyScene>();
-    Scene scene = load_scene(flags.scene, messages);
+    OpenOptions open = open_options(flags.scene);
+    open.ground = ground_of(flags);
+    Scene scene = open_scene(open, messages);
     if (flags.strict) refuse_what_is_left_out(messages);
     RenderSettings& settings = ready->settings;
     settings = render_settings(flags, scene);

@@ -277,6 +277,14 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("S")
         ->check(number_above_zero(1e8f))
         ->group(group);
+    verb.add_option(
+            "--ground", flags.ground,
+            "a made-up ground that catches the shadow: on, off or auto,\nwhich is on where camera and light are "
+            "made up around a thing")
+        ->type_name("on|off|auto")
+        ->check(one_of({"on", "off", "auto"}))
+        ->capture_default_str()
+        ->group("Environment");
     group = "Quality";
     add_light_path_flags(verb, flags, group);
     verb.add_option("--sampler", flags.sampler, "sobol or independent")

@@ -167,8 +167,10 @@ Scene read_any_scene(const SceneOptions& options, Messages& messages) {
     return read_scene_and_lamps(options.scene, read_options(open_options(options)), messages);
 }
 
-Scene load_scene(const SceneOptions& options, Messages& messages) {
-    return open_scene(open_options(options), messages);
+Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages) {
+    OpenOptions open = open_options(options);
+    open.use = use;
+    return open_scene(open, messages);
 }
 
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene) {

@@ -58,7 +58,7 @@ Scene read_any_scene(const SceneOptions& options, Messages& messages);
 /// Lumens that a watt of the scene counts as: --efficacy, or by the kind of file.
 double efficacy_of(const SceneOptions& options);
 OpenOptions open_options(const SceneOptions& options);
-Scene load_scene(const SceneOptions& options, Messages& messages);
+Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages);
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene);
 CameraChoice camera_choice(const SceneOptions& options);
 Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages);

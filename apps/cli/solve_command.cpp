@@ -53,7 +53,7 @@ int solve(const SolveFlags& flags) {
     set_thread_count(static_cast<int>(flags.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    Scene scene = load_scene(flags.scene, messages);
+    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     RenderSettings shown;
     shown.integrator = IntegratorKind::Radiosity;
     check_light(shown, scene, messages);

@@ -35,6 +35,9 @@ struct Instance {
     Transform
         node_from_local;    // its place within the node: world_from_local is that of the node times it, without a skin
     bool is_hidden = false; // its transform is singular, as by a scale of 0: not there; world_from_local says nothing
+    /// Rays meet it, but ids, layers and alpha show it as background, and bounds_of() leaves it out: a made-up ground.
+    /// One instance at most is, the last.
+    bool is_background = false;
 };
 
 struct Scene {
@@ -73,7 +76,7 @@ inline bool is_mirroring(const Transform& world_from_local) { return determinant
 /// Whether all of `local` lies within kMaxCoordinate once it is placed.
 bool lies_near(const Transform& world_from_local, const Bounds3& local);
 
-/// World-space box of all instances that are not hidden.
+/// World-space box of all instances that are neither hidden nor background.
 Bounds3 bounds_of(const Scene& scene);
 
 } // namespace pertev

@@ -10,7 +10,9 @@
 #include "math/scalar.h"
 #include "session/photometry.h"
 #include "session/survey/default_light.h"
+#include "session/survey/ground.h"
 #include "session/survey/lamp_fronts.h"
+#include "session/survey/surroundings.h"
 
 namespace pertev {
 namespace {
@@ -56,6 +58,20 @@ void show_back_faces(Scene& scene, Messages& messages) {
     bool any_hidden = false;
     for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
     if (!any_hidden) messages.warn("--show-back-faces: no surface of the scene hides its back");
+}
+
+/// `light`: what was made up.
+bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight light) {
+    switch (options.ground) {
+    case Ground::Off:
+        return false;
+    case Ground::On:
+        return true;
+    case Ground::Auto:
+        return light == DefaultLight::Sky && scene.cameras.empty() &&
+               look_around(scene).kind == SurroundingsKind::Object;
+    }
+    return false;
 }
 
 } // namespace
@@ -109,7 +125,11 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     }
     if (options.show_back_faces) show_back_faces(scene, messages);
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
-    add_default_light(scene, messages);
+    const DefaultLight light = add_default_light(scene, options.use, messages);
+    if (wants_ground(options, scene, light)) {
+        add_ground(scene);
+        messages.note("a made-up ground catches the shadow (--ground off: none)");
+    }
     turn_and_scale(options, scene, messages);
     set_lamps(scene, options.lamps, lumens_per_watt(options.scene, options.efficacy));
     return scene;

@@ -9,6 +9,7 @@
 #include "base/version.h"
 #include "image/tone_map_image.h"
 #include "session/settings_text.h"
+#include "session/survey/ground.h"
 
 namespace pertev {
 namespace {
@@ -75,6 +76,7 @@ SceneSource source_of(const OpenOptions& options, const Scene& scene) {
             .unit = options.unit,
             .lamps = lamps,
             .has_environment = scene.environment.has_value(),
+            .has_ground = has_ground(scene),
             .two_sided_lights = options.two_sided_lights,
             .show_back_faces = options.show_back_faces,
             .position_origin = scene.is_far ? std::optional(scene.origin_in_file) : std::nullopt};
@@ -192,6 +194,7 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     append(metadata, environment_metadata(scene));
     if (!scene.up_axis.empty()) metadata.emplace_back("pertev.up_axis", scene.up_axis);
     if (!scene.unit.empty()) metadata.emplace_back("pertev.unit", scene.unit);
+    if (scene.has_ground) metadata.emplace_back("pertev.ground", std::string("on"));
     if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && record.display->false_colors) {

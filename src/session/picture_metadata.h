@@ -27,6 +27,7 @@ struct SceneSource {
     std::string up_axis, unit;    // of the file's coordinates, asked for; empty: not
     std::string lamps;            // set to amounts of light, a line each; empty: none
     bool has_environment = false; // the scene has one: asked for, its own or the default
+    bool has_ground = false;      // a made-up one
     bool two_sided_lights = false, show_back_faces = false;
     std::optional<double> time_s;                  // that it is shown at; none: at rest
     std::optional<Shutter> shutter;                // open at that time; none: it is of one moment
