@@ -202,6 +202,9 @@ int view(const ViewFlags& flags) {
     start.camera.camera = camera;
     start.record = record;
     start.view.picture = ready->settings;
+    if (flags.render.size.empty()) {
+        start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
+    }
     start.view.display = choose_shown_display(flags.render, session, reporter);
     start.view.finds_exposure =
         (flags.render.exposure.empty() || flags.render.exposure == "auto") && !physical_exposure(flags.render);
@@ -229,7 +232,7 @@ int view(const ViewFlags& flags) {
         reporter.say_messages();
     }
     const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
-    reporter.set_work("waiting for somebody to look");
+    reporter.set_work(""); // from now on nothing is said that was said before
     end_soon();
     run_viewer(
         {.host = flags.host, .port = static_cast<uint16_t>(flags.port), .jpeg_queue = jpeg_queue.get()}, start, source,
