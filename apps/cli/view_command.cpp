@@ -129,6 +129,15 @@ void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart&
         start.camera.at = [&ready](double time_s) { return camera_at(*ready.camera, ready.scene(), time_s, 0); };
     }
     start.camera.moves = start.is_animated || turntable > 0;
+    const SceneOptions& scene = flags.render.scene;
+    const bool is_made_up = ready.scene().cameras.empty() && scene.eye.empty() && flags.render.camera_path.empty();
+    if (is_made_up && turntable == 0 && !moving.is_animated()) {
+        start.camera.framed = [&ready, choice = camera_choice(scene)](float aspect) {
+            Messages said_already;
+            const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, said_already);
+            return camera_at(framed, ready.scene(), std::nullopt, 0);
+        };
+    }
 }
 
 /// Where the view turns about what is in the middle of the picture, unless a target was given.

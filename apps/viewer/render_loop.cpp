@@ -96,6 +96,8 @@ void RenderLoop::steer(const Steer& asked) {
     if (message.kind == MessageKind::Shape) {
         if (!take_window_shape(view_, message.width, message.height)) return;
         take_window_shape(shown_, message.width, message.height);
+        camera_.fit(aspect_of(view_.picture.width, view_.picture.height), view_.lens);
+        shown_.lens = view_.lens;
         is_done_ = false;
         budget_s_ = kFirstBudget;
         return;
