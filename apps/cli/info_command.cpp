@@ -14,12 +14,14 @@
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "formats/file_choices.h"
 #include "formats/read_scene.h"
 #include "image/image_format.h"
 #include "image/picture_hash.h"
 #include "image/read_exr.h"
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
+#include "session/metadata_json.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {
@@ -27,7 +29,7 @@ namespace {
 
 struct InfoFlags {
     std::string file;
-    std::vector<std::filesystem::path> allowed_paths;
+    SceneOptions scene; // of a file that is one
     ReportFlags report;
 };
 
@@ -54,6 +56,10 @@ public:
         std::string json;
         for (const std::string& text : texts) json += (json.empty() ? "" : ",") + json_string(text);
         facts_.push_back({name, fmt::format("{}", fmt::join(texts, " ")), fmt::format("[{}]", json)});
+    }
+    void add(const ExrMetadata::value_type& entry) {
+        const auto text = [](const auto& value) { return fmt::format("{}", value); };
+        facts_.push_back({entry.first, std::visit(text, entry.second), metadata_json(entry)});
     }
     void report(Reporter& reporter) const {
         std::string json = R"({"event":"info")", lines;
@@ -89,13 +95,26 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     std::vector<std::string> channels;
     for (const ExrChannel& channel : exr.channels) channels.push_back(channel.name);
     facts.add("channels", channels);
-    for (const auto& entry : exr.metadata) {
-        std::visit([&](const auto& value) { facts.add(entry.first, value); }, entry.second);
+    for (const auto& entry : exr.metadata) facts.add(entry);
+}
+
+/// Which animations and scenes the file has, and which of them a render plays and shows unless flags say otherwise.
+void describe_choices(const Scene& scene, Facts& facts) {
+    std::vector<std::string> animations = list_clips(scene.clips); // what --animation takes
+    for (std::size_t i = 0; i < animations.size(); ++i) {
+        animations[i] += fmt::format(" ({:.6g} s)", scene.clips[i].end_s);
     }
+    facts.add("animations", animations);
+    if (animations.size() > 1) facts.add("plays", clip_choice(scene.clips));
+    if (scene.file_scenes.size() < 2) return;
+    facts.add("file_scenes", list_file_scenes(scene)); // what --file-scene takes
+    facts.add("shows", file_scene_choice(scene));
 }
 
 void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    const Scene scene = read_any_scene(flags.file, flags.allowed_paths, messages);
+    SceneOptions options = flags.scene;
+    options.scene = flags.file;
+    const Scene scene = read_any_scene(options, messages);
     uint64_t unique = 0, placed = 0;
     for (const Mesh& mesh : scene.meshes) unique += mesh.triangle_count();
     for (const Instance& instance : scene.instances) placed += scene.meshes[instance.mesh].triangle_count();
@@ -117,12 +136,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
         cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);
     }
     facts.add("cameras", cameras);
-    std::vector<std::string> animations;
-    for (const Animation& animation : scene.animations) {
-        const std::string name = animation.name.empty() ? fmt::format("{}", animations.size()) : animation.name;
-        animations.push_back(fmt::format("{} ({:.6g} s)", name, animation.end_s()));
-    }
-    facts.add("animations", animations);
+    describe_choices(scene, facts);
 }
 
 void describe_solution(const InfoFlags& flags, Facts& facts) {
@@ -143,6 +157,8 @@ int info(const InfoFlags& flags) {
     Messages& messages = reporter.messages();
     Facts facts;
     facts.add("file", flags.file);
+    refuse(!flags.scene.file_scene.empty() && (is_picture_name(flags.file) || !is_scene_name(flags.file)),
+           fmt::format("--file-scene: of a scene; {} is none", flags.file));
     if (is_picture_name(flags.file)) {
         describe_image(flags, facts, messages);
     } else if (is_scene_name(flags.file)) {
@@ -164,11 +180,13 @@ void add_info_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("info", "Say what a scene, a picture or a radiosity solution holds");
     const auto flags = std::make_shared<InfoFlags>();
     verb.add_option("FILE", flags->file,
-                    "a scene (.gltf .glb .obj .ply or a built-in one), a picture, or what solve has made")
+                    "a scene (.gltf .glb .obj .ply, or a built-in one:\n" + builtin_scene_list() +
+                        "),\na picture, or what solve has made")
         ->type_name("")
         ->check(file_name())
         ->required();
-    add_allow_path(verb, flags->allowed_paths);
+    add_file_scene(verb, flags->scene);
+    add_allow_path(verb, flags->scene.allowed_paths);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = info(*flags); });
 }

@@ -2,6 +2,7 @@
 
 #include "base/read_file.h"
 #include "formats/gltf/animations.h"
+#include "formats/gltf/choices.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/node_shapes.h"
@@ -21,7 +22,8 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     Scene scene;
     const gltf::Document document(path, std::move(bytes), messages);
     gltf::Buffers buffers(document, access);
-    gltf::NodeGraph nodes(document, messages);
+    gltf::choose(document, buffers, options, scene);
+    gltf::NodeGraph nodes(document, scene.file_scene);
 
     TextureLoader loader(access, messages);
     gltf::Textures textures(document, buffers, loader, messages);

@@ -43,9 +43,12 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Node> nodes; // a glTF file's, by their numbers there; also those that hold nothing
     std::vector<Skin> skins;
-    std::vector<MeshShape> shapes; // of those meshes that morph targets or a skin can move
-    std::vector<Animation> animations;
-    std::string no_instances; // where there are none: what the file has instead, and what would be right
+    std::vector<MeshShape> shapes;        // of those meshes that morph targets or a skin can move
+    std::vector<Animation> animations;    // those that play
+    std::vector<Clip> clips;              // all animations of the file, in its order
+    std::vector<std::string> file_scenes; // the names of all scenes of the file, in its order
+    uint32_t file_scene = 0;              // index into file_scenes: the one that this is
+    std::string no_instances;             // where there are none: what the file has instead, and what would be right
 };
 
 /// World from local of what has this place within a node. Exact where it has none of its own.

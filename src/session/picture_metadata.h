@@ -27,8 +27,9 @@ struct SceneSource {
     std::string lamps;            // set to amounts of light, a line each; empty: none
     bool has_environment = false; // the scene has one: asked for, its own or the default
     bool two_sided_lights = false, show_back_faces = false;
-    std::optional<double> time_s;                  // that it is shown at; none: at rest
-    std::optional<Shutter> shutter;                // open at that time; none: it is of one moment
+    std::string animation, file_scene; // choices among the file's (formats/file_choices.h); empty: no others
+    std::optional<double> time_s;      // that it is shown at; none: at rest
+    std::optional<Shutter> shutter;    // open at that time; none: it is of one moment
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty: none are said
     double load_seconds = 0, build_seconds = 0;    // of reading; of the trees
 };

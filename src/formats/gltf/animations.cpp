@@ -221,9 +221,11 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
 
 } // namespace
 
-std::set<uint32_t> nodes_with_animated_weights(const Document& document) {
+std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips) {
     std::set<uint32_t> nodes;
+    auto clip = clips.begin();
     for (const JsonValue& animation : document.root().elements_of("animations")) {
+        if (!(clip++)->plays) continue;
         for (const JsonValue& channel : animation.elements_of("channels")) {
             const JsonValue target = channel.at("target");
             if (const auto extension = target.extension("KHR_animation_pointer")) {
@@ -237,8 +239,11 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document) {
     return nodes;
 }
 
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages) {
+void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& said) {
+    auto clip = scene.clips.begin();
     for (const JsonValue& source : document.root().elements_of("animations")) {
+        Messages unsaid; // of a clip that does not play
+        Messages& messages = clip->plays ? said : unsaid;
         Animation animation;
         animation.name = source.string_or("name", "");
         animation.origin = source.pointer();
@@ -270,7 +275,8 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, M
                 animation.channels.push_back(channel);
             }
         }
-        scene.animations.push_back(std::move(animation));
+        clip->end_s = animation.end_s();
+        if ((clip++)->plays) scene.animations.push_back(std::move(animation));
     }
 }
 

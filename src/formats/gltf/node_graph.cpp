@@ -25,10 +25,10 @@ std::variant<NodePose, Transform> pose_of(const JsonValue& node) {
 
 } // namespace
 
-NodeGraph::NodeGraph(const Document& document, Messages& messages) {
+NodeGraph::NodeGraph(const Document& document, uint32_t shown) {
     read_children(document);
     place_nodes(document);
-    for_each_below(scene_roots(document, messages), [&](uint32_t node) { scene_nodes_.push_back(node); });
+    for_each_below(scene_roots(document, shown), [&](uint32_t node) { scene_nodes_.push_back(node); });
 }
 
 void NodeGraph::read_children(const Document& document) {
@@ -64,7 +64,7 @@ void NodeGraph::place_nodes(const Document& document) {
     world_from_node_ = world_from_nodes(nodes_, order);
 }
 
-std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages& messages) const {
+std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t shown) const {
     const std::vector<JsonValue>& scenes = document.table("scenes");
     std::vector<uint32_t> roots;
     if (scenes.empty()) { // a library of parts: show all of it
@@ -73,14 +73,8 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages&
         }
         return roots;
     }
-    const std::optional<JsonValue> chosen = document.root().find("scene");
-    const uint32_t scene = chosen ? document.index_into("scenes", *chosen) : 0;
-    if (scenes.size() > 1) {
-        messages.note(
-            fmt::format("{}: the file has {} scenes; number {} is shown", document.file(), scenes.size(), scene));
-    }
     std::vector<bool> is_listed(nodes_.size());
-    for (const JsonValue& reference : scenes[scene].elements_of("nodes")) {
+    for (const JsonValue& reference : scenes[shown].elements_of("nodes")) {
         const uint32_t node = document.index_into("nodes", reference);
         if (nodes_[node].parent != kNoNode || is_listed[node]) {
             throw reference.error(fmt::format("node {} {}; expected each root once", node,

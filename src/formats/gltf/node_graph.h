@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/messages.h"
 #include "formats/gltf/document.h"
 #include "math/transform.h"
 #include "scene/node.h"
@@ -17,8 +16,9 @@ namespace pertev::gltf {
 
 class NodeGraph {
 public:
-    /// Throws Error(BadInput) for a cycle, a node with two parents, or a scene that lists a child as its root.
-    NodeGraph(const Document& document, Messages& messages);
+    /// `shown`: number of the document's scene that is shown; without scenes all nodes are. Throws Error(BadInput) for
+    /// a cycle, a node with two parents, or a scene that lists a child as its root.
+    NodeGraph(const Document& document, uint32_t shown);
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
@@ -31,7 +31,7 @@ public:
 private:
     void read_children(const Document& document);
     void place_nodes(const Document& document);
-    std::vector<uint32_t> scene_roots(const Document& document, Messages& messages) const;
+    std::vector<uint32_t> scene_roots(const Document& document, uint32_t shown) const;
     template <class Visit>
     void for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const;
 
