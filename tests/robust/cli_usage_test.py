@@ -164,6 +164,27 @@ class Strictness(CliTest):
         self.refuse(2, "render", "m.gltf", "-o", "y.png", "--strict", *SMALL, says=["gone.png"])
 
 
+class Pipes(CliTest):
+    def test_a_pipe_that_was_closed_is_no_error(self):
+        self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL)
+        for arguments in [["--help"], ["--version"], ["render", "--help"], ["info", "cornell-box"], ["info", "a.exr", "--json"],
+                          ["compare", "a.exr", "a.exr"], ["measure", "cornell-box", "--at", "0.3,0,0.3", "--normal", "0,1,0", "--spp", "1"]]:
+            with self.subTest(arguments=arguments):
+                reading, writing = os.pipe()
+                os.close(reading)
+                outcome = self.run_pertev(*arguments, stdout=writing)
+                os.close(writing)
+                self.assertEqual(outcome.status, 0, outcome)
+                self.assertNotIn("standard output", outcome.stderr)
+        reading, writing = os.pipe()
+        os.close(reading)
+        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # what went wrong is told, and counts
+        os.close(writing)
+        self.assertEqual(outcome.status, 2, outcome)
+        self.assertIn("nowhere.obj", outcome.stderr)
+        self.assertNotIn("standard output", outcome.stderr)
+
+
 class SignsOfLife(CliTest):
     def start(self, *flags, size="32x32", **options):
         program = subprocess.Popen([PROGRAM, "render", "cornell-box", "-o", "x.png", "--device", "cpu", "--threads", "1",
