@@ -37,12 +37,6 @@ struct InfoFlags {
 class Facts {
 public:
     void add(const std::string& name, const std::string& text) { facts_.push_back({name, text, json_string(text)}); }
-    void add(const std::string& name, double number) {
-        facts_.push_back({name, fmt::format("{}", number), json_number(number)});
-    }
-    void add(const std::string& name, float number) {
-        facts_.push_back({name, fmt::format("{}", number), json_number(static_cast<double>(number))});
-    }
     template <std::integral Whole>
     void add(const std::string& name, Whole number) {
         facts_.push_back({name, fmt::format("{}", number), fmt::format("{}", number)});

@@ -83,6 +83,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
 
 /// What is said of a whole sequence.
 struct Tally {
+    bool has_begun = false;                    // a frame was rendered, written or not
     uint32_t written = 0, kept = 0, again = 0; // again: of those that were kept, rendered for the history of others
     uint64_t invalid_samples = 0;
     double update_s = 0;
@@ -221,6 +222,7 @@ void make_frames(const SequenceRun& run, SequenceRecord& done, Tally& tally) {
         const double update_s = update.seconds();
         RenderResult result = in_real_time ? frame_of(run, frame, is_there) : picture_of(run, frame);
         if (result.samples < run.record.settings.samples) return; // interrupted: not whole, and not written
+        tally.has_begun = true;
         const std::string hash = picture_hash(result.picture).hex();
         if (in_real_time) done.check_picture(frame, hash);
         if (is_there) {
@@ -291,6 +293,7 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
     } catch (...) {
         failure = std::current_exception();
     }
+    if (failure && !tally.has_begun && tally.kept == 0) std::rethrow_exception(failure); // there is nothing to count
     reporter.end_progress();
     reporter.say_messages();
     const bool is_whole = tally.written + tally.kept == sequence.count(), cut_short = !failure && !is_whole;

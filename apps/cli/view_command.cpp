@@ -11,7 +11,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
@@ -23,7 +22,6 @@
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
 #include "base/limits.h"
-#include "formats/file_choices.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
 #include "session/check_integrator.h"
@@ -107,20 +105,12 @@ CameraSource turned_camera(const ReadyScene& ready, double time_s) {
     return source;
 }
 
-/// Which animation plays, of which; empty where the file has no other.
-std::string clips_text(const Scene& scene) {
-    const std::string playing = clip_choice(scene.clips);
-    if (playing.empty()) return {};
-    return fmt::format("{} of {} (--animation)", playing, fmt::join(list_clips(scene.clips), ", "));
-}
-
 /// What time does to the camera, and when all of it is over.
 void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart& start) {
     const MovingScene& moving = *ready.moving;
     const uint32_t turntable = flags.render.turntable;
     const bool is_still = moving.is_animated() && ready.settings.radiosity.solution != nullptr;
     start.is_animated = moving.is_animated() && !is_still;
-    start.clips = clips_text(ready.scene());
     start.clock = {.end_s = is_still ? 0 : moving.end_s(), .time_s = moving.time_s(), .plays = !moving.time_s()};
     if (is_still) {
         start.still_s = moving.time_s();

@@ -73,7 +73,6 @@ constexpr NumberRow kRows[] = {
     {"Now", "exposed by",
      [](const ViewState&, const ViewNumbers& n) { return fmt::format("{:+.2f} stops", n.frame->exposure_stops); }},
     {"Now", "scene", [](const ViewState&, const ViewNumbers& n) { return n.why_still; }},
-    {"Now", "animation", [](const ViewState&, const ViewNumbers& n) { return n.clips; }},
     {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",
      [](const ViewState&, const ViewNumbers& n) {

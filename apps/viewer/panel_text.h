@@ -25,7 +25,7 @@ struct ViewNumbers {
     uint32_t input = 0, steerer = 0;  // the last input that all this knows of, and the client that it came from
     SceneClock clock;                 // end_s is 0 where time changes nothing
     const CameraPath* path = nullptr; // that is recorded; null: none
-    std::string why_still, clips;     // ViewerStart's
+    std::string why_still;            // ViewerStart's
 };
 
 std::string state_text(const ViewState& view, const ViewNumbers& numbers);

@@ -327,7 +327,6 @@ void RenderLoop::tell_state() {
     numbers.phase = is_done_ ? "done" : (is_moving() ? "moving" : "gathering");
     numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : start_.still_s);
     numbers.why_still = start_.why_still;
-    numbers.clips = start_.clips;
     numbers.input = input_;
     numbers.steerer = steerer_;
     numbers.clock = clock_;

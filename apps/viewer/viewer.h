@@ -27,7 +27,6 @@ struct ViewerStart {
     const Scene* scene = nullptr;  // outlives the viewer; at the time that the frame source was put to
     bool is_animated = false;      // whether time moves it
     std::string why_still;         // for people: why time does not move a scene with animations; empty: nothing to say
-    std::string clips;             // for people: which animation of the file plays, of which; empty: there is no choice
     std::optional<double> still_s; // the time that it is then at, seconds; none: at rest
     ViewState view;
     StartCamera camera;

@@ -209,37 +209,40 @@ class MovingPictures(CliTest):
         for k in range(40):
             self.assertEqual(self.read(f"f-{k:02}.png"), self.read(f"anew/f-{k:02}.png"), k)
 
+    def run_on_a_full_disk(self, limit, *arguments):
+        """The last object and that of the sequence where no file grows past `limit` bytes."""
+        outcome = self.run_pertev("render", "m.gltf", *arguments, "--json",
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual((outcome.status, outcome.events()[-1]["event"]), (6, "error"), outcome)
+        return outcome, outcome.events("sequence")[0]
+
     def test_a_disk_that_fills_up_counts_the_frames_that_are_whole(self):
-        def limit():  # no file grows past it, as on a disk that is full: the frames' pictures do, their record does not
-            resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, LIMIT))
-
-        def run(*arguments):
-            outcome = self.run_pertev("render", "m.gltf", *arguments, "--json", preexec_fn=limit)
-            self.assertEqual(outcome.status, 6, outcome)
-            self.assertEqual(outcome.events()[-1]["event"], "error")
-            return outcome, outcome.events("sequence")[0]
-
-        LIMIT = 6000
-        # The triangle leaves the view: it is the first frames that do not fit.
-        outcome, end = run("-o", "g-#.exr", "--size", "48x48", "--spp", "1", "--device", "cpu", "--frames", "0-2", "--fps", "1")
+        sequence = ["--frames", "0-2", "--fps", "1"]
+        outcome, end = self.run_on_a_full_disk(1024, "-o", "g-#.exr", "--size", "24x16", "--spp", "2", "--device", "cpu", *sequence)
         self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (3, 0, 0, False))
         self.assertEqual([event["written"] for event in outcome.events("output")], [False])
         self.assertEqual((outcome.events("frame"), self.files()), ([], ["m.gltf"]))
         # Of two files of a frame one fits: the frame is not whole.
-        outcome, end = run("-o", "g-#.jpg", "-o", "g-#.exr", "--size", "48x48", "--spp", "1", "--device", "cpu", "--frames", "0-2",
-                           "--fps", "1")
-        self.assertEqual((end["written"], self.files()), (0, ["g-0.jpg", "m.gltf"]))
-        # The record outgrows the limit after some frames, which are there and are counted.
-        LIMIT = 4096
-        outcome, end = run("-o", "f-##.png", *TINY, "--frames", "0-39", "--fps", "20")
-        there = [name for name in self.files() if name.startswith("f-") and name.endswith(".png")]
+        outcome, end = self.run_on_a_full_disk(1024, "-o", "g-#.png", "-o", "g-#.exr", *TINY, *sequence)
+        self.assertEqual([event["written"] for event in outcome.events("output")], [True, False])
+        self.assertEqual((end["written"], self.files()), (0, ["g-0.png", "m.gltf"]))
+
+    def test_frames_count_whose_record_finds_no_room(self):
+        names = ["-o", "f-##.png", *TINY]
+        self.frames("--frames", "0-0", "--fps", "20", output="f-##.png")
+        limit = os.path.getsize(self.path("f-##.json")) + 500  # some frames' hashes
+        outcome, end = self.run_on_a_full_disk(limit, *names, "--frames", "0-39", "--fps", "20")
+        there = [name for name in self.files() if name.endswith(".png")]
         self.assertEqual((end["frames"], end["written"], end["kept"]), (40, len(there), 0))
-        self.assertGreater(len(there), 1)
-        self.assertLess(len(there), 40)
+        self.assertEqual(len(outcome.events("frame")), len(there))
+        self.assertGreater(len(there), 2)
+        self.assertLess(len(there), 20)
         self.assertIn("f-##.json", outcome.error())
-        said = self.run_pertev("render", "m.gltf", "-o", "f-##.png", *TINY, "--frames", "0-39", "--fps", "20", "--continue",
-                               preexec_fn=limit)
         kept = len(there) - 1  # the last one is not in the record
+        outcome, end = self.run_on_a_full_disk(limit, *names, "--frames", "0-39", "--fps", "20", "--continue")
+        self.assertEqual((end["written"], end["kept"]), (1, kept))
+        said = self.run_pertev("render", "m.gltf", *names, "--frames", "0-39", "--fps", "20", "--continue",
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         self.assertIn(f"1 of 40 frames written, {kept} kept in", said.stderr)
 
     def test_a_path_leads_the_camera_through_its_keys(self):
