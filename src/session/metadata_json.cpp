@@ -12,8 +12,8 @@ namespace {
 
 /// Entries whose text is numbers between commas. Other texts may look so by chance, as the name of a camera.
 constexpr std::string_view kVectors[] = {
-    "pertev.eye",     "pertev.target",  "pertev.up",         "pertev.world_from_camera",
-    "pertev.ambient", "pertev.shutter", "pertev.environment"};
+    "pertev.eye",     "pertev.target",  "pertev.up",          "pertev.world_from_camera",
+    "pertev.ambient", "pertev.shutter", "pertev.environment", "pertev.position_origin"};
 
 } // namespace
 
