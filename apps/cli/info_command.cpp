@@ -20,14 +20,14 @@
 #include "image/read_exr.h"
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
+#include "scene/scene_origin.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {
 namespace {
 
 struct InfoFlags {
-    std::string file;
-    std::vector<std::filesystem::path> allowed_paths;
+    SceneOptions scene; // or another kind of file
     ReportFlags report;
 };
 
@@ -40,6 +40,10 @@ public:
     }
     void add(const std::string& name, float number) {
         facts_.push_back({name, fmt::format("{}", number), json_number(static_cast<double>(number))});
+    }
+    void add(const std::string& name, DoubleVec3 v) {
+        facts_.push_back({name, fmt::format("{:.12g} {:.12g} {:.12g}", v.x, v.y, v.z),
+                          fmt::format("[{},{},{}]", json_number(v.x), json_number(v.y), json_number(v.z))});
     }
     template <std::integral Whole>
     void add(const std::string& name, Whole number) {
@@ -61,7 +65,7 @@ public:
             json += fmt::format(",{}:{}", json_string(fact.name), fact.json);
             lines += fmt::format("{:24} {}\n", fact.name, fact.text);
         }
-        reporter.event(json + '}');
+        reporter.result(json + '}');
         reporter.answer(lines);
     }
 
@@ -73,7 +77,7 @@ private:
 };
 
 void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    const Image image = read_image(flags.file, &messages);
+    const Image image = read_image(flags.scene.scene, &messages);
     facts.add("width", image.width);
     facts.add("height", image.height);
     facts.add("hash", picture_hash(image).hex());
@@ -84,8 +88,8 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     const double pixels = static_cast<double>(image.width) * image.height;
     facts.add("mean", Vec3{static_cast<float>(mean[0] / pixels), static_cast<float>(mean[1] / pixels),
                            static_cast<float>(mean[2] / pixels)});
-    if (lower_case_extension(flags.file) != ".exr") return;
-    const ExrFile exr = read_exr(flags.file);
+    if (lower_case_extension(flags.scene.scene) != ".exr") return;
+    const ExrFile exr = read_exr(flags.scene.scene);
     std::vector<std::string> channels;
     for (const ExrChannel& channel : exr.channels) channels.push_back(channel.name);
     facts.add("channels", channels);
@@ -95,7 +99,7 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
 }
 
 void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    const Scene scene = read_any_scene(flags.file, flags.allowed_paths, messages);
+    const Scene scene = read_any_scene(flags.scene, messages);
     uint64_t unique = 0, placed = 0;
     for (const Mesh& mesh : scene.meshes) unique += mesh.triangle_count();
     for (const Instance& instance : scene.instances) placed += scene.meshes[instance.mesh].triangle_count();
@@ -110,8 +114,13 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
     facts.add("emissive_triangles", emissive);
     facts.add("environment", scene.environment ? "yes" : "no");
     const Bounds3 bounds = bounds_of(scene);
-    facts.add("bounds_low", bounds.lo);
-    facts.add("bounds_high", bounds.hi);
+    if (scene.origin_in_file == DoubleVec3{0, 0, 0}) {
+        facts.add("bounds_low", bounds.lo);
+        facts.add("bounds_high", bounds.hi);
+    } else {
+        facts.add("bounds_low", in_file(scene, bounds.lo));
+        facts.add("bounds_high", in_file(scene, bounds.hi));
+    }
     std::vector<std::string> cameras;
     for (const Camera& camera : scene.cameras) { // what --camera takes
         cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);
@@ -126,7 +135,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
 }
 
 void describe_solution(const InfoFlags& flags, Facts& facts) {
-    const RadiositySolution solution = read_any_solution(flags.file);
+    const RadiositySolution solution = read_any_solution(flags.scene.scene);
     facts.add("solution", "radiosity");
     facts.add("triangles", solution.roots.size() / 2); // a face for each side
     facts.add("shown", solution.patches.size());       // patches and parts of them, as solve says
@@ -142,16 +151,17 @@ int info(const InfoFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     Facts facts;
-    facts.add("file", flags.file);
-    if (is_picture_name(flags.file)) {
+    facts.add("file", flags.scene.scene);
+    if (is_picture_name(flags.scene.scene)) {
         describe_image(flags, facts, messages);
-    } else if (is_scene_name(flags.file)) {
+    } else if (is_scene_name(flags.scene.scene)) {
         describe_scene(flags, facts, messages);
-    } else if (is_solution(flags.file)) {
+    } else if (is_solution(flags.scene.scene)) {
         describe_solution(flags, facts);
     } else {
-        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a picture ({}) nor {}, nor a radiosity solution",
-                                                     flags.file, fmt::join(kPictureExtensions, " "), scene_kinds()));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: neither a picture ({}) nor {}, nor a radiosity solution", flags.scene.scene,
+                                fmt::join(kPictureExtensions, " "), scene_kinds()));
     }
     reporter.say_messages();
     facts.report(reporter);
@@ -163,12 +173,12 @@ int info(const InfoFlags& flags) {
 void add_info_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("info", "Say what a scene, a picture or a radiosity solution holds");
     const auto flags = std::make_shared<InfoFlags>();
-    verb.add_option("FILE", flags->file,
+    verb.add_option("FILE", flags->scene.scene,
                     "a scene (.gltf .glb .obj .ply or a built-in one), a picture, or what solve has made")
         ->type_name("")
         ->check(file_name())
         ->required();
-    add_allow_path(verb, flags->allowed_paths);
+    add_read_options(verb, flags->scene);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = info(*flags); });
 }

@@ -26,7 +26,7 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
         throw Error(ErrorCode::BadInput, fmt::format("{}: neither a file nor a scene of this name; there are {}", name,
                                                      fmt::join(known, ", ")));
     }
-    return read_any_scene(name, options.allowed_paths, messages);
+    return read_any_scene(options, messages);
 }
 
 std::string lab_scene_title(const std::string& scene) {

@@ -54,7 +54,7 @@ std::string in_words(const Measured& m, double scale = 1) {
 void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, double seconds, Reporter& reporter) {
     const double efficacy = efficacy_of(flags.scene);
     if (reporter.json()) {
-        reporter.event(fmt::format(
+        reporter.result(fmt::format(
             R"({{"event":"measure","scene":{},"at":{},"normal":{},"device":{},"irradiance_rgb":[{},{},{}],"irradiance":{},"illuminance":{},"lumens_per_watt":{},"paths":{},"invalid_paths":{},"rays":{},"max_depth":{},"seed":{},"seconds":{:.3f}}})",
             json_string(flags.scene.scene), json_string(flags.at), json_string(flags.normal),
             json_string(queue.device_name()), in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]),
@@ -82,7 +82,7 @@ int measure(const MeasureFlags& flags) {
     settings.samples = flags.samples;
     settings.path.max_depth = flags.max_depth;
     settings.path.seed = flags.seed;
-    Scene scene = load_scene(flags.scene, messages);
+    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = true;
@@ -130,7 +130,7 @@ void add_measure_command(CLI::App& app, int& status) {
     verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
         ->type_name("SECONDS")
         ->check(number_between(-1e9f, 1e9f));
-    add_allow_path(verb, flags->scene.allowed_paths);
+    add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     add_machine_flags(verb, flags->machine, "Machine");
     verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");

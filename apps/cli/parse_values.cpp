@@ -14,17 +14,30 @@ namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-std::optional<Vec3> three_numbers(std::string_view text) {
-    float values[3];
+/// Each is one that a float can hold.
+std::optional<DoubleVec3> three_doubles(std::string_view text) {
+    double values[3];
     for (int i = 0; i < 3; ++i) {
         const std::size_t comma = text.find(',');
         if ((comma == std::string_view::npos) != (i == 2)) return std::nullopt;
-        const auto value = number_in(text.substr(0, comma));
-        if (!value) return std::nullopt;
+        const auto value = parse_whole_float<double>(text.substr(0, comma));
+        if (!value || !is_finite(static_cast<float>(*value))) return std::nullopt;
         values[i] = *value;
         if (i < 2) text.remove_prefix(comma + 1);
     }
-    return Vec3{values[0], values[1], values[2]};
+    return DoubleVec3{values[0], values[1], values[2]};
+}
+
+std::optional<Vec3> three_numbers(std::string_view text) {
+    const std::optional<DoubleVec3> values = three_doubles(text);
+    return values ? std::optional(to_float(*values)) : std::nullopt;
+}
+
+DoubleVec3 parse_doubles(const std::string& flag, const std::string& text) {
+    if (const auto value = three_doubles(text)) return *value;
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("{} {}: expected three numbers X,Y,Z of size {} at most, such as 1,0.5,-2", flag, text, kMaxFloat));
 }
 
 } // namespace
@@ -54,16 +67,11 @@ float parse_number(const std::string& flag, const std::string& text) {
     throw Error(ErrorCode::BadInput, fmt::format("{} {}: expected a number of size {} at most", flag, text, kMaxFloat));
 }
 
-Vec3 parse_vec3(const std::string& flag, const std::string& text) {
-    if (const auto value = three_numbers(text)) return *value;
-    throw Error(
-        ErrorCode::BadInput,
-        fmt::format("{} {}: expected three numbers X,Y,Z of size {} at most, such as 1,0.5,-2", flag, text, kMaxFloat));
-}
+Vec3 parse_vec3(const std::string& flag, const std::string& text) { return to_float(parse_doubles(flag, text)); }
 
-Vec3 parse_position(const std::string& flag, const std::string& text) {
-    const Vec3 position = parse_vec3(flag, text);
-    if (max_component(abs(position)) <= kMaxCoordinate) return position;
+DoubleVec3 parse_position(const std::string& flag, const std::string& text) {
+    const DoubleVec3 position = parse_doubles(flag, text);
+    if (max_component(abs(to_float(position))) <= kMaxCoordinate) return position;
     throw Error(ErrorCode::OverLimit,
                 fmt::format("{} {}: farther than the limit of {:.4g} m from the origin", flag, text, kMaxCoordinate));
 }

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "math/double_vec3.h"
 #include "math/rgb.h"
-#include "math/vec3.h"
 
 namespace pertev {
 
@@ -24,7 +24,7 @@ float parse_number(const std::string& flag, const std::string& text);
 /// "1,-2.5,3e1": finite.
 Vec3 parse_vec3(const std::string& flag, const std::string& text);
 /// A place in the scene: as parse_vec3, each at most kMaxCoordinate away from 0.
-Vec3 parse_position(const std::string& flag, const std::string& text);
+DoubleVec3 parse_position(const std::string& flag, const std::string& text);
 /// The three numbers of "r,g,b", or false when `text` does not look like numbers.
 bool parse_rgb(const std::string& text, Rgb& color);
 /// "0.5", or "r,g,b": a radiance, finite and at least 0.

@@ -277,6 +277,14 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("S")
         ->check(number_above_zero(1e8f))
         ->group(group);
+    verb.add_option(
+            "--ground", flags.ground,
+            "a made-up ground that catches the shadow: on, off or auto,\nwhich is on where camera and light are "
+            "made up around a thing")
+        ->type_name("on|off|auto")
+        ->check(one_of({"on", "off", "auto"}))
+        ->capture_default_str()
+        ->group("Environment");
     group = "Quality";
     add_light_path_flags(verb, flags, group);
     verb.add_option("--sampler", flags.sampler, "sobol or independent")
@@ -345,10 +353,10 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     add_time_flags(verb, flags, false);
     add_motion_flags(verb, flags);
     add_real_time_flags(verb, flags);
-    verb.add_flag("--strict", flags.strict,
-                  "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
-                  "where a sample is "
-                  "not finite");
+    verb.add_flag(
+        "--strict", flags.strict,
+        "fail where anything of the scene is left out, before\nrendering, and, after writing, where a sample is "
+        "not finite");
     add_report_flags(verb, flags.report);
 }
 

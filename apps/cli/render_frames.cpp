@@ -39,9 +39,9 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
     for (const auto& [name, value] : settings_metadata(record)) {
         // They stand there only where they are; a run without them must be told apart from one with them.
         constexpr std::string_view kSometimes[] = {
-            "pertev.denoise",     "pertev.ambient",        "pertev.shading",     "pertev.wireframe", "pertev.lpe",
-            "pertev.lamp",        "pertev.quantity",       "pertev.false_color", "pertev.shutter",   "pertev.frame",
-            "pertev.first_frame", "pertev.reconstruction", "pertev.displacement"};
+            "pertev.denoise", "pertev.ambient", "pertev.shading",     "pertev.wireframe",      "pertev.lpe",
+            "pertev.up_axis", "pertev.unit",    "pertev.lamp",        "pertev.quantity",       "pertev.false_color",
+            "pertev.shutter", "pertev.frame",   "pertev.first_frame", "pertev.reconstruction", "pertev.displacement"};
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
@@ -63,6 +63,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
                                      {"--aov", layers},
+                                     {"--up-axis", flags.scene.up_axis},
+                                     {"--unit", flags.scene.unit},
                                      {"--lamp", lamps},
                                      {"--displacement", displacements},
                                      {"--efficacy", fmt::format("{}", flags.scene.efficacy)},
@@ -125,6 +127,7 @@ void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& cam
         const double time_s = sequence.shutter->time_at(sequence.time_of(frame).value(), share);
         Scene cameras; // nothing else of a scene moves a camera
         cameras.cameras = moving.cameras_at(time_s);
+        cameras.origin_in_file = moving.scene().origin_in_file;
         const CameraSource at = camera_at(camera.camera, cameras, time_s, sequence.turn_at(frame, share));
         return std::vector{std::optional(at.camera.world_from_camera)};
     });
@@ -192,7 +195,7 @@ void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, 
 
 CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
     const CameraChoice choice = camera.choice_at(time_s);
-    CameraSource source = source_of(choice, camera.at(scene, time_s));
+    CameraSource source = source_of(choice, camera.at(scene, time_s), scene.origin_in_file);
     if (turn == 0) return source;
     source.camera = camera.turned(source.camera, turn);
     source.target.reset(); // its words say where the camera began
@@ -277,7 +280,7 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
                              1e3 * tally.update_s / std::max(tally.rendered, 1u),
                              counted(tally.invalid_samples, "invalid sample"),
                              cut_short ? "; interrupted: the same command with --continue goes on" : ""));
-    reporter.event(fmt::format(
+    reporter.result(fmt::format(
         R"({{"event":"sequence","frames":{},"written":{},"kept":{},"rendered_again":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
         sequence.count(), tally.rendered, tally.kept, tally.again, watch.seconds(), tally.update_s,
         tally.invalid_samples, cut_short));

@@ -73,7 +73,7 @@ void Reporter::progress(double share, const std::string& detail) {
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
     write_now(stderr,
-          fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
+              fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
     drawn_ = true;
 }
 
@@ -83,6 +83,11 @@ void Reporter::set_work(const std::string& work) {
 
 void Reporter::event(const std::string& object) {
     if (flags_.json) write_now(stdout, object + '\n');
+}
+
+void Reporter::result(const std::string& object) {
+    event(fmt::format(R"({},"made_up":{},"left_out":{}}})", std::string_view(object).substr(0, object.size() - 1),
+                      json_strings(messages_.made_up()), json_strings(messages_.left_out())));
 }
 
 void Reporter::answer(const std::string& lines) {

@@ -42,6 +42,9 @@ public:
     void set_work(const std::string& work);
     /// A JSON object ("{...}") of the given event; only with --json.
     void event(const std::string& object);
+    /// The event that tells a verb's result: `object` with the lists `made_up` and `left_out` of all messages before
+    /// it.
+    void result(const std::string& object);
     /// What the verb was asked for, for people, on stdout.
     void answer(const std::string& lines);
     /// A file that was written, or with a reason one that was not; only with --json.

@@ -15,6 +15,8 @@ OpenOptions open_options(const SceneOptions& options) {
     OpenOptions open;
     open.scene = options.scene;
     open.allowed_paths = options.allowed_paths;
+    open.up_axis = options.up_axis;
+    open.unit = options.unit;
     if (Rgb radiance; parse_rgb(options.environment, radiance)) {
         open.environment_radiance = radiance;
     } else {
@@ -50,7 +52,7 @@ CameraChoice camera_choice(const SceneOptions& options) {
 
 void check_scene_options(const SceneOptions& options) {
     check_camera_choice(camera_choice(options));
-    open_options(options);
+    read_options(open_options(options));
 }
 
 void add_scene_name(CLI::App& verb, SceneOptions& options) {
@@ -84,7 +86,7 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(length_m())
         ->group(group);
-    add_allow_path(verb, options.allowed_paths);
+    add_read_options(verb, options);
 }
 
 namespace {
@@ -144,23 +146,31 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
         ->group("Faces");
 }
 
-void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders) {
-    verb.add_option("--allow-path", folders,
+void add_read_options(CLI::App& verb, SceneOptions& options) {
+    verb.add_option("--allow-path", options.allowed_paths,
                     "a folder outside the scene's own that it may read from; may be given again")
         ->type_name("DIR")
         ->allow_extra_args(false)
         ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+    const char* group = "Coordinates of .obj and .ply";
+    verb.add_option("--up-axis", options.up_axis,
+                    "which way is up in the file (y); all flags are for a scene with y up")
+        ->type_name("x|y|z")
+        ->group(group);
+    verb.add_option("--unit", options.unit,
+                    fmt::format("of the file, {} or metres (m);\nall flags are for a scene in metres", kUnitNames))
+        ->type_name("UNIT|M")
+        ->group(group);
 }
 
-Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
-                     Messages& messages) {
-    ReadOptions read;
-    read.allowed_paths = allowed_paths;
-    return read_scene_and_lamps(name, read, messages);
+Scene read_any_scene(const SceneOptions& options, Messages& messages) {
+    return read_scene_and_lamps(options.scene, read_options(open_options(options)), messages);
 }
 
-Scene load_scene(const SceneOptions& options, Messages& messages) {
-    return open_scene(open_options(options), messages);
+Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages) {
+    OpenOptions open = open_options(options);
+    open.use = use;
+    return open_scene(open, messages);
 }
 
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene) {

@@ -21,6 +21,7 @@ namespace pertev {
 struct SceneOptions {
     std::string scene;
     std::vector<std::filesystem::path> allowed_paths;
+    std::string up_axis, unit; // of the file's coordinates
     std::string camera; // name or number
     std::string eye, target, up;
     float fov_deg = 0; // 0: the camera's own
@@ -42,15 +43,14 @@ void add_view_options(CLI::App& verb, SceneOptions& options);
 void add_scene_name(CLI::App& verb, SceneOptions& options);
 /// The environment, lamps and --two-sided-lights alone.
 void add_light_options(CLI::App& verb, SceneOptions& options);
-/// --allow-path alone.
-void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders);
+/// What a file's reader takes, --allow-path, --up-axis and --unit, alone.
+void add_read_options(CLI::App& verb, SceneOptions& options);
 
 /// What can be told before the scene is read. Throws Error(BadInput) for a flag that another one makes useless.
 void check_scene_options(const SceneOptions& options);
 
 /// A file, or a built-in scene by its name (session/open_scene.h's read_scene_and_lamps). Throws Error.
-Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
-                     Messages& messages);
+Scene read_any_scene(const SceneOptions& options, Messages& messages);
 
 // The rest is session/open_scene.h and session/choose_camera.h for flags as they stand on the command line. Each throws
 // Error(BadInput) also for text that is no value.
@@ -58,7 +58,7 @@ Scene read_any_scene(const std::string& name, const std::vector<std::filesystem:
 /// Lumens that a watt of the scene counts as: --efficacy, or by the kind of file.
 double efficacy_of(const SceneOptions& options);
 OpenOptions open_options(const SceneOptions& options);
-Scene load_scene(const SceneOptions& options, Messages& messages);
+Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages);
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene);
 CameraChoice camera_choice(const SceneOptions& options);
 Camera choose_camera(const SceneOptions& options, const Scene& scene, float aspect, Messages& messages);

@@ -53,7 +53,7 @@ int solve(const SolveFlags& flags) {
     set_thread_count(static_cast<int>(flags.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    Scene scene = load_scene(flags.scene, messages);
+    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     RenderSettings shown;
     shown.integrator = IntegratorKind::Radiosity;
     check_light(shown, scene, messages);
@@ -73,7 +73,7 @@ int solve(const SolveFlags& flags) {
     const std::string hash = solved.solution.hash().hex();
     reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
     const SolveStats& stats = solved.stats;
-    reporter.event(fmt::format(
+    reporter.result(fmt::format(
         R"({{"event":"done","seconds":{:.6f},"total_seconds":{:.6f},"peak_bytes":{},"hash":"{}","interrupted":{}}})",
         stats.factor_seconds + stats.solve_seconds + stats.divide_seconds, total_time.seconds(), peak_memory_bytes(),
         hash, cut_short));
@@ -99,7 +99,7 @@ void add_solve_command(CLI::App& app, int& status) {
     verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
         ->type_name("SECONDS")
         ->check(number_between(-1e9f, 1e9f));
-    add_allow_path(verb, flags->scene.allowed_paths);
+    add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     verb.add_option("--threads", flags->threads, "of the CPU (all)")
         ->type_name("N")

@@ -54,7 +54,8 @@ MeasuredScene load(SceneOptions options, const std::string& scene, const LabSett
                    Messages& messages) {
     options.scene = scene;
     MeasuredScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
-    if (has_pictures) thesis.default_light = add_default_light(thesis.scene, messages) != DefaultLight::None;
+    if (has_pictures)
+        thesis.default_light = add_default_light(thesis.scene, SceneUse::Benchmark, messages) != DefaultLight::None;
     thesis.camera = choose_camera(options, thesis.scene, aspect_of(settings.width, settings.height), messages);
     return thesis;
 }

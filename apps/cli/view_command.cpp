@@ -24,6 +24,7 @@
 #include "base/limits.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
+#include "scene/scene_origin.h"
 #include "session/check_integrator.h"
 
 extern char** environ;
@@ -100,7 +101,7 @@ CameraSource turned_camera(const ReadyScene& ready, double time_s) {
     if (frames == 0) return source;
     const Pose pose = pose_of(source.camera, {}, {}, source.camera.focus_distance);
     source.camera.world_from_camera = look_at(pose.eye, pose.target, pose.up);
-    source.target = pose.target;
+    source.target = in_file(ready.scene(), pose.target);
     source.up = pose.up;
     return source;
 }
@@ -141,13 +142,15 @@ void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart&
 }
 
 /// Where the view turns about what is in the middle of the picture, unless a target was given.
-Pose start_pose(const PictureRecord& record, FrameSource& source, float scene_size) {
+Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& source, float scene_size) {
     const Camera& camera = record.camera.camera;
+    std::optional<Vec3> target;
+    if (record.camera.target) target = in_scene(scene, *record.camera.target);
     float distance = 0.5f * scene_size;
-    if (!record.camera.target) {
+    if (!target) {
         if (const auto point = source.pick(camera, 0.5f, 0.5f)) distance = max(point->distance, 1e-3f * scene_size);
     }
-    return pose_of(camera, record.camera.target, record.camera.up, distance);
+    return pose_of(camera, target, record.camera.up, distance);
 }
 
 /// Of the GPU that renders; null where pictures are packed by the CPU.
@@ -201,7 +204,7 @@ int view(const ViewFlags& flags) {
     reporter.say_messages();
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
-    const PictureRecord record = picture_record(flags.render.scene, *ready);
+    const PictureRecord record = picture_record(flags.render.scene, *ready, reporter.messages());
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
@@ -233,7 +236,7 @@ int view(const ViewFlags& flags) {
     start.camera.name = camera_name(flags.render.scene, ready->scene());
     const float size = length(bounds_of(ready->scene()).size());
     start.speed = 0.12f * size;
-    start.camera.pose = start_pose(start.record, source, size);
+    start.camera.pose = start_pose(start.record, ready->scene(), source, size);
     let_time_move(flags, *ready, start);
     if (!start.why_still.empty()) {
         reporter.messages().note(fmt::format("{}: the scene {}; --time S shows it at another, --integrator path moving",
@@ -246,7 +249,7 @@ int view(const ViewFlags& flags) {
     run_viewer(
         {.host = flags.host, .port = static_cast<uint16_t>(flags.port), .jpeg_queue = jpeg_queue.get()}, start, source,
         [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
-    reporter.event(R"({"event":"done"})");
+    reporter.result(R"({"event":"done"})");
     return 0;
 }
 

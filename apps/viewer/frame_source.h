@@ -51,8 +51,8 @@ struct ShownFrame {
 /// What is at a place of the picture.
 struct PickedPoint {
     uint32_t instance = 0, primitive = 0, material = 0;
-    float distance = 0; // from the eye, metres
-    Vec3 position, normal;
+    float distance = 0;    // from the eye, metres
+    Vec3 position, normal; // in the scene's coordinates
     Rgb albedo;
     std::optional<Rgb> light; // of the pixel, linear, where the picture at rest is there
 };

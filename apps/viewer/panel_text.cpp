@@ -4,6 +4,8 @@
 
 #include "apps/viewer/file_name.h"
 #include "base/json_text.h"
+#include "scene/scene_origin.h"
+#include "session/place_text.h"
 
 namespace pertev {
 namespace {
@@ -124,12 +126,14 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     append(rows, row_json("Stages", "pack",
                           fmt::format("{:.1f} ms, {} KiB", numbers.pack_ms, (numbers.packed_bytes + 1023) / 1024)));
     append(rows, row_json("Stages", "packed by", numbers.encoder));
+    if (numbers.scene == nullptr) return rows;
+    for (const std::string& text : numbers.scene->made_up) append(rows, row_json("Scene", "made up", text));
+    for (const std::string& text : numbers.scene->left_out) append(rows, row_json("Scene", "left out", text));
     return rows;
 }
 
-std::string json_of(Vec3 v) {
-    return fmt::format("[{},{},{}]", json_number(static_cast<double>(v.x)), json_number(static_cast<double>(v.y)),
-                       json_number(static_cast<double>(v.z)));
+std::string json_of(DoubleVec3 v) {
+    return fmt::format("[{},{},{}]", json_number(v.x), json_number(v.y), json_number(v.z));
 }
 
 std::string clock_json(const SceneClock& clock) {
@@ -143,7 +147,7 @@ std::string keys_json(const CameraPath* path) {
     if (path == nullptr) return list;
     for (const CameraKey& key : path->keys) {
         append(list, fmt::format(R"({{"time":{},"eye":{},"target":{},"up":{},"fov":{}}})", json_number(key.time_s),
-                                 json_of(key.eye), json_of(key.target), json_of(key.up),
+                                 json_of(key.eye), json_of(key.target), json_of(to_double(key.up)),
                                  json_number(static_cast<double>(key.fov_deg))));
     }
     return list;
@@ -206,13 +210,15 @@ std::string picked_text(const Scene& scene, const PickedPoint* point, float x, f
     }
     row("triangle", fmt::format("{}", point->primitive));
     row("distance", fmt::format("{:.4g} m", point->distance));
-    row("position", text(point->position));
+    row("position",
+        scene.origin_in_file == DoubleVec3{0, 0, 0} ? text(point->position) : place_text(scene, point->position, 4));
     row("normal", text(point->normal));
     if (point->light) {
         row("light", fmt::format("{:.3g}, {:.3g}, {:.3g}", point->light->r, point->light->g, point->light->b));
     }
     row("albedo", fmt::format("{:.3g}, {:.3g}, {:.3g}", point->albedo.r, point->albedo.g, point->albedo.b));
-    return fmt::format(R"({{"type":"picked",{},"position":{},"rows":[{}]}})", place, json_of(point->position), rows);
+    return fmt::format(R"({{"type":"picked",{},"position":{},"rows":[{}]}})", place,
+                       json_of(in_file(scene, point->position)), rows);
 }
 
 } // namespace pertev

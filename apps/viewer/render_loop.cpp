@@ -8,6 +8,7 @@
 #include "apps/viewer/file_name.h"
 #include "apps/viewer/panel_text.h"
 #include "base/error.h"
+#include "scene/scene_origin.h"
 #include "session/write_picture.h"
 
 namespace pertev {
@@ -314,7 +315,7 @@ PictureRecord RenderLoop::record() const {
     record.camera.target.reset();
     record.camera.up.reset();
     if (camera_.is_said_by_pose()) {
-        record.camera.target = camera_.pose().target;
+        record.camera.target = in_file(*start_.scene, camera_.pose().target);
         record.camera.up = camera_.pose().up;
     }
     if (!camera_.is_at_start() || camera_.is_own()) record.camera.name = camera_.name();
@@ -352,6 +353,7 @@ void RenderLoop::tell_state() {
         numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
     }
     numbers.why_still = start_.why_still;
+    numbers.scene = &start_.record.scene;
     numbers.input = input_;
     numbers.steerer = steerer_;
     numbers.clock = clock_;

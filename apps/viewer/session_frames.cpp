@@ -14,6 +14,7 @@
 #include "image/tone_map_image.h"
 #include "render/film_channels.h"
 #include "render/ray_queue.h"
+#include "scene/scene_origin.h"
 
 namespace pertev {
 namespace {

@@ -6,6 +6,7 @@
 #include "apps/viewer/steering.h"
 #include "render/film_channels.h"
 #include "render/ray_queue.h"
+#include "scene/scene_origin.h"
 
 namespace pertev {
 
@@ -37,7 +38,9 @@ std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, fl
     const float *albedo = values("albedo"), *normal = values("normal"), *position = values("position");
     picked.albedo = {albedo[0], albedo[1], albedo[2]};
     picked.normal = {normal[0], normal[1], normal[2]};
+    const Scene& scene = scene_.scene();
     picked.position = {position[0], position[1], position[2]};
+    if (!scene.is_far) picked.position = in_scene(scene, to_double(picked.position));
     picked.distance = values("depth")[0];
     picked.light = light;
     return picked;

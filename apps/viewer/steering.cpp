@@ -40,6 +40,12 @@ float allowed_pitch(Vec3 back, Vec3 up, float pitch) {
 
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
+std::string text_of(Vec3 p, DoubleVec3 origin) {
+    if (origin == DoubleVec3{0, 0, 0}) return text_of(p);
+    const DoubleVec3 place = origin + to_double(p);
+    return fmt::format("{},{},{}", place.x, place.y, place.z);
+}
+
 std::string lens_flags(const Camera& camera) {
     std::string flags;
     switch (camera.projection) {
@@ -140,10 +146,10 @@ float degrees_for(float radians) {
     return near;
 }
 
-std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name) {
+std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name, DoubleVec3 origin) {
     std::string flags;
     if (!name.empty()) flags += fmt::format("--camera '{}' ", name);
-    flags += fmt::format("--eye {} --target {}", text_of(pose.eye), text_of(pose.target));
+    flags += fmt::format("--eye {} --target {}", text_of(pose.eye, origin), text_of(pose.target, origin));
     if (pose.up != Vec3{0, 1, 0}) flags += fmt::format(" --up {}", text_of(pose.up));
     return flags + lens_flags(camera);
 }

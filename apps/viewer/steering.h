@@ -9,11 +9,12 @@
 #include <string>
 
 #include "apps/viewer/client_message.h"
+#include "math/double_vec3.h"
 #include "scene/camera.h"
 
 namespace pertev {
 
-struct Pose {
+struct Pose { // in the scene's coordinates
     Vec3 eye, target, up;
     Vec3 centre; // of the orbit
     bool operator==(const Pose&) const = default;
@@ -41,8 +42,9 @@ Pose zoom(const Pose& pose, float steps);
 float metres_of(const ClientMessage& message, float speed);
 
 /// The flags of pertev render that place this camera: --eye --target --up, and the lens, as far as it is not what they
-/// leave as it is. `name`: of --camera; empty for none.
-std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name);
+/// leave as it is. `name`: of --camera; empty for none. `origin`: of the scene, in its file.
+std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name,
+                         DoubleVec3 origin = {0, 0, 0});
 /// The same of the scene's camera `name`, where it stands, with the lens of `camera`.
 std::string scene_camera_flags(const Camera& camera, const std::string& name);
 /// Degrees that the command line makes this angle of, to the bit where there are such.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "math/portable_math.h"
+#include "scene/scene_origin.h"
 #include "session/choose_camera.h"
 
 namespace pertev {
@@ -62,7 +63,8 @@ bool ViewCamera::moves_with_time() const {
 void ViewCamera::place(const CameraSource& source, Camera& lens) {
     const Camera before = base_;
     base_ = source.camera;
-    pose_ = pose_of(base_, source.target, source.up, length(pose_.target - pose_.eye));
+    const auto target = source.target ? std::optional(in_scene(scene_, *source.target)) : std::nullopt;
+    pose_ = pose_of(base_, target, source.up, length(pose_.target - pose_.eye));
     is_own_ = false;
     follow(lens.fov_y, before.fov_y, base_.fov_y);
     follow(lens.aperture_radius, before.aperture_radius, base_.aperture_radius);
@@ -72,9 +74,10 @@ void ViewCamera::place(const CameraSource& source, Camera& lens) {
 CameraSource ViewCamera::on_path(double time_s) const {
     const CameraKey key = sample_path(path_, time_s);
     CameraSource source = {.camera = start_.camera, .name = {}, .target = key.target, .up = key.up};
-    source.camera.world_from_camera = look_at(key.eye, key.target, key.up);
+    const Vec3 eye = in_scene(scene_, key.eye), target = in_scene(scene_, key.target);
+    source.camera.world_from_camera = look_at(eye, target, key.up);
     source.camera.fov_y = key.fov_deg * kRadiansPerDegree;
-    source.camera.focus_distance = start_.focus_m.value_or(length(key.target - key.eye));
+    source.camera.focus_distance = start_.focus_m.value_or(length(target - eye));
     return source;
 }
 
@@ -159,6 +162,8 @@ void ViewCamera::step(const ClientMessage& message, const Camera& lens, float sp
     } else {
         pose_ = zoom(pose_, message.steps);
     }
+    pose_.eye = told_in_file(scene_, pose_.eye);
+    pose_.target = told_in_file(scene_, pose_.target);
     const bool is_good = is_finite_place(look_at(pose_.eye, pose_.target, pose_.up)) &&
                          max_component(abs(pose_.eye)) < kFarthest && max_component(abs(pose_.target)) < kFarthest;
     if (!is_good) pose_ = before; // a step too far
@@ -167,8 +172,8 @@ void ViewCamera::step(const ClientMessage& message, const Camera& lens, float sp
 
 bool ViewCamera::add_key(float time_s, const Camera& lens) {
     const CameraKey key = {.time_s = static_cast<double>(time_s),
-                           .eye = pose_.eye,
-                           .target = pose_.target,
+                           .eye = in_file(scene_, pose_.eye),
+                           .target = in_file(scene_, pose_.target),
                            .up = pose_.up,
                            .fov_deg = clamp(degrees_for(lens.fov_y), kLeastFov, kMostFov)};
     std::vector<CameraKey>& keys = path_.keys;
@@ -203,7 +208,7 @@ std::string ViewCamera::flags(const Camera& lens, std::optional<double> time_s) 
             return scene_camera_flags(camera(lens), name_) + time;
         }
     }
-    return camera_flags(pose_, camera(lens), name_) + time;
+    return camera_flags(pose_, camera(lens), name_, scene_.origin_in_file) + time;
 }
 
 } // namespace pertev

@@ -58,4 +58,10 @@ std::string utf8_text(std::string_view text) {
 
 std::string json_number(double number) { return std::isfinite(number) ? fmt::format("{:.9g}", number) : "null"; }
 
+std::string json_strings(const std::vector<std::string>& texts) {
+    std::string list = "[";
+    for (const std::string& text : texts) list += (list.size() > 1 ? "," : "") + json_string(text);
+    return list + ']';
+}
+
 } // namespace pertev

@@ -4,11 +4,14 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pertev {
 
 /// Text as a JSON string, quotes included.
 std::string json_string(std::string_view text);
+/// A JSON array of strings.
+std::string json_strings(const std::vector<std::string>& texts);
 /// The text with U+FFFD in place of each byte that is not UTF-8: names of files may be any bytes.
 std::string utf8_text(std::string_view text);
 /// A number in JSON, to 9 digits; null where it is not finite, which JSON has no word for.

@@ -1,6 +1,7 @@
 #include "formats/read_camera_path.h"
 
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -13,10 +14,11 @@ namespace {
 
 using gltf::JsonValue;
 
-Vec3 read_vec3(const JsonValue& value) {
-    const std::array<float, 3> v = value.to_floats<3>();
-    for (const float x : v) {
-        if (abs(x) > kMaxCoordinate) throw value.error(fmt::format("{}; expected at most 2^40 metres", x));
+DoubleVec3 read_vec3(const JsonValue& value) {
+    const std::array<double, 3> v = value.to_doubles<3>();
+    for (const double x : v) {
+        if (std::abs(x) > static_cast<double>(kMaxCoordinate))
+            throw value.error(fmt::format("{}; expected at most 2^40 metres", x));
     }
     return {v[0], v[1], v[2]};
 }
@@ -32,8 +34,8 @@ CameraKey read_key(const JsonValue& source, const CameraPath& before) {
     }
     key.eye = read_vec3(source.at("eye"));
     key.target = read_vec3(source.at("target"));
-    if (const auto up = source.find("up")) key.up = read_vec3(*up);
-    if (!is_finite(look_at(key.eye, key.target, key.up))) {
+    if (const auto up = source.find("up")) key.up = to_float(read_vec3(*up));
+    if (!is_finite(look_at(to_float(key.eye - key.target), {}, key.up))) {
         throw source.error("the target must differ from the eye, and not lie along up (0, 1, 0 without \"up\")");
     }
     const auto fov = source.find("fov");

@@ -1,5 +1,6 @@
 #include "formats/read_gltf.h"
 
+#include "base/limits.h"
 #include "base/read_file.h"
 #include "formats/gltf/animations.h"
 #include "formats/gltf/materials.h"
@@ -8,6 +9,7 @@
 #include "formats/gltf/place_nodes.h"
 #include "formats/gltf/textures.h"
 #include "formats/load_textures.h"
+#include "scene/scene_origin.h"
 
 namespace pertev {
 
@@ -20,7 +22,7 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
                 const ReadOptions& options, Messages& messages) {
     Scene scene;
     const gltf::Document document(path, std::move(bytes), messages);
-    gltf::Buffers buffers(document, access);
+    gltf::Buffers buffers(document, access, messages);
     gltf::NodeGraph nodes(document, messages);
 
     TextureLoader loader(access, messages);
@@ -28,10 +30,12 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     gltf::Materials materials(document, options.geometry_only ? nullptr : &textures, scene, messages);
     gltf::Meshes meshes(document, buffers, nodes, materials, scene, options.geometry_only, messages);
     scene.nodes = nodes.take_nodes();
-    gltf::read_node_shapes(document, buffers, scene);
+    gltf::read_node_shapes(document, buffers, scene, messages);
     gltf::place_nodes(document, buffers, nodes, meshes, scene, messages);
+    take_off_centre(scene);
     gltf::read_animations(document, buffers, scene, messages);
     loader.load_into(scene, buffers.file_bytes());
+    materials.convert_textures(justified_bytes(kFreeImageBytes, buffers.file_bytes()));
 
     return scene;
 }

@@ -9,6 +9,7 @@
 
 #include "base/messages.h"
 #include "formats/file_access.h"
+#include "formats/file_space.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -17,6 +18,7 @@ struct ReadOptions {
     std::vector<std::filesystem::path> allowed_paths; // --allow-path
     bool geometry_only = false;                       // skip textures and materials: every surface grey
     bool two_sided_lights = false;                    // surfaces emit from both faces, whatever the file says
+    FileSpace space;                                  // of files that do not tell theirs; others are as they say
 };
 
 /// The scene in a file, or the one that is part of the program under this name (formats/builtin_scenes.h). Throws
@@ -26,6 +28,10 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
 
 /// Whether files of this name's kind can say if a surface emits from one face or from both; so can built-in scenes.
 bool tells_lamp_sides(const std::filesystem::path& path);
+
+/// Whether files of this name's kind tell their unit and which way is up, so that ReadOptions::space means nothing to
+/// them; so do built-in scenes.
+bool tells_space(const std::filesystem::path& path);
 
 /// Whether a name could be a scene's: it has an extension from above or is that of a built-in scene.
 bool is_scene_name(const std::filesystem::path& path);

@@ -11,16 +11,23 @@ namespace {
 /// The fewest digits that give the same floats; no "-0".
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x + 0.0f, v.y + 0.0f, v.z + 0.0f); }
 
+/// Likewise for a place, in the coordinates of the file.
+std::string text_of(Vec3 p, DoubleVec3 origin) {
+    if (origin == DoubleVec3{0, 0, 0}) return text_of(p);
+    const DoubleVec3 place = origin + to_double(p);
+    return fmt::format("{},{},{}", place.x, place.y, place.z);
+}
+
 } // namespace
 
-std::string describe_camera(const Camera& camera) {
+std::string describe_camera(const Camera& camera, DoubleVec3 origin) {
     const Transform& m = camera.world_from_camera;
     const Vec3 eye = m.translation, forward = -column(m, 2);
     // As far away as the eye is from the origin: nearer, their difference would lose digits of the direction.
     float distance = 1;
     while (distance < max_component(abs(eye))) distance *= 2;
-    const std::string place = fmt::format("--eye {} --target {} --up {}", text_of(eye),
-                                          text_of(eye + distance * forward), text_of(column(m, 1)));
+    const std::string place = fmt::format("--eye {} --target {} --up {}", text_of(eye, origin),
+                                          text_of(eye + distance * forward, origin), text_of(column(m, 1)));
     if (camera.projection == Projection::Orthographic) {
         return fmt::format("{} --projection orthographic --view-height {} (metres)", place, camera.ortho_height);
     }

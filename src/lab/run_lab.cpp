@@ -52,7 +52,7 @@ public:
                    .device = queue.device_name(),
                    .commit = fmt::format("{} {}", version(), git_commit()),
                    .threads = static_cast<uint32_t>(thread_count()),
-                   .camera = describe_camera(camera),
+                   .camera = describe_camera(camera, scene.origin_in_file),
                    .triangles = triangles_.parts.count(),
                    .instances = scene.instances.size(),
                    .width = settings.width,

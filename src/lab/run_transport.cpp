@@ -55,7 +55,7 @@ public:
     TransportRunner(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
                     const std::function<bool(const LabProgress&)>& keep_going)
         : queue_(queue), scene_(scene), camera_(camera), settings_(settings), keep_going_(keep_going) {
-        report_.camera = describe_camera(camera);
+        report_.camera = describe_camera(camera, scene.origin_in_file);
         for (const std::string& name : settings.integrators) {
             settings_of(settings, name, 0);
             report_.rows.push_back({.name = name, .light = light_of(name, scene)});

@@ -62,7 +62,7 @@ const TransportPreset* find_transport_preset(std::string_view name) {
 CameraChoice camera_choice(const TransportPreset& preset) {
     CameraChoice choice;
     if (!preset.has_camera) return choice;
-    choice.eye = preset.eye, choice.target = preset.target, choice.fov_deg = preset.fov_deg;
+    choice.eye = to_double(preset.eye), choice.target = to_double(preset.target), choice.fov_deg = preset.fov_deg;
     return choice;
 }
 

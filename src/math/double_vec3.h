@@ -12,6 +12,7 @@ namespace pertev {
 
 struct DoubleVec3 {
     double x, y, z;
+    bool operator==(const DoubleVec3&) const = default;
 };
 
 HD inline DoubleVec3 to_double(Vec3 v) {
@@ -21,6 +22,7 @@ HD inline DoubleVec3 to_double(Vec3 v) {
 HD inline Vec3 to_float(DoubleVec3 v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
+HD inline DoubleVec3 operator+(DoubleVec3 a, DoubleVec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 HD inline DoubleVec3 operator-(DoubleVec3 a, DoubleVec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 HD inline DoubleVec3 operator/(DoubleVec3 a, double b) { return {a.x / b, a.y / b, a.z / b}; }
 HD inline double dot(DoubleVec3 a, DoubleVec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }

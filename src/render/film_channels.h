@@ -19,7 +19,7 @@ enum AovBits : uint32_t {
     kAovAlbedo = 1,   // reflectance of the first surface
     kAovNormal = 2,   // its shading normal, world space
     kAovDepth = 4,    // distance along the camera's axis, metres
-    kAovPosition = 8, // the file's coordinates, metres
+    kAovPosition = 8, // the file's coordinates, of a far scene its own (SceneView::position_shift), metres
     kAovIds = 16,     // no sums: ids of sample 0, see FilmView::ids
     kAovMotion = 32,  // not in the film: denoise/motion_vectors.h
 };

@@ -13,9 +13,16 @@ struct RayLine {
     Vec3 origin, direction; // unit
 };
 
-/// `surface` is what `hit` made. `time`: of the ray, while the shutter is open.
+/// Of a camera ray that met nothing.
+HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
+    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
+}
+
+/// `surface` is what `hit` made. A ground that was made up counts as background. `time`: of the ray, while the shutter
+/// is open.
 HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample, const RayLine& ray, const Hit& hit,
                              const Surface& surface, const PictureView& picture, float time = kAtRest) {
+    if (shows_background(picture.scene, hit.instance)) return add_no_first_hit(film, pixel, sample);
     add_channel(film, pixel, kFilmHits, 1.0f);
     if ((film.aovs & kAovAlbedo) != 0) {
         add_channels(film, pixel, channel_offset(film.aovs, kAovAlbedo),
@@ -30,17 +37,12 @@ HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t samp
         add_channel(film, pixel, channel_offset(film.aovs, kAovDepth),
                     dot(surface.position - ray.origin, picture.camera.axis_at(time)));
     }
-    if ((film.aovs & kAovPosition) != 0) { // in the file's coordinates: the film adds both without rounding
+    if ((film.aovs & kAovPosition) != 0) { // the film adds both without rounding
         const uint32_t channel = channel_offset(film.aovs, kAovPosition);
         add_channels(film, pixel, channel, surface.position);
-        add_channels(film, pixel, channel, picture.scene.centre);
+        add_channels(film, pixel, channel, picture.scene.position_shift);
     }
     if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {hit.instance, hit.primitive, surface.material};
-}
-
-/// Of a camera ray that met nothing.
-HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
-    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
 }
 
 } // namespace pertev

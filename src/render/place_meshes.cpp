@@ -1,15 +1,12 @@
 #include "render/place_meshes.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
-#include "math/double_vec3.h"
+#include "scene/scene_origin.h"
 
 namespace pertev {
 namespace {
@@ -41,17 +38,7 @@ Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Insta
 
 Vec3 world_centre(const Scene& scene) {
     const Bounds3 box = bounds_of(scene);
-    if (box.is_empty()) return {};
-    const DoubleVec3 lo = to_double(box.lo), hi = to_double(box.hi);
-    const double side = std::max(hi.x - lo.x, std::max(hi.y - lo.y, hi.z - lo.z));
-    int exponent = 0; // side = fraction in [1/2, 1) times 2^exponent
-    const double fraction = std::frexp(side, &exponent);
-    const double grid = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
-    // Halves go away from zero; adding 0 makes a zero positive.
-    const auto rounded = [&](double a, double b) {
-        return static_cast<float>(grid * std::round(0.5 * (a + b) / grid) + 0.0);
-    };
-    return {rounded(lo.x, hi.x), rounded(lo.y, hi.y), rounded(lo.z, hi.z)};
+    return box.is_empty() ? Vec3{} : to_float(centre_of({to_double(box.lo), to_double(box.hi)}));
 }
 
 MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {

@@ -21,14 +21,11 @@ struct MeshPlacement {
     std::vector<uint32_t> tree_of_mesh; // number of the mesh's own tree, or kBakedMesh where no instance needs one
     uint32_t mesh_tree_count = 0;
     uint64_t copies = 0, copied_triangles = 0; // baked although their mesh is used more than once
-    Vec3 centre;                               // of the world that they are placed in, in the file's coordinates
+    Vec3 centre;                               // of the world that they are placed in, in the scene's coordinates
 };
 
-/// Where the origin of a picture's world lies, in the file's coordinates (metres), at rest: the middle of the box
-/// round all instances (scene/scene.h's bounds_of), each coordinate rounded to a multiple of g, the least power of two
-/// that is not under the box's longest side. So a scene stays where it is unless it lies more than about its size from
-/// the origin, and to move one that does costs hardly any bits: the difference of a coordinate from a multiple of g is
-/// exact but near 0. {0, 0, 0} without any triangle.
+/// Where the origin of a picture's world lies, in the scene's coordinates (metres), at rest: the centre_of() the box
+/// round all instances (scene/scene_origin.h). A reader has moved a file's scene there already, so it is 0 then.
 Vec3 world_centre(const Scene& scene);
 
 /// An instance is baked when its mesh is used once and it may not move (scene/animation.h), or, moving or not, when its

@@ -2,7 +2,7 @@
 
 // From a validated Scene to what a render needs on the host: where the origin of its world is (world_centre), which
 // meshes are baked into that world, the trees over them (built, or loaded from the cache), the lights. The same for
-// every device and every structure. The scene itself keeps the file's coordinates, and so do cameras.
+// every device and every structure. The scene itself keeps its coordinates, and so do cameras.
 
 #include <filesystem>
 #include <optional>
@@ -24,14 +24,14 @@ struct PrepareOptions {
     std::optional<BvhBuilder> builder;   // of the trees; none = that of `tracers`, else of default ones
     /// Where the cache holds a tree of a better TreeBuild than this one, take that.
     bool may_be_better = false;
-    bool keep_coordinates = false;             // the world is the file's: for rays that are given in its coordinates
+    bool keep_coordinates = false;             // the world is the scene's: for rays that are given in its coordinates
     std::optional<Vec3> centre;                // of the moved world, in place of the scene's own (world_centre)
     std::shared_ptr<const MotionKeys> motions; // PreparedScene's
 };
 
 struct PreparedScene {
     const Scene* scene = nullptr;                // outlives this
-    Vec3 centre;                                 // origin of the moved world, in the file's coordinates, metres
+    Vec3 centre;                                 // origin of the moved world, in the scene's coordinates, metres
     std::vector<bool> is_baked;                  // of each instance
     BinaryTrees trees;                           // moved world and local spaces, by structures->builder()
     TopLevelBvh top_level;                       // over the instances that are not baked

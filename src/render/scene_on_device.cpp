@@ -43,9 +43,12 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
     view.any_alpha = 0;
     view.any_hidden_back = 0;
     view.centre = prepared.centre;
+    // In the file's coordinates; a far scene's positions are in its own, since floats could not tell them apart there.
+    view.position_shift = scene.is_far ? prepared.centre : to_float(scene.origin_in_file + to_double(prepared.centre));
     instances.views.reserve(scene.instances.size());
     instances.passing.resize((scene.instances.size() + 31) / 32);
     view.instance_count = static_cast<uint32_t>(scene.instances.size());
+    view.background = 0;
     view.triangle_count = 0;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
@@ -55,6 +58,7 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
         view.triangle_count += scene.meshes[instance.mesh].triangle_count();
         const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
         const uint16_t hides_back = material.double_sided ? 0 : 1;
+        if (instance.is_background) view.background = static_cast<uint32_t>(i) + 1;
         view.any_alpha |= has_alpha;
         view.any_hidden_back |= hides_back;
         instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;

@@ -51,14 +51,21 @@ struct SceneView {
     LightSetView lights;
     uint32_t any_alpha;       // 0 lets every hit skip the look at its instance
     uint32_t any_hidden_back; // the same for hits of the camera's rays
-    Vec3 centre;              // of the moved world, in the file's coordinates, metres (render/place_meshes.h)
+    Vec3 centre;              // of the moved world, in the scene's coordinates, metres (render/place_meshes.h)
+    Vec3 position_shift;      // what the layer of positions adds to those of the moved world, metres
     // Triangles of all instances, numbered in their order: those of instance i are first_triangle[i] and on, up to
     // first_triangle[i + 1]. Null where there are more than 32 bits count.
     const uint32_t* first_triangle; // [instance_count + 1]
     uint32_t instance_count;
+    uint32_t background;     // 1 + the instance that layers show as background (Instance::is_background); 0: none
     uint64_t triangle_count; // of all instances
     MotionsView motions;     // while the shutter is open
 };
+
+/// Whether a camera ray that meets this instance shows the background; true of kNoHit, too.
+HD inline bool shows_background(const SceneView& scene, uint32_t instance) {
+    return instance == kNoHit || instance + 1 == scene.background;
+}
 
 /// The three vertex numbers of a triangle.
 struct TriangleIndices {

@@ -29,7 +29,8 @@ struct AnimationChannel {
     uint32_t target = 0; // index into Scene::nodes; of parts of cameras into Scene::cameras, of lights Scene::lights
     AnimatedPart part = AnimatedPart::Translation;
     Interpolation interpolation = Interpolation::Linear;
-    std::vector<float> times; // seconds, at least 0, each above the one before
+    /// Seconds, none below the one before. Of keys at one time the last counts from then on, the first up to then.
+    std::vector<float> times;
     /// A value for each time, one after the other; for CubicSpline three: tangent into the key, value, tangent out of
     /// it, both a second. A value is 3 numbers (Translation in metres, Scale, LightIntensity), 4 (Rotation: a
     /// quaternion x, y, z, w, not 0), as many as the node has morph_weights, or 1 (CameraFov and cones in radians,

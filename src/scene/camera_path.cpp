@@ -15,11 +15,11 @@ public:
     Spline(const std::vector<CameraKey>& keys, const Number& number) : keys_(keys), number_(number) {}
 
     /// Between key `before` and the next.
-    float at(std::size_t before, double time_s) const {
+    double at(std::size_t before, double time_s) const {
         const double seconds = time(before + 1) - time(before), t = (time_s - time(before)) / seconds;
         const double t2 = t * t, t3 = t2 * t;
-        return static_cast<float>((2 * t3 - 3 * t2 + 1) * value(before) + (3 * t2 - 2 * t3) * value(before + 1) +
-                                  seconds * ((t3 - 2 * t2 + t) * slope(before) + (t3 - t2) * slope(before + 1)));
+        return (2 * t3 - 3 * t2 + 1) * value(before) + (3 * t2 - 2 * t3) * value(before + 1) +
+               seconds * ((t3 - 2 * t2 + t) * slope(before) + (t3 - t2) * slope(before + 1));
     }
 
 private:
@@ -47,16 +47,17 @@ CameraKey sample_path(const CameraPath& path, double time_s) {
     if (above == keys.begin() || above == keys.end()) return now;
     const auto before = static_cast<std::size_t>(above - keys.begin()) - 1;
     const auto number = [&](const auto& of) { return Spline(keys, of).at(before, time_s); };
-    const auto vector = [&](Vec3 CameraKey::*part) {
-        return Vec3{number([part](const CameraKey& key) { return (key.*part).x; }),
-                    number([part](const CameraKey& key) { return (key.*part).y; }),
-                    number([part](const CameraKey& key) { return (key.*part).z; })};
+    const auto vector = [&](auto part) {
+        return DoubleVec3{number([part](const CameraKey& key) { return (key.*part).x; }),
+                          number([part](const CameraKey& key) { return (key.*part).y; }),
+                          number([part](const CameraKey& key) { return (key.*part).z; })};
     };
     now.eye = vector(&CameraKey::eye);
     now.target = vector(&CameraKey::target);
-    now.up = vector(&CameraKey::up);
+    now.up = to_float(vector(&CameraKey::up));
     if (now.fov_deg > 0) {
-        now.fov_deg = clamp(number([](const CameraKey& key) { return key.fov_deg; }), kLeastFovDeg, kMostFovDeg);
+        const double fov_deg = number([](const CameraKey& key) { return key.fov_deg; });
+        now.fov_deg = clamp(static_cast<float>(fov_deg), kLeastFovDeg, kMostFovDeg);
     }
     return now;
 }

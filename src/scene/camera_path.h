@@ -8,15 +8,15 @@
 
 #include <vector>
 
-#include "math/vec3.h"
+#include "math/double_vec3.h"
 
 namespace pertev {
 
 struct CameraKey {
     double time_s = 0;
-    Vec3 eye, target;    // metres, world space
-    Vec3 up = {0, 1, 0}; // of any length but 0
-    float fov_deg = 0;   // full vertical angle of view, degrees; 0: the camera's own
+    DoubleVec3 eye = {0, 0, 0}, target = {0, 0, 0}; // metres, in the coordinates of the scene's file
+    Vec3 up = {0, 1, 0};                            // of any length but 0
+    float fov_deg = 0;                              // full vertical angle of view, degrees; 0: the camera's own
 };
 
 struct CameraPath {

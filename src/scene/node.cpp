@@ -4,30 +4,74 @@
 
 namespace pertev {
 
-Transform transform_of(const NodePose& pose) {
-    const Vec4 r = pose.rotation;
-    const auto squared = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
-    const double length = std::sqrt(squared(r.x) + squared(r.y) + squared(r.z) + squared(r.w));
-    const auto unit = [&](float x) { return static_cast<float>(static_cast<double>(x) / length); };
-    Transform m = make_rotation(unit(r.x), unit(r.y), unit(r.z), unit(r.w));
-    const Vec3 scale = pose.scale;
+namespace {
+
+/// Rotation by a unit quaternion, then scale.
+DoubleTransform turned_and_scaled(double x, double y, double z, double w, DoubleVec3 scale) {
+    return {{(1 - 2 * (y * y + z * z)) * scale.x, 2 * (x * y - z * w) * scale.y, 2 * (x * z + y * w) * scale.z},
+            {2 * (x * y + z * w) * scale.x, (1 - 2 * (x * x + z * z)) * scale.y, 2 * (y * z - x * w) * scale.z},
+            {2 * (x * z - y * w) * scale.x, 2 * (y * z + x * w) * scale.y, (1 - 2 * (x * x + y * y)) * scale.z},
+            {0, 0, 0}};
+}
+
+double length_of(const std::array<double, 4>& q) {
+    return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+}
+
+} // namespace
+
+NodePlace place_of(const NodePose& pose) {
+    NodePlace place;
+    const std::array<double, 4>& r = pose.rotation;
+    const double size = length_of(r);
+    place.world_from_node = turned_and_scaled(r[0] / size, r[1] / size, r[2] / size, r[3] / size, pose.scale);
+    place.world_from_node.translation = pose.translation;
+
+    std::array<double, 4> rounded; // the linear part is made of floats
+    for (std::size_t i = 0; i < 4; ++i) rounded[i] = static_cast<double>(static_cast<float>(r[i]));
+    const double length = length_of(rounded);
+    const auto unit = [&](std::size_t i) { return static_cast<float>(rounded[i] / length); };
+    place.linear = make_rotation(unit(0), unit(1), unit(2), unit(3));
+    const Vec3 scale = to_float(pose.scale);
+    Transform& m = place.linear;
     for (Vec3* row : {&m.row0, &m.row1, &m.row2}) *row = {row->x * scale.x, row->y * scale.y, row->z * scale.z};
-    m.translation = pose.translation;
-    return m;
+    return place;
 }
 
-Transform parent_from_node(const Node& node) {
-    if (const Transform* matrix = std::get_if<Transform>(&node.pose)) return *matrix;
-    return transform_of(std::get<NodePose>(node.pose));
+NodePlace place_of(const DoubleTransform& matrix) {
+    NodePlace place = {matrix, to_float(matrix)};
+    place.linear.translation = {};
+    return place;
 }
 
-std::vector<Transform> world_from_nodes(std::span<const Node> nodes, std::span<const uint32_t> parents_first) {
-    std::vector<Transform> world(nodes.size());
+NodePlace place_of(const Node& node) {
+    return std::visit([](const auto& pose) { return place_of(pose); }, node.pose);
+}
+
+NodePlace compose(const NodePlace& a, const NodePlace& b) {
+    return {compose(a.world_from_node, b.world_from_node), compose(a.linear, b.linear)};
+}
+
+Transform world_from_node(const NodePlace& place, DoubleVec3 origin) {
+    Transform world = place.linear;
+    world.translation = to_float(place.world_from_node.translation - origin);
+    return world;
+}
+
+std::vector<NodePlace> places_of(std::span<const Node> nodes, std::span<const uint32_t> parents_first) {
+    std::vector<NodePlace> places(nodes.size());
     for (const uint32_t node : parents_first) {
-        const Transform local = parent_from_node(nodes[node]);
+        const NodePlace local = place_of(nodes[node]);
         const uint32_t parent = nodes[node].parent;
-        world[node] = parent == kNoNode ? local : compose(world[parent], local);
+        places[node] = parent == kNoNode ? local : compose(places[parent], local);
     }
+    return places;
+}
+
+std::vector<Transform> world_from_nodes(std::span<const NodePlace> places, DoubleVec3 origin) {
+    std::vector<Transform> world;
+    world.reserve(places.size());
+    for (const NodePlace& place : places) world.push_back(world_from_node(place, origin));
     return world;
 }
 

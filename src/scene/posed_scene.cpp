@@ -13,6 +13,7 @@
 #include "math/double_vec3.h"
 #include "math/portable_math.h"
 #include "scene/sample_channel.h"
+#include "scene/scene_origin.h"
 #include "scene/shape_mesh.h"
 #include "scene/validate_nodes.h"
 
@@ -43,7 +44,8 @@ bool same_bits(const T& a, const T& b) {
 PosedScene::PosedScene(Scene rest, bool leaves_vertices)
     : scene_(std::move(rest)), cameras_at_rest_(scene_.cameras), lights_at_rest_(scene_.lights),
       parents_first_(parents_first(scene_.nodes)), node_moves_(moving_nodes(scene_)), instance_moves_(may_move(scene_)),
-      world_from_node_(world_from_nodes(scene_.nodes, parents_first_)), cameras_(scene_.cameras),
+      places_(places_of(scene_.nodes, parents_first_)),
+      world_from_node_(world_from_nodes(places_, scene_.origin_in_file)), cameras_(scene_.cameras),
       lights_(scene_.lights), leaves_vertices_(leaves_vertices), moved_(scene_.instances.size()),
       deformed_(scene_.meshes.size()), replaced_(scene_.meshes.size()) {
     for (const Node& node : scene_.nodes) {
@@ -102,6 +104,7 @@ SceneUpdate PosedScene::set_time(double time_s) {
 PosedScene::Places PosedScene::places_at(double time_s) {
     const auto node_poses = node_poses_;
     const auto morph_weights = morph_weights_;
+    const auto node_places = places_;
     const auto world_from_node = world_from_node_;
     const auto cameras = cameras_, placed_cameras = scene_.cameras;
     const auto lights = lights_;
@@ -112,11 +115,12 @@ PosedScene::Places PosedScene::places_at(double time_s) {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         const Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
-        const Transform world = placed_in(world_from_node_[instance.node], instance.node_from_local);
+        const Transform world = placed_in(places_[instance.node], instance.node_from_local, scene_.origin_in_file);
         if (!is_singular(world)) places.instances[i] = world;
     }
     node_poses_ = node_poses;
     morph_weights_ = morph_weights;
+    places_ = node_places;
     world_from_node_ = world_from_node;
     cameras_ = cameras;
     scene_.cameras = placed_cameras;
@@ -125,6 +129,7 @@ PosedScene::Places PosedScene::places_at(double time_s) {
 }
 
 void PosedScene::read_channels(double time_s) {
+    const bool is_moved = !(scene_.origin_in_file == DoubleVec3{0, 0, 0});
     for (const Animation& animation : scene_.animations) {
         for (const AnimationChannel& channel : animation.channels) {
             value_.resize(numbers_in_value(channel, scene_));
@@ -132,13 +137,14 @@ void PosedScene::read_channels(double time_s) {
             const std::vector<float>& v = value_;
             switch (channel.part) {
             case AnimatedPart::Translation:
-                node_poses_[channel.target].translation = {v[0], v[1], v[2]};
+                node_poses_[channel.target].translation =
+                    is_moved ? sample_translation(channel, time_s) : to_double(Vec3{v[0], v[1], v[2]});
                 break;
             case AnimatedPart::Rotation:
-                node_poses_[channel.target].rotation = {v[0], v[1], v[2], v[3]};
+                std::ranges::copy(v, node_poses_[channel.target].rotation.begin());
                 break;
             case AnimatedPart::Scale:
-                node_poses_[channel.target].scale = {v[0], v[1], v[2]};
+                node_poses_[channel.target].scale = to_double(Vec3{v[0], v[1], v[2]});
                 break;
             case AnimatedPart::Weights:
                 morph_weights_[channel.target] = v;
@@ -169,10 +175,11 @@ void PosedScene::read_channels(double time_s) {
 void PosedScene::place_nodes() {
     for (const uint32_t node : parents_first_) {
         if (!node_moves_[node]) continue; // stands as at rest
-        const Transform* matrix = std::get_if<Transform>(&scene_.nodes[node].pose);
-        const Transform local = matrix == nullptr ? transform_of(node_poses_[node]) : *matrix;
+        const DoubleTransform* matrix = std::get_if<DoubleTransform>(&scene_.nodes[node].pose);
+        const NodePlace local = matrix == nullptr ? place_of(node_poses_[node]) : place_of(*matrix);
         const uint32_t parent = scene_.nodes[node].parent;
-        world_from_node_[node] = parent == kNoNode ? local : compose(world_from_node_[parent], local);
+        places_[node] = parent == kNoNode ? local : compose(places_[parent], local);
+        world_from_node_[node] = world_from_node(places_[node], scene_.origin_in_file);
     }
 }
 
@@ -217,7 +224,7 @@ void PosedScene::place_instances() {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
-        const Transform world = placed_in(world_from_node_[instance.node], instance.node_from_local);
+        const Transform world = placed_in(places_[instance.node], instance.node_from_local, scene_.origin_in_file);
         const bool is_hidden = is_singular(world);
         const Transform place = is_hidden ? Transform() : world;
         if (!same_bits(place, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
@@ -249,6 +256,7 @@ void PosedScene::place_cameras() {
         const std::optional<Transform> rigid = without_scale(world_from_node_[camera.node]);
         const bool stands = rigid && lies_near(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
         camera.world_from_camera = stands ? *rigid : cameras_at_rest_[i].world_from_camera;
+        camera.world_from_camera.translation = told_in_file(scene_, camera.world_from_camera.translation);
     }
 }
 

@@ -66,7 +66,8 @@ private:
 
     // Of each node at the time.
     std::vector<NodePose> node_poses_; // of those that are no matrix
-    std::vector<Transform> world_from_node_;
+    std::vector<NodePlace> places_;
+    std::vector<Transform> world_from_node_; // by places_, relative to the scene's origin
     std::vector<std::vector<float>> morph_weights_;
     std::vector<Camera> cameras_; // of which the angle of view and the height count
     std::vector<Light> lights_;   // of which intensity, range and cone count

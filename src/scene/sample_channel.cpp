@@ -64,6 +64,28 @@ Vec4 slerp(Vec4 a, Vec4 b, float t) {
     return unit(of_a * a + of_b * b);
 }
 
+DoubleVec3 sample_translation(const AnimationChannel& channel, double time_s) {
+    const std::vector<float>& times = channel.times;
+    const Keys keys = {channel, 3};
+    const auto at = [](std::span<const float> v) { return to_double(Vec3{v[0], v[1], v[2]}); };
+    const auto above = std::ranges::upper_bound(times, time_s, {}, [](float t) { return static_cast<double>(t); });
+    if (above == times.begin()) return at(keys.value(0));
+    const auto after = static_cast<std::size_t>(above - times.begin()), before = after - 1;
+    const DoubleVec3 a = at(keys.value(before));
+    if (after == times.size() || channel.interpolation == Interpolation::Step) return a;
+
+    const DoubleVec3 b = at(keys.value(after));
+    const double start = static_cast<double>(times[before]);
+    const double seconds = static_cast<double>(times[after]) - start, t = (time_s - start) / seconds;
+    if (channel.interpolation == Interpolation::Linear) {
+        const auto between = [t](double from, double to) { return (1 - t) * from + t * to; };
+        return {between(a.x, b.x), between(a.y, b.y), between(a.z, b.z)};
+    }
+    const DoubleVec3 out = at(keys.at(before, 2)), in = at(keys.at(after, 0));
+    return {cubic(a.x, out.x, in.x, b.x, t, seconds), cubic(a.y, out.y, in.y, b.y, t, seconds),
+            cubic(a.z, out.z, in.z, b.z, t, seconds)};
+}
+
 void sample_channel(const AnimationChannel& channel, double time_s, std::span<float> value) {
     const std::vector<float>& times = channel.times;
     const Keys keys = {channel, value.size()};

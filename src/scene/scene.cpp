@@ -11,6 +11,14 @@ Vec3 corner_of(const Bounds3& box, int number) {
 
 } // namespace
 
+Transform placed_in(const NodePlace& place, const Transform& node_from_local, DoubleVec3 origin) {
+    if (node_from_local == Transform()) return world_from_node(place, origin);
+    Transform world = compose(place.linear, node_from_local);
+    const DoubleVec3 at = transform_point(place.world_from_node, to_double(node_from_local.translation));
+    world.translation = to_float(at - origin);
+    return world;
+}
+
 std::string origin_of(const Instance& instance) {
     return instance.node == kNoNode ? "" : "/nodes/" + std::to_string(instance.node);
 }
@@ -35,7 +43,7 @@ Bounds3 bounds_of(const Scene& scene) {
     Bounds3 bounds;
     for (const Instance& instance : scene.instances) {
         const Bounds3& local = of_mesh[instance.mesh];
-        if (local.is_empty() || instance.is_hidden) continue;
+        if (local.is_empty() || instance.is_hidden || instance.is_background) continue;
         for (int corner = 0; corner < 8; ++corner) {
             bounds.extend(transform_point(instance.world_from_local, corner_of(local, corner)));
         }

@@ -4,12 +4,16 @@
 // these vectors; the order of `instances` is the scene order of the one-picture law (docs/conventions.md). What has an
 // `origin` says with it where the file describes it, for messages: a JSON pointer, or a line; empty where the format
 // has neither.
+//
+// All coordinates are relative to `origin_in_file`, which the reader takes off in double before it rounds to floats
+// (scene/scene_origin.h). It is 0 where the scene lies at the file's origin.
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "math/double_vec3.h"
 #include "math/transform.h"
 #include "scene/animation.h"
 #include "scene/camera.h"
@@ -31,6 +35,9 @@ struct Instance {
     Transform
         node_from_local;    // its place within the node: world_from_local is that of the node times it, without a skin
     bool is_hidden = false; // its transform is singular, as by a scale of 0: not there; world_from_local says nothing
+    /// Rays meet it, but ids, layers and alpha show it as background, and bounds_of() leaves it out: a made-up ground.
+    /// One instance at most is, the last.
+    bool is_background = false;
 };
 
 struct Scene {
@@ -45,13 +52,13 @@ struct Scene {
     std::vector<Skin> skins;
     std::vector<MeshShape> shapes; // of those meshes that morph targets or a skin can move
     std::vector<Animation> animations;
-    std::string no_instances; // where there are none: what the file has instead, and what would be right
+    DoubleVec3 origin_in_file = {0, 0, 0}; // of all coordinates here, in those of the file, metres
+    bool is_far = false;                   // it lies over 2^12 of the scene's own sizes from the file's origin
+    std::string no_instances;              // where there are none: what the file has instead, and what would be right
 };
 
-/// World from local of what has this place within a node. Exact where it has none of its own.
-inline Transform placed_in(const Transform& world_from_node, const Transform& node_from_local) {
-    return node_from_local == Transform() ? world_from_node : compose(world_from_node, node_from_local);
-}
+/// World from local of what has this place within a node; relative to `origin`, in the coordinates of the file.
+Transform placed_in(const NodePlace& place, const Transform& node_from_local, DoubleVec3 origin);
 
 /// JSON pointer of the node that an instance comes from; empty for none.
 std::string origin_of(const Instance& instance);
@@ -69,7 +76,7 @@ inline bool is_mirroring(const Transform& world_from_local) { return determinant
 /// Whether all of `local` lies within kMaxCoordinate once it is placed.
 bool lies_near(const Transform& world_from_local, const Bounds3& local);
 
-/// World-space box of all instances that are not hidden.
+/// World-space box of all instances that are neither hidden nor background.
 Bounds3 bounds_of(const Scene& scene);
 
 } // namespace pertev

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kGrain = 1 << 12;
+constexpr uint64_t kVerticesAtOnce = 1 << 12;
 
 template <class T>
 const T* data_or_null(const std::vector<T>& values) {
@@ -22,7 +22,7 @@ bool turns_over(const DeformVertices& stage, uint64_t vertices, std::span<const 
     const auto mirrors = [](const Transform& m) { return determinant(m) < 0; };
     if (std::ranges::none_of(joints, mirrors)) return false;
     std::atomic<int64_t> balance{0}; // vertices turned inside out, less those that are not
-    parallel_for_ranges(vertices, kGrain, [&](uint64_t begin, uint64_t end) {
+    parallel_for_ranges(vertices, kVerticesAtOnce, [&](uint64_t begin, uint64_t end) {
         int64_t sum = 0;
         for (uint64_t i = begin; i < end; ++i) {
             Transform m;
@@ -76,12 +76,25 @@ bool shape_mesh(MeshShape& shape, std::span<const float> morph_weights, std::spa
         .tangents = mesh.tangents.empty() ? nullptr : mesh.tangents.data(),
     };
     const uint64_t vertices = mesh.positions.size();
-    parallel_for(vertices, kGrain, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+    parallel_for(vertices, kVerticesAtOnce, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
     const bool is_turned_over = turns_over(stage, vertices, joints);
     if (is_turned_over == shape.is_turned_over) return false;
     shape.is_turned_over = is_turned_over;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
     return true;
+}
+
+void shape_at_rest(Scene& scene, std::span<MeshShape* const> shapes) {
+    if (shapes.empty()) return;
+    const std::vector<Transform> world_from_node =
+        world_from_nodes(places_of(scene.nodes, parents_first(scene.nodes)), scene.origin_in_file);
+    for (MeshShape* shape : shapes) {
+        std::vector<Transform> joints;
+        if (shape->skin != kNoSkin) joints = joint_transforms(scene.skins[shape->skin], world_from_node);
+        const std::span<const float> weights =
+            shape->node == kNoNode ? std::span<const float>() : scene.nodes[shape->node].morph_weights;
+        shape_mesh(*shape, weights, joints, scene.meshes[shape->mesh]);
+    }
 }
 
 } // namespace pertev

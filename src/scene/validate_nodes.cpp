@@ -11,9 +11,14 @@
 namespace pertev {
 namespace {
 
+/// Numbers that floats cannot hold are not finite either.
 bool is_finite_pose(const NodePose& pose) {
-    return is_finite(pose.translation) && is_finite(pose.rotation.x) && is_finite(pose.rotation.y) &&
-           is_finite(pose.rotation.z) && is_finite(pose.rotation.w) && is_finite(pose.scale);
+    return is_finite(to_float(pose.translation)) && is_finite(to_float(pose.scale)) &&
+           std::ranges::all_of(pose.rotation, [](double x) { return is_finite(static_cast<float>(x)); });
+}
+
+bool is_zero(const std::array<double, 4>& rotation) {
+    return std::ranges::all_of(rotation, [](double x) { return static_cast<float>(x) == 0; });
 }
 
 /// Whether entry `first` and the three after it are a quaternion of length 0.
@@ -74,13 +79,13 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     if (channel.part == AnimatedPart::Weights && scene.nodes[channel.target].morph_weights.empty()) {
         return "its node's mesh has no morph targets; expected one that has";
     }
-    if (places_node(channel.part) && std::holds_alternative<Transform>(scene.nodes[channel.target].pose)) {
+    if (places_node(channel.part) && std::holds_alternative<DoubleTransform>(scene.nodes[channel.target].pose)) {
         return "its node has a matrix; expected translation, rotation and scale";
     }
     if (times.empty()) return "it has no key times; expected at least one";
     for (std::size_t i = 0; i < times.size(); ++i) {
-        if (!is_finite(times[i]) || times[i] < 0 || (i > 0 && times[i] <= times[i - 1])) {
-            return fmt::format("key time {} is {}; expected seconds from 0 on, each above the one before", i, times[i]);
+        if (!is_finite(times[i]) || (i > 0 && times[i] < times[i - 1])) {
+            return fmt::format("key time {} is {}; expected finite seconds, none below the one before", i, times[i]);
         }
     }
     const std::size_t numbers = numbers_in_value(channel, scene);
@@ -121,10 +126,10 @@ void validate_nodes(const Scene& scene, const std::string& file) {
                 fmt::format("{}: skin {} is out of range; there are {}", place_of(i), node.skin, scene.skins.size()));
         }
         const NodePose* pose = std::get_if<NodePose>(&node.pose);
-        if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(std::get<Transform>(node.pose))) {
+        if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(to_float(std::get<DoubleTransform>(node.pose)))) {
             throw bad(place_of(i) + ": its transform is not finite");
         }
-        if (pose != nullptr && pose->rotation == Vec4{0, 0, 0, 0}) {
+        if (pose != nullptr && is_zero(pose->rotation)) {
             throw bad(place_of(i) + ": its rotation is 0; expected a unit quaternion");
         }
         if (!std::ranges::all_of(node.morph_weights, [](float w) { return is_finite(w); })) {

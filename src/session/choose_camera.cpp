@@ -8,6 +8,8 @@
 #include "base/limits.h"
 #include "formats/parse_number.h"
 #include "math/portable_math.h"
+#include "scene/scene_origin.h"
+#include "session/place_text.h"
 #include "session/survey/aim_camera.h"
 #include "session/survey/default_camera.h"
 
@@ -17,6 +19,7 @@ namespace {
 constexpr float kRadiansPerDegree = kPi / 180.0f;
 
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+std::string text_of(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
 /// `x` as a notice writes it, and no more exactly: the flags that the notice shows make the same picture.
 float rounded(float x, int digits) {
@@ -26,18 +29,19 @@ float rounded(float x, int digits) {
     return value;
 }
 
-void place_camera(const CameraChoice& choice, Camera& camera) {
+void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera) {
     if (!choice.eye && !choice.target && !choice.up) return;
     const Transform& from = camera.world_from_camera;
-    const Vec3 eye = choice.eye.value_or(from.translation);
-    const Vec3 target = choice.target.value_or(eye - column(from, 2));
+    const Vec3 eye = choice.eye ? in_scene(scene, *choice.eye) : from.translation;
+    const Vec3 target = choice.target ? in_scene(scene, *choice.target) : eye - column(from, 2);
     const Vec3 up = choice.up.value_or(Vec3{0, 1, 0});
     Transform placed = look_at(eye, target, up);
     if (!is_finite(placed.row0) && !choice.up) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
     if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
         const std::string of_up = choice.up ? fmt::format(" and not lie along --up {}", text_of(up)) : "";
-        throw Error(ErrorCode::BadInput, fmt::format("--eye {} --target {}: the target must differ from the eye{}",
-                                                     text_of(eye), text_of(target), of_up));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--eye {} --target {}: the target must differ from the eye{}",
+                                text_of(in_file(scene, eye)), text_of(in_file(scene, target)), of_up));
     }
     camera.world_from_camera = placed;
     if (choice.target) camera.focus_distance = length(target - eye);
@@ -49,9 +53,8 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     Messages unsaid; // of a view that is not to be: it looks elsewhere
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
-    messages.note(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {:.4g},{:.4g},{:.4g} "
-                              "--target {})",
-                              eye.x, eye.y, eye.z, text_of(*choice.target)));
+    messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {} --target {})",
+                                 place_text(scene, eye, 4), text_of(*choice.target)));
     return camera;
 }
 
@@ -59,8 +62,8 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
 void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
     const Vec3 eye = camera.world_from_camera.translation, forward = -column(camera.world_from_camera, 2);
     const Bounds3 bounds = bounds_of(scene);
-    const float distance =
-        choice.target ? length(*choice.target - eye) : dot(0.5f * (bounds.lo + bounds.hi) - eye, forward);
+    const float distance = choice.target ? length(in_scene(scene, *choice.target) - eye)
+                                         : dot(0.5f * (bounds.lo + bounds.hi) - eye, forward);
     camera.projection = Projection::Orthographic;
     if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
 }
@@ -76,10 +79,10 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
     const float away = length(middle - camera.world_from_camera.translation);
     const float distance = seen.value_or(max(away, 0x1p-40f));
     camera.focus_distance = rounded(distance, 4);
-    messages.note(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,
-                              seen ? "the distance of what is in the middle of the picture"
-                                   : "the distance of the scene's middle, for nothing is in that of the picture",
-                              distance));
+    messages.make_up(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,
+                                 seen ? "the distance of what is in the middle of the picture"
+                                      : "the distance of the scene's middle, for nothing is in that of the picture",
+                                 distance));
 }
 
 /// `flattened`: the camera's angle of view has become a height.
@@ -126,13 +129,12 @@ const Camera* scene_camera(const std::string& name, const Scene& scene) {
 
 void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
     if (!choice.eye || choice.target) return;
-    const Target target = target_from(scene, *choice.eye);
-    const Vec3 at = target.position;
-    choice.target = Vec3{rounded(at.x, 6), rounded(at.y, 6), rounded(at.z, 6)};
+    const Target target = target_from(scene, in_scene(scene, *choice.eye));
+    choice.target = told_place(scene, target.position, 6);
     choice.is_aimed = true;
-    messages.note(fmt::format("--eye without --target: it looks {} (--eye {} --target {:.6g},{:.6g},{:.6g})",
-                              target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
-                              text_of(*choice.eye), at.x, at.y, at.z));
+    messages.make_up(fmt::format("--eye without --target: it looks {} (--eye {} --target {})",
+                                 target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
+                                 text_of(*choice.eye), place_text(scene, target.position, 6)));
 }
 
 Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {
@@ -143,7 +145,9 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     } else if (!choice.eye) {
         camera = make_camera(choice, scene, aspect, messages);
     }
-    place_camera(choice, camera);
+    Vec3& place = camera.world_from_camera.translation;
+    place = told_in_file(scene, place); // so that numbers in the coordinates of the file say it to the bit
+    place_camera(choice, scene, camera);
     if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
     if (choice.aperture) camera.aperture_radius = *choice.aperture;
     if (choice.focus) camera.focus_distance = *choice.focus;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "math/frame.h"
+#include "scene/scene_origin.h"
 #include "session/session.h"
 
 namespace pertev {
@@ -39,7 +40,8 @@ Measured mean_of(std::span<const double> estimates) {
 Camera meter_camera(const Scene& scene, const MeterPlace& place) {
     PERTEV_CHECK(length_squared(place.normal) > 0);
     const Bounds3 bounds = bounds_of(scene);
-    float largest = max_component(abs(place.point));
+    const Vec3 point = in_scene(scene, place.point);
+    float largest = max_component(abs(point));
     if (!bounds.is_empty()) largest = max(largest, max_component(max(abs(bounds.lo), abs(bounds.hi))));
     const Frame frame = make_frame(normalize(place.normal));
     Camera camera;
@@ -47,7 +49,7 @@ Camera meter_camera(const Scene& scene, const MeterPlace& place) {
     // The camera looks along -z, so that its x and y change places with the frame's.
     const Vec3 x = frame.bitangent, y = frame.tangent, z = -frame.normal;
     camera.world_from_camera = {
-        {x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, place.point + 0x1p-19f * largest * frame.normal};
+        {x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, point + 0x1p-19f * largest * frame.normal};
     return camera;
 }
 

@@ -30,9 +30,9 @@ inline constexpr uint32_t kMeterRepeats = 32, kMeterSide = 16;
 /// The seed of the first estimate is so many times the one asked for: two seeds share none.
 inline constexpr uint32_t kMostMeterSeed = UINT32_MAX / kMeterRepeats;
 
-/// Where and which way a meter looks; metres, in the file's coordinates.
+/// Where and which way a meter looks; metres, in the coordinates of the scene's file.
 struct MeterPlace {
-    Vec3 point;
+    DoubleVec3 point;
     Vec3 normal; // out of the surface that the light is for; any length but 0
 };
 

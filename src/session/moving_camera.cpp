@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "math/portable_math.h"
+#include "scene/scene_origin.h"
 
 namespace pertev {
 namespace {
@@ -29,7 +30,8 @@ MovingCamera::MovingCamera(CameraChoice choice, std::optional<CameraPath> path, 
     const Vec3 eye = at_rest.world_from_camera.translation;
     const Vec3 seen = eye - at_rest.focus_distance * column(at_rest.world_from_camera, 2);
     const Bounds3 bounds = bounds_of(rest);
-    middle_ = choice_.target.value_or(made_up_ || bounds.is_empty() ? seen : bounds.centre());
+    const Vec3 looked_at = made_up_ || bounds.is_empty() ? seen : bounds.centre();
+    middle_ = choice_.target ? in_scene(rest, *choice_.target) : looked_at;
 }
 
 CameraChoice MovingCamera::choice_at(std::optional<double> time_s) const {

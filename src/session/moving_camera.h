@@ -34,7 +34,7 @@ private:
     std::optional<CameraPath> path_;
     std::optional<Camera> made_up_; // the scene has none, and the choice no eye
     float aspect_;
-    Vec3 middle_; // of turned()
+    Vec3 middle_; // of turned(); in the scene's coordinates
 };
 
 } // namespace pertev

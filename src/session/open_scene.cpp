@@ -10,7 +10,9 @@
 #include "math/scalar.h"
 #include "session/photometry.h"
 #include "session/survey/default_light.h"
+#include "session/survey/ground.h"
 #include "session/survey/lamp_fronts.h"
+#include "session/survey/surroundings.h"
 
 namespace pertev {
 namespace {
@@ -58,7 +60,47 @@ void show_back_faces(Scene& scene, Messages& messages) {
     if (!any_hidden) messages.warn("--show-back-faces: no surface of the scene hides its back");
 }
 
+/// `light`: what was made up.
+bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight light) {
+    switch (options.ground) {
+    case Ground::Off:
+        return false;
+    case Ground::On:
+        return true;
+    case Ground::Auto:
+        return light == DefaultLight::Sky && scene.cameras.empty() &&
+               look_around(scene).kind == SurroundingsKind::Object;
+    }
+    return false;
+}
+
 } // namespace
+
+FileSpace file_space(const std::string& up_axis, const std::string& unit) {
+    FileSpace space;
+    if (!up_axis.empty()) {
+        const std::optional<UpAxis> read = parse_up_axis(up_axis);
+        if (!read) throw Error(ErrorCode::BadInput, fmt::format("--up-axis {}: expected x, y or z", up_axis));
+        space.up_axis = *read;
+    }
+    if (!unit.empty()) {
+        const std::optional<double> read = parse_unit(unit);
+        if (!read) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--unit {}: expected {} or a number of metres above 0", unit, kUnitNames));
+        }
+        space.unit_m = *read;
+    }
+    return space;
+}
+
+ReadOptions read_options(const OpenOptions& options) {
+    ReadOptions read;
+    read.allowed_paths = options.allowed_paths;
+    read.two_sided_lights = options.two_sided_lights;
+    read.space = file_space(options.up_axis, options.unit);
+    return read;
+}
 
 std::string environment_text(const OpenOptions& options) {
     if (!options.environment_radiance) return options.environment.string();
@@ -68,21 +110,26 @@ std::string environment_text(const OpenOptions& options) {
 
 Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_scene(path, options, messages);
+    if (!(options.space == FileSpace()) && tells_space(path)) {
+        messages.warn(fmt::format("--up-axis, --unit: {} is in metres with y up; these flags are for .obj and .ply",
+                                  path.string()));
+    }
     if (!options.two_sided_lights && !tells_lamp_sides(path)) say_lamp_fronts(scene, path.string(), messages);
     return scene;
 }
 
 Scene open_scene(const OpenOptions& options, Messages& messages) {
-    ReadOptions read;
-    read.allowed_paths = options.allowed_paths;
-    read.two_sided_lights = options.two_sided_lights;
-    Scene scene = read_scene_and_lamps(options.scene, read, messages);
+    Scene scene = read_scene_and_lamps(options.scene, read_options(options), messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         messages.warn("--two-sided-lights: no surface of the scene gives light");
     }
     if (options.show_back_faces) show_back_faces(scene, messages);
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
-    add_default_light(scene, messages);
+    const DefaultLight light = add_default_light(scene, options.use, messages);
+    if (wants_ground(options, scene, light)) {
+        add_ground(scene);
+        messages.make_up("a made-up ground catches the shadow (--ground off: none)");
+    }
     turn_and_scale(options, scene, messages);
     set_lamps(scene, options.lamps, lumens_per_watt(options.scene, options.efficacy));
     return scene;

@@ -9,11 +9,19 @@
 #include "base/version.h"
 #include "image/tone_map_image.h"
 #include "session/settings_text.h"
+#include "session/survey/ground.h"
 
 namespace pertev {
 namespace {
 
 std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+std::string comma_separated(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+/// A place of the scene in the coordinates of its file, with the digits that lead back to it.
+std::string place_in_file(Vec3 p, DoubleVec3 origin) {
+    return origin == DoubleVec3{0, 0, 0} ? comma_separated(p) : comma_separated(origin + to_double(p));
+}
 
 std::string comma_separated(Rgb c) { return fmt::format("{},{},{}", c.r, c.g, c.b); }
 
@@ -64,35 +72,46 @@ SceneSource source_of(const OpenOptions& options, const Scene& scene) {
             .environment = environment_text(options),
             .environment_scale = options.environment_scale,
             .environment_rotation_deg = options.environment_rotation_deg,
+            .up_axis = options.up_axis,
+            .unit = options.unit,
             .lamps = lamps,
             .has_environment = scene.environment.has_value(),
+            .has_ground = has_ground(scene),
             .two_sided_lights = options.two_sided_lights,
-            .show_back_faces = options.show_back_faces};
+            .show_back_faces = options.show_back_faces,
+            .position_origin = scene.is_far ? std::optional(scene.origin_in_file) : std::nullopt};
 }
 
-CameraSource source_of(const CameraChoice& choice, const Camera& camera) {
+CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleVec3 origin) {
     return {.camera = camera,
             .name = choice.camera,
             .target = choice.target,
             .up = choice.up,
-            .fov_deg = choice.fov_deg.value_or(0)};
+            .fov_deg = choice.fov_deg.value_or(0),
+            .origin = origin};
 }
 
 ExrMetadata camera_metadata(const CameraSource& source) {
     const Camera& camera = source.camera;
     const Transform& from = camera.world_from_camera;
     const Vec3 eye = from.translation;
-    const Vec3 target = source.target.value_or(eye - camera.focus_distance * column(from, 2));
+    const Vec3 target =
+        source.target ? to_float(*source.target - source.origin) : eye - camera.focus_distance * column(from, 2);
     Vec3 up = source.up.value_or(column(from, 1));
     for (const Vec3 unsaid : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
         if (!source.up && look_at(eye, target, unsaid) == from) up = unsaid;
     }
     const std::string matrix =
         fmt::format("{} {} {} {}", comma_separated(column(from, 0)), comma_separated(column(from, 1)),
-                    comma_separated(column(from, 2)), comma_separated(eye));
-    ExrMetadata metadata = {{"pertev.camera", source.name},       {"pertev.world_from_camera", matrix},
-                            {"pertev.eye", comma_separated(eye)}, {"pertev.target", comma_separated(target)},
-                            {"pertev.up", comma_separated(up)},   {"pertev.aperture", camera.aperture_radius}};
+                    comma_separated(column(from, 2)), place_in_file(eye, source.origin));
+    const std::string looked_at =
+        source.target ? comma_separated(*source.target) : place_in_file(target, source.origin);
+    ExrMetadata metadata = {{"pertev.camera", source.name},
+                            {"pertev.world_from_camera", matrix},
+                            {"pertev.eye", place_in_file(eye, source.origin)},
+                            {"pertev.target", looked_at},
+                            {"pertev.up", comma_separated(up)},
+                            {"pertev.aperture", camera.aperture_radius}};
     if (camera.aperture_radius > 0) metadata.emplace_back("pertev.focus", camera.focus_distance);
     if (camera.projection == Projection::Orthographic) {
         append(metadata, {{"pertev.projection", "orthographic"}, {"pertev.view_height", camera.ortho_height}});
@@ -171,7 +190,11 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         metadata.emplace_back("pertev.shutter", fmt::format("{},{}", scene.shutter->open_s, scene.shutter->close_s));
     }
     append(metadata, camera_metadata(record.camera));
+    if (scene.position_origin) metadata.emplace_back("pertev.position_origin", comma_separated(*scene.position_origin));
     append(metadata, environment_metadata(scene));
+    if (!scene.up_axis.empty()) metadata.emplace_back("pertev.up_axis", scene.up_axis);
+    if (!scene.unit.empty()) metadata.emplace_back("pertev.unit", scene.unit);
+    if (scene.has_ground) metadata.emplace_back("pertev.ground", std::string("on"));
     if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && record.display->false_colors) {
@@ -188,6 +211,8 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
     append(metadata, {{"pertev.spp", static_cast<int32_t>(stats.samples)},
                       {"pertev.device", record.device},
                       {"pertev.hash", hash},
+                      {"pertev.made_up", json_strings(record.scene.made_up)},
+                      {"pertev.left_out", json_strings(record.scene.left_out)},
                       {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
                       {"pertev.load_seconds", record.scene.load_seconds},
                       {"pertev.build_seconds", record.scene.build_seconds},

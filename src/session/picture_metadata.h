@@ -24,21 +24,27 @@ struct SceneSource {
     std::string environment;     // asked for: file or colour; empty: none was
     float environment_scale = 1; // factor
     float environment_rotation_deg = 0;
+    std::string up_axis, unit;    // of the file's coordinates, asked for; empty: not
     std::string lamps;            // set to amounts of light, a line each; empty: none
     bool has_environment = false; // the scene has one: asked for, its own or the default
+    bool has_ground = false;      // a made-up one
     bool two_sided_lights = false, show_back_faces = false;
     std::optional<double> time_s;                  // that it is shown at; none: at rest
     std::optional<Shutter> shutter;                // open at that time; none: it is of one moment
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty: none are said
+    std::vector<std::string> made_up, left_out;    // messages: for the scene; of what it has
+    std::optional<DoubleVec3> position_origin;     // of a far scene: what positions are relative to; none: the file's
     double load_seconds = 0, build_seconds = 0;    // of reading; of the trees
 };
 
 /// A camera, and what was asked for of it in words that say the same.
 struct CameraSource {
     Camera camera;
-    std::string name;               // or number, of the scene's cameras; empty: none was asked for
-    std::optional<Vec3> target, up; // position and direction
-    float fov_deg = 0;              // 0: none was asked for
+    std::string name;                 // or number, of the scene's cameras; empty: none was asked for
+    std::optional<DoubleVec3> target; // in the coordinates of the file
+    std::optional<Vec3> up;
+    float fov_deg = 0;             // 0: none was asked for
+    DoubleVec3 origin = {0, 0, 0}; // of the scene that the camera stands in (Scene::origin_in_file)
 };
 
 /// Of a frame in real time (Session::render_frame): what it is made of beside its sample.
@@ -74,8 +80,8 @@ struct PictureRecord {
 
 /// Of a scene that open_scene() made of these options; without seconds.
 SceneSource source_of(const OpenOptions& options, const Scene& scene);
-/// Of a camera that choose_camera() made of this choice, after aim_eye().
-CameraSource source_of(const CameraChoice& choice, const Camera& camera);
+/// Of a camera that choose_camera() made of this choice, after aim_eye(). `origin`: of the scene.
+CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleVec3 origin = {0, 0, 0});
 
 /// What places this camera again: to the bit where words have placed it or none are given, else as near as their
 /// numbers go. And its matrix, column by column.

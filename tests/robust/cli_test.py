@@ -14,7 +14,7 @@ import time
 from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, gltf_with_cameras, main, read_exr, write
 
 FLAGS = {
-    "render": "--output -o --allow-path --quiet -q --json --strict --camera --eye --target --up --fov --projection "
+    "render": "--output -o --allow-path --up-axis --unit --quiet -q --json --strict --camera --eye --target --up --fov --projection "
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --device --threads "
@@ -24,12 +24,12 @@ FLAGS = {
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
               "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction",
-    "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --environment --environment-rotation "
+    "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
-                       "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --environment --environment-rotation "
+                       "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --environment-rotation "
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --quiet -q --json",
-    "info": "--allow-path --quiet -q --json",
+    "info": "--allow-path --up-axis --unit --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --quiet -q --json",

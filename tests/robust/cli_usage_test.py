@@ -108,7 +108,7 @@ class Strictness(CliTest):
         for scene in ["gone", "broken", "nowhere"]:
             self.succeed("render", scene + ".obj", "-o", scene + ".png", *look)
         self.succeed("render", "plain.obj", "-o", "plain.png", "--strict", *look)
-        self.assertRegex(self.succeed("render", "--help").stdout, r"(?s)--strict +fail where a texture .* is missing")
+        self.assertRegex(self.succeed("render", "--help").stdout, r"(?s)--strict +fail where anything .* left\s+out")
 
     def test_strict_counts_a_gltf_files_pictures_too(self):
         write(self.path("m.gltf"), """{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],

@@ -9,7 +9,8 @@ using namespace pertev;
 namespace {
 
 CameraKey key(double time_s, float x, float fov_deg = 0) {
-    return {.time_s = time_s, .eye = {x, 0, 5}, .target = {0, x, 0}, .fov_deg = fov_deg};
+    const double at = static_cast<double>(x);
+    return {.time_s = time_s, .eye = {at, 0, 5}, .target = {0, at, 0}, .fov_deg = fov_deg};
 }
 
 } // namespace
@@ -24,7 +25,7 @@ TEST_CASE("a path passes its keys at their times and stands still before and aft
     CHECK(sample_path(path, 1e9).eye == path.keys[2].eye);
     CHECK(sample_path(path, 1.5).up == Vec3{0, 1, 0});
     CHECK(sample_path(path, 1.5).fov_deg == 0);
-    CHECK(sample_path({{key(3, 1)}}, 3.5).eye == Vec3{1, 0, 5});
+    CHECK(sample_path({{key(3, 1)}}, 3.5).eye == DoubleVec3{1, 0, 5});
 }
 
 TEST_CASE("a parabola over uneven times is followed exactly between inner keys, and a line everywhere") {
@@ -41,9 +42,9 @@ TEST_CASE("a parabola over uneven times is followed exactly between inner keys, 
 TEST_CASE("speed does not jump at a key, and the angle of view stays one") {
     const CameraPath path = {{key(0, 0, 10), key(1, 4, 178), key(3, -2, 178), key(4, -2, 1)}};
     for (const double t : {1.0, 3.0}) {
-        const float h = 1e-3f, at = sample_path(path, t).eye.x;
-        const float before = (at - sample_path(path, t - 1e-3).eye.x) / h;
-        const float after = (sample_path(path, t + 1e-3).eye.x - at) / h;
+        const double h = 1e-3, at = sample_path(path, t).eye.x;
+        const double before = (at - sample_path(path, t - 1e-3).eye.x) / h;
+        const double after = (sample_path(path, t + 1e-3).eye.x - at) / h;
         CHECK(before == doctest::Approx(after).epsilon(0.02));
     }
     for (double t = 0; t <= 4; t += 1.0 / 64) {

@@ -44,7 +44,7 @@ TEST_CASE("the scene's first camera is taken, or the one that is named by name o
 
 TEST_CASE("an eye without a target looks at the middle of the scene, as the notice says it") {
     Messages messages;
-    const Camera camera = choose_camera({.eye = Vec3{0, 0, -3}}, make_scene(), 1, messages);
+    const Camera camera = choose_camera({.eye = DoubleVec3{0, 0, -3}}, make_scene(), 1, messages);
     CHECK(camera.world_from_camera == look_at({0, 0, -3}, {0, 0, 0}, {0, 1, 0}));
     CHECK(camera.focus_distance == 3);
     REQUIRE(messages.all().size() == 1);
@@ -53,14 +53,14 @@ TEST_CASE("an eye without a target looks at the middle of the scene, as the noti
 }
 
 TEST_CASE("a lens without a focus is sharp at what is in the middle of the picture, unless a target is said") {
-    CHECK(choose({.eye = Vec3{0, 0, 4}, .aperture = 0.1f}).focus_distance == 4);
+    CHECK(choose({.eye = DoubleVec3{0, 0, 4}, .aperture = 0.1f}).focus_distance == 4);
     CHECK(choose({.camera = "second", .aperture = 0.1f}).focus_distance == 9);
-    CHECK(choose({.eye = Vec3{0, 0, 4}, .target = Vec3{0, 0, 2}, .aperture = 0.1f}).focus_distance == 2);
+    CHECK(choose({.eye = DoubleVec3{0, 0, 4}, .target = DoubleVec3{0, 0, 2}, .aperture = 0.1f}).focus_distance == 2);
     CHECK(choose({.aperture = 0.1f, .focus = 7.0f}).focus_distance == 7);
 }
 
 TEST_CASE("a perspective camera made orthographic shows as much of what it looks at") {
-    CameraChoice choice = {.eye = Vec3{0, 0, 4}, .target = Vec3{0, 0, 0}, .fov_deg = 90.0f};
+    CameraChoice choice = {.eye = DoubleVec3{0, 0, 4}, .target = DoubleVec3{0, 0, 0}, .fov_deg = 90.0f};
     choice.projection = Projection::Orthographic;
     CHECK(choose(choice).projection == Projection::Orthographic);
     CHECK(choose(choice).ortho_height == doctest::Approx(8));

@@ -13,7 +13,6 @@ using namespace pertev;
 
 namespace {
 
-DoubleVec3 operator+(DoubleVec3 a, DoubleVec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 DoubleVec3 operator*(double s, DoubleVec3 a) { return {s * a.x, s * a.y, s * a.z}; }
 double length(DoubleVec3 a) { return std::sqrt(dot(a, a)); }
 DoubleVec3 turned(const Transform& m, DoubleVec3 v) {

@@ -56,7 +56,7 @@ TEST_CASE("a scene's own camera goes with its node, and keeps what flags say") {
     CHECK(eye_of(now) == Vec3{0, 0, 6});
     CHECK(now.fov_y == at_rest.fov_y);
     CHECK(now.focus_distance == at_rest.focus_distance);
-    choice.target = Vec3{0, 0, -4};
+    choice.target = DoubleVec3{0, 0, -4};
     const MovingCamera aimed(choice, std::nullopt, posed.scene(), 1, messages);
     CHECK(aimed.at(posed.scene(), 6.0).focus_distance == 10);
 }
@@ -76,7 +76,7 @@ TEST_CASE("a turntable goes counter-clockwise round the target and comes back") 
     PosedScene posed(make_scene(true));
     Messages messages;
     CameraChoice choice;
-    choice.eye = Vec3{1, 2, 8}, choice.target = Vec3{1, 0, 3};
+    choice.eye = DoubleVec3{1, 2, 8}, choice.target = DoubleVec3{1, 0, 3};
     const MovingCamera moving(choice, std::nullopt, posed.scene(), 1, messages);
     const Camera camera = moving.at(posed.scene(), std::nullopt);
     CHECK(moving.turned(camera, 0) == camera);

@@ -164,7 +164,7 @@ TEST_CASE("a scene of which all is hidden at rest can be looked at") {
     CHECK(!is_singular(camera.world_from_camera));
     CHECK(is_finite(world_centre(posed.scene())));
     CameraChoice choice;
-    choice.eye = Vec3{1, 2, 3};
+    choice.eye = DoubleVec3{1, 2, 3};
     choice.aperture = 0.1f;
     CHECK(!is_singular(choose_camera(choice, posed.scene(), 1, messages).world_from_camera));
 }
@@ -231,7 +231,9 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     shape.weights = {1, 0.5f, 0}; // of any sum; the third vertex stays
     const float root = 0.70710678f;
     scene.animations[0].channels = {channel(0, AnimatedPart::Rotation, {0, 1}, {0, 0, 0, 1, 0, root, 0, root})};
-    shape_mesh(shape, {}, joint_transforms(scene.skins[0], world_from_nodes(scene.nodes, parents_first(scene.nodes))),
+    shape_mesh(shape, {},
+               joint_transforms(scene.skins[0],
+                                world_from_nodes(places_of(scene.nodes, parents_first(scene.nodes)), {0, 0, 0})),
                mesh);
     CHECK(close(mesh.positions[0], {-1, 0, 0}));
     PosedScene posed = pose(std::move(scene));
@@ -249,7 +251,7 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     CHECK(turned.positions[0] == Vec3{-1, 0, 0});
 }
 
-TEST_CASE("normals stay across their surface where a joint squeezes or mirrors it, and tangents along") {
+TEST_CASE("normals stay across their surface where a joint squeezes or mirrors it, tangents and bitangents along") {
     Scene scene = make_scene();
     Mesh& mesh = scene.meshes[0];
     mesh.normals.assign(3, normalize(Vec3{1, 1, 0}));
@@ -261,8 +263,14 @@ TEST_CASE("normals stay across their surface where a joint squeezes or mirrors i
     posed.set_time(1);
     CHECK(close(now.normals[0], normalize(Vec3{1, 2, 0})));
     CHECK(close({now.tangents[0].x, now.tangents[0].y, 0}, normalize(Vec3{2, -1, 0})));
+    CHECK(now.tangents[0].w == 1);
     posed.set_time(2);
     CHECK(close(now.normals[0], normalize(Vec3{-1, 2, 0})));
+    CHECK(close({now.tangents[0].x, now.tangents[0].y, 0}, normalize(Vec3{-2, -1, 0})));
+    // The bitangent lay along -z, where it stays: cross(normal, tangent) points the other way now.
+    CHECK(now.tangents[0].w == -1);
+    posed.set_time(0);
+    CHECK(now.tangents[0].w == 1);
 }
 
 TEST_CASE("joints that mirror turn the triangles over, so that their fronts stay") {

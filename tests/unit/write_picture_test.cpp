@@ -117,12 +117,12 @@ TEST_CASE("a file that cannot be written is named, and keeps no other from being
 TEST_CASE("what a camera's metadata says places that camera again") {
     CameraSource source;
     source.camera = test::mixed_scene_camera();
-    source.target = Vec3{0, 0.9f, 0}; // that it was made with
+    source.target = to_double(Vec3{0, 0.9f, 0}); // that it was made with
     const ExrMetadata plain = camera_metadata(source);
     CHECK(text_of(plain, "pertev.up") == "0,1,0"); // found, as nobody has said it
     CHECK(text_of(plain, "pertev.projection") == "perspective");
     source.up = Vec3{0, 2, 0};
-    source.target = Vec3{1, 2, 3};
+    source.target = DoubleVec3{1, 2, 3};
     source.camera.projection = Projection::Orthographic;
     const ExrMetadata asked_for = camera_metadata(source);
     CHECK(text_of(asked_for, "pertev.up") == "0,2,0");
@@ -155,11 +155,11 @@ TEST_CASE("a record says of scene and camera what they were opened and chosen by
 
     CameraChoice choice;
     choice.camera = "1";
-    choice.target = Vec3{1, 2, 3};
+    choice.target = DoubleVec3{1, 2, 3};
     const CameraSource camera = source_of(choice, test::mixed_scene_camera());
     CHECK(camera.camera == test::mixed_scene_camera());
     CHECK(camera.name == "1");
-    CHECK(camera.target == Vec3{1, 2, 3});
+    CHECK(camera.target == DoubleVec3{1, 2, 3});
     CHECK(!camera.up);
     CHECK(camera.fov_deg == 0);
     choice.fov_deg = 40.0f;

@@ -131,7 +131,7 @@ function receive(message) {
 /** Of its group; rows of one group stay as they are.
  * @param {string[]} row */
 function order(row) {
-  return ["Now", "Frames", "Rays", "Stages"].indexOf(row[0]);
+  return ["Now", "Scene", "Frames", "Rays", "Stages"].indexOf(row[0]);
 }
 
 function showReadings() {

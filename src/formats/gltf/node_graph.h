@@ -17,26 +17,29 @@ namespace pertev::gltf {
 
 class NodeGraph {
 public:
-    /// Throws Error(BadInput) for a cycle, a node with two parents, or a scene that lists a child as its root.
+    /// A cycle is cut, and of two parents the first counts, each with a warning.
     NodeGraph(const Document& document, Messages& messages);
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
-    /// World from local of any node, in the scene or not, at rest.
+    /// The place of any node, in the scene or not, at rest, and its transform in the coordinates of the file.
+    const NodePlace& place(uint32_t node) const { return places_[node]; }
     const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
     const std::vector<Transform>& world_from_node() const { return world_from_node_; }
     /// All nodes of the document, by their numbers.
     std::vector<Node> take_nodes() { return std::move(nodes_); }
 
 private:
-    void read_children(const Document& document);
-    void place_nodes(const Document& document);
+    void read_children(const Document& document, Messages& messages);
+    void cut_cycles(const Document& document, Messages& messages);
+    void place_nodes(const Document& document, Messages& messages);
     std::vector<uint32_t> scene_roots(const Document& document, Messages& messages) const;
     template <class Visit>
     void for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const;
 
     std::vector<std::vector<uint32_t>> children_;
     std::vector<Node> nodes_;
+    std::vector<NodePlace> places_;
     std::vector<Transform> world_from_node_;
     std::vector<uint32_t> scene_nodes_;
 };

@@ -1,0 +1,76 @@
+#include "scene/scene_origin.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/limits.h"
+#include "scene/shape_mesh.h"
+
+namespace pertev {
+namespace {
+
+double largest(DoubleVec3 v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
+
+double longest_side(const DoubleBounds3& box) { return largest(box.hi - box.lo); }
+
+DoubleBounds3 box_in_file(const Scene& scene) {
+    const Bounds3 near = bounds_of(scene);
+    DoubleBounds3 box;
+    if (near.is_empty()) return box;
+    box.extend(in_file(scene, near.lo));
+    box.extend(in_file(scene, near.hi));
+    return box;
+}
+
+/// Places all that nodes place, relative to the scene's origin.
+void place_anew(Scene& scene) {
+    const std::vector<NodePlace> places = places_of(scene.nodes, parents_first(scene.nodes));
+    const std::vector<Transform> world_from_node = world_from_nodes(places, scene.origin_in_file);
+    for (Instance& instance : scene.instances) {
+        if (instance.node == kNoNode || scene.nodes[instance.node].skin != kNoSkin) continue;
+        instance.world_from_local = placed_in(places[instance.node], instance.node_from_local, scene.origin_in_file);
+    }
+    for (Camera& camera : scene.cameras)
+        camera.world_from_camera.translation = told_in_file(scene, world_from_node[camera.node].translation);
+    for (Light& light : scene.lights) light.position = world_from_node[light.node].translation;
+    for (MeshShape& shape : scene.shapes) {
+        if (shape.skin == kNoSkin) continue;
+        const std::vector<Transform> joints = joint_transforms(scene.skins[shape.skin], world_from_node);
+        shape_mesh(shape, scene.nodes[shape.node].morph_weights, joints, scene.meshes[shape.mesh]);
+    }
+}
+
+} // namespace
+
+DoubleVec3 centre_of(const DoubleBounds3& box) {
+    if (box.is_empty()) return {0, 0, 0};
+    int exponent = 0; // side = fraction in [1/2, 1) times 2^exponent
+    const double fraction = std::frexp(longest_side(box), &exponent);
+    const double grid = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+    // Halves go away from zero; adding 0 makes a zero positive.
+    const auto rounded = [&](double a, double b) { return grid * std::round(0.5 * (a + b) / grid) + 0.0; };
+    return {rounded(box.lo.x, box.hi.x), rounded(box.lo.y, box.hi.y), rounded(box.lo.z, box.hi.z)};
+}
+
+DoubleVec3 origin_for(const DoubleBounds3& box) {
+    const DoubleVec3 centre = centre_of(box);
+    return largest(centre) <= static_cast<double>(kMaxCoordinate) ? centre : DoubleVec3{0, 0, 0};
+}
+
+void set_origin(const DoubleBounds3& box, Scene& scene) {
+    scene.origin_in_file = origin_for(box);
+    scene.is_far = largest(scene.origin_in_file) > kFarSizes * longest_side(box);
+}
+
+void take_off_centre(Scene& scene) {
+    for (Instance& instance : scene.instances) instance.is_hidden = is_singular(instance.world_from_local);
+    // Far away the first box is one of rounded places, and the second one is exact.
+    for (int step = 0; step < 2; ++step) {
+        const DoubleVec3 before = scene.origin_in_file;
+        set_origin(box_in_file(scene), scene);
+        if (scene.origin_in_file == before) return;
+        place_anew(scene);
+    }
+}
+
+} // namespace pertev

@@ -1,0 +1,43 @@
+#pragma once
+
+// Which corners of a mesh share a tangent space by MikkTSpace's rule: those that meet in one vertex (equal position,
+// normal and texture coordinate), whose triangles hang together there by edges with two such vertices, and whose
+// textures lie the same way round. So a seam, a hard edge and the axis of a mirrored texture each end a group.
+//
+// Source: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008, chapter 4, and the rules by which his library
+// mikktspace treats triangles without area: one with two equal positions belongs to no group and breaks none; one whose
+// texture coordinates say no direction joins the first group that reaches it, and says nothing about its tangent.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/tangents/tangent_mesh.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kNoTangentGroup = 0xffffffffu;
+
+struct BorrowedTangent {
+    uint32_t corner, from;
+};
+
+struct TangentGroups {
+    std::vector<uint32_t> group;           // [corners] or kNoTangentGroup
+    std::vector<BorrowedTangent> borrowed; // corners of triangles without area, and corners of others at their vertices
+
+    // By group:
+    std::vector<uint32_t> first;               // [groups + 1] places in `corners`
+    std::vector<uint32_t> corners;             // of one group after the other, rising within each
+    std::vector<uint8_t> is_counter_clockwise; // [groups], as of UvDirections
+
+    std::size_t count() const { return is_counter_clockwise.size(); }
+    std::span<const uint32_t> corners_of(std::size_t i) const {
+        return std::span(corners).subspan(first[i], first[i + 1] - first[i]);
+    }
+};
+
+/// Takes time in proportion to the corners times the logarithm of how many meet in a vertex.
+TangentGroups make_tangent_groups(const TangentMesh& mesh);
+
+} // namespace pertev

@@ -1,0 +1,47 @@
+#include "session/place_text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "scene/scene_origin.h"
+
+namespace pertev {
+namespace {
+
+std::array<std::string, 3> numbers_of(const Scene& scene, Vec3 p, int digits) {
+    if (scene.origin_in_file == DoubleVec3{0, 0, 0}) {
+        const auto text = [&](float x) { return fmt::format("{:.{}g}", x, digits); };
+        return {text(p.x), text(p.y), text(p.z)};
+    }
+    const Bounds3 bounds = bounds_of(scene);
+    const float size = bounds.is_empty() ? 1.0f : max_component(bounds.size());
+    const double above = size > 0 ? std::floor(std::log10(static_cast<double>(size))) + 1 : 1; // the point
+    const int decimals = std::clamp(digits - static_cast<int>(above), 0, 15);
+    const DoubleVec3 place = in_file(scene, p);
+    const auto text = [&](double x) { return fmt::format("{:.{}f}", x, decimals); };
+    return {text(place.x), text(place.y), text(place.z)};
+}
+
+double number(const std::string& text) {
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+} // namespace
+
+std::string place_text(const Scene& scene, Vec3 p, int digits) {
+    const std::array<std::string, 3> numbers = numbers_of(scene, p, digits);
+    return fmt::format("{},{},{}", numbers[0], numbers[1], numbers[2]);
+}
+
+DoubleVec3 told_place(const Scene& scene, Vec3 p, int digits) {
+    const std::array<std::string, 3> numbers = numbers_of(scene, p, digits);
+    return {number(numbers[0]), number(numbers[1]), number(numbers[2])};
+}
+
+} // namespace pertev
