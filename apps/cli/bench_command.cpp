@@ -67,6 +67,7 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     const Stopwatch watch;
     OpenOptions open;
     open.scene = file;
+    open.use = SceneUse::Benchmark;
     const Scene scene = open_scene(open, messages);
     figures.load_s = watch.seconds();
 

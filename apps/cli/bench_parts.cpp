@@ -46,7 +46,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
     benched->queue = take_machine(flags.machine, messages);
     reporter.say_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    benched->scene = load_scene(flags.scene, messages);
+    benched->scene = load_scene(flags.scene, SceneUse::Benchmark, messages);
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
     check_light(settings, benched->scene, messages);
     benched->camera = choose_camera(flags.scene, benched->scene, aspect_of(settings.width, settings.height), messages);

@@ -178,7 +178,7 @@ int bench_sequence(const SequenceFlags& flags) {
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
     reporter.say_messages();
     listen_for_interrupt();
-    PictureRecord record = picture_record(flags.render.scene, *ready);
+    PictureRecord record = picture_record(flags.render.scene, *ready, reporter.messages());
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);

@@ -14,6 +14,7 @@
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "formats/file_choices.h"
 #include "formats/read_scene.h"
 #include "image/image_format.h"
 #include "image/picture_hash.h"
@@ -21,14 +22,14 @@
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
 #include "scene/scene_origin.h"
+#include "session/metadata_json.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {
 namespace {
 
 struct InfoFlags {
-    std::string file;
-    std::vector<std::filesystem::path> allowed_paths;
+    SceneOptions scene; // or another kind of file
     ReportFlags report;
 };
 
@@ -36,12 +37,6 @@ struct InfoFlags {
 class Facts {
 public:
     void add(const std::string& name, const std::string& text) { facts_.push_back({name, text, json_string(text)}); }
-    void add(const std::string& name, double number) {
-        facts_.push_back({name, fmt::format("{}", number), json_number(number)});
-    }
-    void add(const std::string& name, float number) {
-        facts_.push_back({name, fmt::format("{}", number), json_number(static_cast<double>(number))});
-    }
     void add(const std::string& name, DoubleVec3 v) {
         facts_.push_back({name, fmt::format("{:.12g} {:.12g} {:.12g}", v.x, v.y, v.z),
                           fmt::format("[{},{},{}]", json_number(v.x), json_number(v.y), json_number(v.z))});
@@ -60,13 +55,17 @@ public:
         for (const std::string& text : texts) json += (json.empty() ? "" : ",") + json_string(text);
         facts_.push_back({name, fmt::format("{}", fmt::join(texts, " ")), fmt::format("[{}]", json)});
     }
+    void add(const ExrMetadata::value_type& entry) {
+        const auto text = [](const auto& value) { return fmt::format("{}", value); };
+        facts_.push_back({entry.first, std::visit(text, entry.second), metadata_json(entry)});
+    }
     void report(Reporter& reporter) const {
         std::string json = R"({"event":"info")", lines;
         for (const Fact& fact : facts_) {
             json += fmt::format(",{}:{}", json_string(fact.name), fact.json);
             lines += fmt::format("{:24} {}\n", fact.name, fact.text);
         }
-        reporter.event(json + '}');
+        reporter.result(json + '}');
         reporter.answer(lines);
     }
 
@@ -78,7 +77,7 @@ private:
 };
 
 void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    const Image image = read_image(flags.file, &messages);
+    const Image image = read_image(flags.scene.scene, &messages);
     facts.add("width", image.width);
     facts.add("height", image.height);
     facts.add("hash", picture_hash(image).hex());
@@ -89,18 +88,29 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     const double pixels = static_cast<double>(image.width) * image.height;
     facts.add("mean", Vec3{static_cast<float>(mean[0] / pixels), static_cast<float>(mean[1] / pixels),
                            static_cast<float>(mean[2] / pixels)});
-    if (lower_case_extension(flags.file) != ".exr") return;
-    const ExrFile exr = read_exr(flags.file);
+    if (lower_case_extension(flags.scene.scene) != ".exr") return;
+    const ExrFile exr = read_exr(flags.scene.scene);
     std::vector<std::string> channels;
     for (const ExrChannel& channel : exr.channels) channels.push_back(channel.name);
     facts.add("channels", channels);
-    for (const auto& entry : exr.metadata) {
-        std::visit([&](const auto& value) { facts.add(entry.first, value); }, entry.second);
+    for (const auto& entry : exr.metadata) facts.add(entry);
+}
+
+/// Which animations and scenes the file has, and which of them a render plays and shows unless flags say otherwise.
+void describe_choices(const Scene& scene, Facts& facts) {
+    std::vector<std::string> animations = list_clips(scene.clips); // what --animation takes
+    for (std::size_t i = 0; i < animations.size(); ++i) {
+        animations[i] += fmt::format(" ({:.6g} s)", scene.clips[i].end_s);
     }
+    facts.add("animations", animations);
+    if (animations.size() > 1) facts.add("plays", clip_choice(scene.clips));
+    if (scene.file_scenes.size() < 2) return;
+    facts.add("file_scenes", list_file_scenes(scene)); // what --file-scene takes
+    facts.add("shows", file_scene_choice(scene));
 }
 
 void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
-    const Scene scene = read_any_scene(flags.file, flags.allowed_paths, messages);
+    const Scene scene = read_any_scene(flags.scene, messages);
     uint64_t unique = 0, placed = 0;
     for (const Mesh& mesh : scene.meshes) unique += mesh.triangle_count();
     for (const Instance& instance : scene.instances) placed += scene.meshes[instance.mesh].triangle_count();
@@ -127,16 +137,11 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
         cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);
     }
     facts.add("cameras", cameras);
-    std::vector<std::string> animations;
-    for (const Animation& animation : scene.animations) {
-        const std::string name = animation.name.empty() ? fmt::format("{}", animations.size()) : animation.name;
-        animations.push_back(fmt::format("{} ({:.6g} s)", name, animation.end_s()));
-    }
-    facts.add("animations", animations);
+    describe_choices(scene, facts);
 }
 
 void describe_solution(const InfoFlags& flags, Facts& facts) {
-    const RadiositySolution solution = read_any_solution(flags.file);
+    const RadiositySolution solution = read_any_solution(flags.scene.scene);
     facts.add("solution", "radiosity");
     facts.add("triangles", solution.roots.size() / 2); // a face for each side
     facts.add("shown", solution.patches.size());       // patches and parts of them, as solve says
@@ -152,16 +157,20 @@ int info(const InfoFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     Facts facts;
-    facts.add("file", flags.file);
-    if (is_picture_name(flags.file)) {
+    const std::string& name = flags.scene.scene;
+    facts.add("file", name);
+    refuse(!flags.scene.file_scene.empty() && (is_picture_name(name) || !is_scene_name(name)),
+           fmt::format("--file-scene: of a scene; {} is none", name));
+    if (is_picture_name(name)) {
         describe_image(flags, facts, messages);
-    } else if (is_scene_name(flags.file)) {
+    } else if (is_scene_name(flags.scene.scene)) {
         describe_scene(flags, facts, messages);
-    } else if (is_solution(flags.file)) {
+    } else if (is_solution(flags.scene.scene)) {
         describe_solution(flags, facts);
     } else {
-        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a picture ({}) nor {}, nor a radiosity solution",
-                                                     flags.file, fmt::join(kPictureExtensions, " "), scene_kinds()));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: neither a picture ({}) nor {}, nor a radiosity solution", flags.scene.scene,
+                                fmt::join(kPictureExtensions, " "), scene_kinds()));
     }
     reporter.say_messages();
     facts.report(reporter);
@@ -173,12 +182,14 @@ int info(const InfoFlags& flags) {
 void add_info_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("info", "Say what a scene, a picture or a radiosity solution holds");
     const auto flags = std::make_shared<InfoFlags>();
-    verb.add_option("FILE", flags->file,
-                    "a scene (.gltf .glb .obj .ply or a built-in one), a picture, or what solve has made")
+    verb.add_option("FILE", flags->scene.scene,
+                    "a scene (.gltf .glb .obj .ply, or a built-in one:\n" + builtin_scene_list() +
+                        "),\na picture, or what solve has made")
         ->type_name("")
         ->check(file_name())
         ->required();
-    add_allow_path(verb, flags->allowed_paths);
+    add_file_scene(verb, flags->scene);
+    add_read_options(verb, flags->scene);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = info(*flags); });
 }

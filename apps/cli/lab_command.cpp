@@ -160,7 +160,7 @@ int run(const LabFlags& flags) {
     listen_for_interrupt();
     const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output));
     reporter.end_progress();
-    reporter.event(json_of(report));
+    reporter.result(json_of(report));
     if (!has_findings(report) && report.interrupted) {
         reporter.say("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);

@@ -41,6 +41,9 @@ MeterPlace place_of(const MeasureFlags& flags) {
     return place;
 }
 
+/// A vector of the command line, which is one.
+std::string json_of(const std::string& vector) { return json_vector(vector).value_or(json_string(vector)); }
+
 std::string in_json(const Measured& m, double scale = 1) {
     return fmt::format(R"({{"value":{},"standard_error":{}}})", json_number(scale * m.value),
                        json_number(scale * m.standard_error));
@@ -54,12 +57,12 @@ std::string in_words(const Measured& m, double scale = 1) {
 void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, double seconds, Reporter& reporter) {
     const double efficacy = efficacy_of(flags.scene);
     if (reporter.json()) {
-        reporter.event(fmt::format(
+        reporter.result(fmt::format(
             R"({{"event":"measure","scene":{},"at":{},"normal":{},"device":{},"irradiance_rgb":[{},{},{}],"irradiance":{},"illuminance":{},"lumens_per_watt":{},"paths":{},"invalid_paths":{},"rays":{},"max_depth":{},"seed":{},"seconds":{:.3f}}})",
-            json_string(flags.scene.scene), json_string(flags.at), json_string(flags.normal),
-            json_string(queue.device_name()), in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]),
-            in_json(e.luminance), in_json(e.luminance, efficacy), json_number(efficacy), e.paths, e.invalid_paths,
-            e.rays.total(), flags.max_depth, flags.seed, seconds));
+            json_string(flags.scene.scene), json_of(flags.at), json_of(flags.normal), json_string(queue.device_name()),
+            in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]), in_json(e.luminance),
+            in_json(e.luminance, efficacy), json_number(efficacy), e.paths, e.invalid_paths, e.rays.total(),
+            flags.max_depth, flags.seed, seconds));
         return;
     }
     reporter.answer(fmt::format("irradiance   {} W/m2 (red {}, green {}, blue {})\n"
@@ -82,7 +85,7 @@ int measure(const MeasureFlags& flags) {
     settings.samples = flags.samples;
     settings.path.max_depth = flags.max_depth;
     settings.path.seed = flags.seed;
-    Scene scene = load_scene(flags.scene, messages);
+    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = true;
@@ -127,10 +130,12 @@ void add_measure_command(CLI::App& app, int& status) {
         ->type_name("N")
         ->check(whole_between(0, kMostMeterSeed))
         ->capture_default_str();
-    verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
+    verb.add_option("--time", flags->time_s, "the scene at this time of its animation (at rest)")
         ->type_name("SECONDS")
-        ->check(number_between(-1e9f, 1e9f));
-    add_allow_path(verb, flags->scene.allowed_paths);
+        ->check(number_between(-1e9f, 1e9f))
+        ->group("Motion");
+    add_animation(verb, flags->scene);
+    add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     add_machine_flags(verb, flags->machine, "Machine");
     verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "accel/bvh/bvh_cache.h"
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/render_frames.h"
 #include "base/error.h"
 #include "base/message_text.h"
@@ -17,15 +18,29 @@
 namespace pertev {
 namespace {
 
-/// --strict: throws Error(BadInput) that repeats the first warning of a texture or a file of materials that is missing.
-void refuse_missing(const Messages& messages) {
-    const std::vector<Message>& all = messages.all();
-    const auto missing = static_cast<uint64_t>(std::ranges::count_if(all, &Message::is_missing));
-    if (missing == 0) return;
+/// Throws Error(BadInput) that repeats the first warning of something left out (--strict).
+void refuse_what_is_left_out(const Messages& messages) {
+    const std::vector<std::string> left_out = messages.left_out();
+    if (left_out.empty()) return;
+    const std::size_t others = left_out.size() - 1;
     throw Error(ErrorCode::BadInput,
-                fmt::format("--strict: {}{}; nothing is rendered",
-                            std::ranges::find_if(all, &Message::is_missing)->text,
-                            missing > 1 ? fmt::format(" (and {} like it)", counted(missing - 1, "warning")) : ""));
+                fmt::format("--strict: {}{}; nothing is rendered", left_out.front(),
+                            others > 0 ? fmt::format(" (and {} like it)", counted(others, "warning")) : ""));
+}
+
+/// Auto where the view is made up, too, and shows a background: an alpha channel leaves it out, and integrators that
+/// find a part of the light alone show a ground that differs from the studio's floor.
+Ground ground_of(const RenderFlags& flags) {
+    refuse(
+        flags.ground == "on" && flags.transparent,
+        "--ground on: the ground is a part of the background, which --transparent leaves out; leave out one of them");
+    if (flags.ground == "on") return Ground::On;
+    const bool has_camera = !flags.scene.eye.empty() || !flags.scene.camera.empty() || !flags.camera_path.empty();
+    RenderSettings settings;
+    set_integrator(settings, flags.integrator);
+    const bool is_off =
+        flags.ground == "off" || has_camera || flags.transparent || !finds_all_light(settings.integrator);
+    return is_off ? Ground::Off : Ground::Auto;
 }
 
 } // namespace
@@ -58,8 +73,10 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const Stopwatch watch;
     auto ready = std::make_unique<ReadyScene>();
-    Scene scene = load_scene(flags.scene, messages);
-    if (flags.strict) refuse_missing(messages);
+    OpenOptions open = open_options(flags.scene);
+    open.ground = ground_of(flags);
+    Scene scene = open_scene(open, messages);
+    if (flags.strict) refuse_what_is_left_out(messages);
     RenderSettings& settings = ready->settings;
     settings = render_settings(flags, scene);
     settings.tracers = tracers;
@@ -94,7 +111,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     return ready;
 }
 
-PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready) {
+PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready, const Messages& messages) {
     PictureRecord record = {.scene = source_of(open_options(options), ready.scene()),
                             .camera = {},
                             .settings = ready.settings,
@@ -102,6 +119,8 @@ PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready) {
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
+    record.scene.made_up = messages.made_up();
+    record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;
     record.scene.build_seconds = ready.prepared().build_seconds;
     place_frame(ready.sequence.first, *ready.moving, {*ready.camera, ready.sequence}, record);

@@ -19,6 +19,7 @@
 #include "base/stopwatch.h"
 #include "session/render_memory.h"
 #include "session/settings_text.h"
+#include "session/survey/ground.h"
 
 namespace pertev {
 namespace {
@@ -74,16 +75,18 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
         flags.real_time ? predicted_frame_bytes(prepared, settings, reconstruction_settings(flags.reconstruction),
                                                 restir_settings(flags.reconstruction), queue.is_cuda())
                         : predicted_bytes(prepared, settings, queue.is_cuda());
+    const bool has_more = has_ground(scene); // the file is counted, not what is made up
+    const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
+    const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
     reporter.say(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
                              "rendering {}x{}, {} spp{} on {}, which takes {:.0f} MiB there",
-                             flags.scene.scene, counted(prepared.triangles, "triangle"),
-                             counted(scene.instances.size(), "instance"), counted(prepared.lights.count(), "light"),
-                             load_s, prepared.build_seconds, settings.width, settings.height, settings.samples,
-                             flags.real_time ? " a frame, reconstructed," : "", queue.device_name(), mebibytes(bytes)));
+                             flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
+                             counted(prepared.lights.count(), "light"), load_s, prepared.build_seconds, settings.width,
+                             settings.height, settings.samples, flags.real_time ? " a frame, reconstructed," : "",
+                             queue.device_name(), mebibytes(bytes)));
     reporter.event(fmt::format(
         R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
-        json_string(flags.scene.scene), prepared.triangles, scene.instances.size(), prepared.lights.count(), load_s,
-        prepared.build_seconds));
+        json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), load_s, prepared.build_seconds));
     reporter.event(
         fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",
                     settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
@@ -134,7 +137,7 @@ int render(const RenderFlags& flags) {
     reporter.say_messages();
     listen_for_interrupt();
     report_start(flags, ready->scene(), ready->prepared(), settings, queue, ready->load_s, reporter);
-    PictureRecord record = picture_record(flags.scene, *ready);
+    PictureRecord record = picture_record(flags.scene, *ready, reporter.messages());
     report_camera(record.camera, reporter);
     reporter.set_work("handing the scene to the device");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);

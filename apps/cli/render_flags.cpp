@@ -1,8 +1,10 @@
 #include "apps/cli/render_flags.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
 #include <limits>
+#include <map>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -42,15 +44,36 @@ bool is_picture(const std::string& name) {
     }
 }
 
-/// "a.png,b.exr" is one file's name, which hardly anybody means. Throws Error(BadInput) where it is no picture's.
-void check_for_list(const std::string& output, Messages& messages) {
+/// "a.png,b.exr" is one file's name, which hardly anybody means. Throws Error(BadInput).
+void refuse_list(const std::string& output) {
     const std::size_t comma = output.find(',');
     if (comma == std::string::npos || !is_picture(output.substr(0, comma))) return;
-    const std::string text = fmt::format("-o {}: this is the name of one file; each picture has a -o of its own: -o {} "
-                                         "-o {}",
-                                         output, output.substr(0, comma), output.substr(comma + 1));
-    if (!is_picture(output)) throw Error(ErrorCode::BadInput, text);
-    messages.warn(text);
+    std::string each = output;
+    for (std::size_t at = 0; (at = each.find(',', at)) != std::string::npos; at += 4) each.replace(at, 1, " -o ");
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("-o {}: this is the name of one file; each picture has a -o of its own: -o {}", output, each));
+}
+
+/// The file that is written, however it is named: without links, "." and "..".
+std::filesystem::path place_of(const std::string& file) {
+    std::error_code fault; // then the name as it is
+    const std::filesystem::path place = std::filesystem::weakly_canonical(file, fault);
+    return fault ? std::filesystem::path(file) : place;
+}
+
+/// Throws Error(BadInput) where two outputs are one file, of which the second picture would replace the first; of a
+/// sequence, where they are at some frame.
+void refuse_twins(const std::vector<std::string>& outputs, const std::optional<FrameSequence>& frames) {
+    std::map<std::filesystem::path, std::string> taken;
+    for (const std::string& output : outputs) {
+        const std::string file = frames ? frame_file(output, frames->last) : output; // the most digits
+        const auto [place, is_new] = taken.emplace(place_of(file), output);
+        if (is_new) continue;
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("-o {}: -o {} names the same file{}; leave out one of them", output, place->second,
+                                frames ? fmt::format(" for frame {}", frames->last) : ""));
+    }
 }
 
 /// Names that the picture's own channels and other layers have in files.
@@ -277,6 +300,14 @@ void add_shown_picture_flags(CLI::App& verb, RenderFlags& flags) {
         ->type_name("S")
         ->check(number_above_zero(1e8f))
         ->group(group);
+    verb.add_option(
+            "--ground", flags.ground,
+            "a made-up ground that catches the shadow: on, off or auto,\nwhich is on where camera and light are "
+            "made up around a thing")
+        ->type_name("on|off|auto")
+        ->check(one_of({"on", "off", "auto"}))
+        ->capture_default_str()
+        ->group("Environment");
     group = "Quality";
     add_light_path_flags(verb, flags, group);
     verb.add_option("--sampler", flags.sampler, "sobol or independent")
@@ -345,10 +376,10 @@ void add_render_flags(CLI::App& verb, RenderFlags& flags) {
     add_time_flags(verb, flags, false);
     add_motion_flags(verb, flags);
     add_real_time_flags(verb, flags);
-    verb.add_flag("--strict", flags.strict,
-                  "fail where a texture or a file of materials is missing, before\nrendering, and, after writing, "
-                  "where a sample is "
-                  "not finite");
+    verb.add_flag(
+        "--strict", flags.strict,
+        "fail where anything of the scene is left out, before\nrendering, and, after writing, where a sample is "
+        "not finite");
     add_report_flags(verb, flags.report);
 }
 
@@ -381,9 +412,14 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
     for (const std::string& output : flags.outputs) {
-        check_for_list(output, messages);
+        refuse_list(output);
         check_image_output(frames ? frame_file(output, frames->first) : output, size.width, size.height);
+        if (frames || !names_frames(output)) continue;
+        messages.note(fmt::format("-o {}: # stands for a frame's number with --frames A-B or --turntable N alone; this "
+                                  "is one picture, whose file is called so",
+                                  output));
     }
+    refuse_twins(flags.outputs, frames);
     if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }

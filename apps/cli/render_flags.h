@@ -27,6 +27,7 @@ struct RenderFlags {
     std::string size;
     std::string tone_map, exposure; // empty: agx, and auto
     bool transparent = false;
+    std::string ground = "auto"; // or on, off
     std::vector<std::string> aovs;
     std::vector<std::string> light_paths; // --lpe
     std::string false_color, false_color_range;

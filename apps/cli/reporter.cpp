@@ -12,6 +12,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/error.h"
+
 namespace pertev {
 namespace {
 
@@ -73,7 +75,7 @@ void Reporter::progress(double share, const std::string& detail) {
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
     write_now(stderr,
-          fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
+              fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
     drawn_ = true;
 }
 
@@ -85,6 +87,11 @@ void Reporter::event(const std::string& object) {
     if (flags_.json) write_now(stdout, object + '\n');
 }
 
+void Reporter::result(const std::string& object) {
+    event(fmt::format(R"({},"made_up":{},"left_out":{}}})", std::string_view(object).substr(0, object.size() - 1),
+                      json_strings(messages_.made_up()), json_strings(messages_.left_out())));
+}
+
 void Reporter::answer(const std::string& lines) {
     if (!is_silent()) write_now(stdout, lines);
 }
@@ -92,6 +99,16 @@ void Reporter::answer(const std::string& lines) {
 void Reporter::output(const std::string& path, const std::string& why_not) {
     event(fmt::format(R"({{"event":"output","path":{},"written":{},"error":{}}})", json_string(path), why_not.empty(),
                       why_not.empty() ? "null" : json_string(why_not)));
+}
+
+void Reporter::write_output(const std::string& path, const std::function<void()>& write) {
+    try {
+        write();
+    } catch (const Error& error) {
+        output(path, error.what());
+        throw;
+    }
+    output(path);
 }
 
 void Reporter::end_progress() {

@@ -3,6 +3,7 @@
 // What a verb says: messages and a progress line for people on stderr, or one JSON object a line on stdout.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -42,10 +43,15 @@ public:
     void set_work(const std::string& work);
     /// A JSON object ("{...}") of the given event; only with --json.
     void event(const std::string& object);
+    /// The event that tells a verb's result: `object` with the lists `made_up` and `left_out` of all messages before
+    /// it.
+    void result(const std::string& object);
     /// What the verb was asked for, for people, on stdout.
     void answer(const std::string& lines);
     /// A file that was written, or with a reason one that was not; only with --json.
     void output(const std::string& path, const std::string& why_not = "");
+    /// Has `write` write this file, and says so, or why it did not. Throws as `write`.
+    void write_output(const std::string& path, const std::function<void()>& write);
     void end_progress();
 
     bool json() const { return flags_.json; }

@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/limits.h"
+#include "formats/builtin_scenes.h"
 #include "session/open_scene.h"
 #include "session/photometry.h"
 
@@ -15,6 +17,8 @@ OpenOptions open_options(const SceneOptions& options) {
     OpenOptions open;
     open.scene = options.scene;
     open.allowed_paths = options.allowed_paths;
+    open.up_axis = options.up_axis;
+    open.unit = options.unit;
     if (Rgb radiance; parse_rgb(options.environment, radiance)) {
         open.environment_radiance = radiance;
     } else {
@@ -26,6 +30,8 @@ OpenOptions open_options(const SceneOptions& options) {
     open.efficacy = static_cast<double>(options.efficacy);
     open.two_sided_lights = options.two_sided_lights;
     open.show_back_faces = options.show_back_faces;
+    open.animation = options.animation;
+    open.file_scene = options.file_scene;
     return open;
 }
 
@@ -50,14 +56,34 @@ CameraChoice camera_choice(const SceneOptions& options) {
 
 void check_scene_options(const SceneOptions& options) {
     check_camera_choice(camera_choice(options));
-    open_options(options);
+    read_options(open_options(options));
 }
 
+std::string builtin_scene_list() { return fmt::format("{}", fmt::join(builtin_scene_names(), ", ")); }
+
 void add_scene_name(CLI::App& verb, SceneOptions& options) {
-    verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
+    verb.add_option("SCENE", options.scene,
+                    "a .gltf, .glb, .obj or .ply file, or a built-in scene:\n" + builtin_scene_list())
         ->type_name("")
         ->check(file_name())
         ->required();
+    add_file_scene(verb, options);
+}
+
+void add_file_scene(CLI::App& verb, SceneOptions& options) {
+    verb.add_option("--file-scene", options.file_scene,
+                    "of a glTF file with several scenes: the one of this name or\nnumber, from 0 (the file's default)")
+        ->type_name("NAME|N")
+        ->check(file_name());
+}
+
+void add_animation(CLI::App& verb, SceneOptions& options) {
+    verb.add_option("--animation", options.animation,
+                    "of a file with several animations: what plays, by its name or\nnumber, from 0; all: every one at "
+                    "once (the first)")
+        ->type_name("NAME|N|all")
+        ->check(file_name())
+        ->group("Motion");
 }
 
 void add_view_options(CLI::App& verb, SceneOptions& options) {
@@ -84,7 +110,7 @@ void add_view_options(CLI::App& verb, SceneOptions& options) {
         ->type_name("M")
         ->check(length_m())
         ->group(group);
-    add_allow_path(verb, options.allowed_paths);
+    add_read_options(verb, options);
 }
 
 namespace {
@@ -142,25 +168,34 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
     verb.add_flag("--show-back-faces", options.show_back_faces,
                   "let the camera see backs that a glTF file hides\n(doubleSided: false)")
         ->group("Faces");
+    add_animation(verb, options);
 }
 
-void add_allow_path(CLI::App& verb, std::vector<std::filesystem::path>& folders) {
-    verb.add_option("--allow-path", folders,
+void add_read_options(CLI::App& verb, SceneOptions& options) {
+    verb.add_option("--allow-path", options.allowed_paths,
                     "a folder outside the scene's own that it may read from; may be given again")
         ->type_name("DIR")
         ->allow_extra_args(false)
         ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+    const char* group = "Coordinates of .obj and .ply";
+    verb.add_option("--up-axis", options.up_axis,
+                    "which way is up in the file (y); all flags are for a scene with y up")
+        ->type_name("x|y|z")
+        ->group(group);
+    verb.add_option("--unit", options.unit,
+                    fmt::format("of the file, {} or metres (m);\nall flags are for a scene in metres", kUnitNames))
+        ->type_name("UNIT|M")
+        ->group(group);
 }
 
-Scene read_any_scene(const std::string& name, const std::vector<std::filesystem::path>& allowed_paths,
-                     Messages& messages) {
-    ReadOptions read;
-    read.allowed_paths = allowed_paths;
-    return read_scene_and_lamps(name, read, messages);
+Scene read_any_scene(const SceneOptions& options, Messages& messages) {
+    return read_scene_and_lamps(options.scene, read_options(open_options(options)), messages);
 }
 
-Scene load_scene(const SceneOptions& options, Messages& messages) {
-    return open_scene(open_options(options), messages);
+Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages) {
+    OpenOptions open = open_options(options);
+    open.use = use;
+    return open_scene(open, messages);
 }
 
 const Camera* scene_camera(const SceneOptions& options, const Scene& scene) {

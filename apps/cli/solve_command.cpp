@@ -53,7 +53,7 @@ int solve(const SolveFlags& flags) {
     set_thread_count(static_cast<int>(flags.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    Scene scene = load_scene(flags.scene, messages);
+    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     RenderSettings shown;
     shown.integrator = IntegratorKind::Radiosity;
     check_light(shown, scene, messages);
@@ -65,15 +65,14 @@ int solve(const SolveFlags& flags) {
     reporter.say_messages();
     const SolvedRadiosity solved = solve_and_report(moving.prepared(), flags.radiosity, flags.seed, reporter);
     reporter.set_work("writing");
-    write_solution(flags.output, solved.solution);
-    reporter.output(flags.output);
+    reporter.write_output(flags.output, [&] { write_solution(flags.output, solved.solution); });
     const bool cut_short = solved.stats.was_interrupted;
     const std::string holds =
         cut_short ? fmt::format(", ended before it was whole: it holds {}", describe(solved.solution.extent)) : "";
     const std::string hash = solved.solution.hash().hex();
     reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
     const SolveStats& stats = solved.stats;
-    reporter.event(fmt::format(
+    reporter.result(fmt::format(
         R"({{"event":"done","seconds":{:.6f},"total_seconds":{:.6f},"peak_bytes":{},"hash":"{}","interrupted":{}}})",
         stats.factor_seconds + stats.solve_seconds + stats.divide_seconds, total_time.seconds(), peak_memory_bytes(),
         hash, cut_short));
@@ -96,10 +95,12 @@ void add_solve_command(CLI::App& app, int& status) {
         ->check(whole_between(0, UINT32_MAX))
         ->capture_default_str()
         ->group("Radiosity");
-    verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
+    verb.add_option("--time", flags->time_s, "the scene at this time of its animation (at rest)")
         ->type_name("SECONDS")
-        ->check(number_between(-1e9f, 1e9f));
-    add_allow_path(verb, flags->scene.allowed_paths);
+        ->check(number_between(-1e9f, 1e9f))
+        ->group("Motion");
+    add_animation(verb, flags->scene);
+    add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     verb.add_option("--threads", flags->threads, "of the CPU (all)")
         ->type_name("N")

@@ -54,7 +54,8 @@ MeasuredScene load(SceneOptions options, const std::string& scene, const LabSett
                    Messages& messages) {
     options.scene = scene;
     MeasuredScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
-    if (has_pictures) thesis.default_light = add_default_light(thesis.scene, messages) != DefaultLight::None;
+    if (has_pictures)
+        thesis.default_light = add_default_light(thesis.scene, SceneUse::Benchmark, messages) != DefaultLight::None;
     thesis.camera = choose_camera(options, thesis.scene, aspect_of(settings.width, settings.height), messages);
     return thesis;
 }
@@ -199,6 +200,14 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     const bool has_pictures = !output.empty();
     ThesisReport thesis;
     Attempts attempts(thesis);
+    bool is_written = false; // the report, as it is by now
+    const auto write_report = [&](const std::string& what) {
+        is_written = false;
+        attempts.attempt(what, [&] {
+            write_files(output, thesis);
+            is_written = true;
+        });
+    };
     // All are read before the first is measured. The camera's flags are the second's.
     std::vector<MeasuredScene> scenes = {load({}, "cornell-box", settings, has_pictures, reporter.messages())};
     if (const auto second = options.scene.empty() ? find_sibenik() : std::optional(options.scene)) {
@@ -230,11 +239,11 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
             attempts.attempt("pictures of " + scene.name,
                              [&] { add_pictures(queue, scene, settings, reporter.messages(), local, global); });
         }
-        attempts.attempt("files of " + scene.name, [&] { write_files(output, thesis); });
+        write_report("files of " + scene.name);
     }
     if (has_pictures && attempts.may_go_on()) {
         add_pictures_by_chapter(queue, settings, output, reporter, attempts, thesis);
-        attempts.attempt("files of the report", [&] { write_files(output, thesis); });
+        write_report("files of the report");
     }
     const bool cut_short = interrupted();
     std::vector<std::string> lacking;
@@ -247,7 +256,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));
-    if (has_pictures) {
+    if (is_written) {
         reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
     }
     for (const LabReport& report : thesis.scenes) fail_if_wrong(report);

@@ -41,7 +41,7 @@ Subject read_subject(SceneOptions options, const TransportPreset* preset, float 
     Subject subject;
     if (preset != nullptr) options.scene = preset->scene;
     subject.scene = read_lab_scene(options, messages);
-    add_default_light(subject.scene, messages);
+    add_default_light(subject.scene, SceneUse::Benchmark, messages);
     subject.name = preset != nullptr ? preset->name : lab_scene_title(options.scene);
     subject.shows = preset != nullptr ? preset->shows : "";
     subject.reference_integrator =

@@ -130,6 +130,15 @@ void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart&
         start.camera.at = [&ready](double time_s) { return camera_at(*ready.camera, ready.scene(), time_s, 0); };
     }
     start.camera.moves = start.is_animated || turntable > 0;
+    const SceneOptions& scene = flags.render.scene;
+    const bool is_made_up = ready.scene().cameras.empty() && scene.eye.empty() && flags.render.camera_path.empty();
+    if (is_made_up && turntable == 0 && !moving.is_animated()) {
+        start.camera.framed = [&ready, choice = camera_choice(scene)](float aspect) {
+            Messages said_already;
+            const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, said_already);
+            return camera_at(framed, ready.scene(), std::nullopt, 0);
+        };
+    }
 }
 
 /// Where the view turns about what is in the middle of the picture, unless a target was given.
@@ -195,7 +204,7 @@ int view(const ViewFlags& flags) {
     reporter.say_messages();
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
-    const PictureRecord record = picture_record(flags.render.scene, *ready);
+    const PictureRecord record = picture_record(flags.render.scene, *ready, reporter.messages());
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
@@ -205,6 +214,9 @@ int view(const ViewFlags& flags) {
     start.camera.camera = camera;
     start.record = record;
     start.view.picture = ready->settings;
+    if (flags.render.size.empty()) {
+        start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
+    }
     start.view.display = choose_shown_display(flags.render, session, reporter);
     start.view.finds_exposure =
         (flags.render.exposure.empty() || flags.render.exposure == "auto") && !physical_exposure(flags.render);
@@ -232,12 +244,12 @@ int view(const ViewFlags& flags) {
         reporter.say_messages();
     }
     const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
-    reporter.set_work("waiting for somebody to look");
+    reporter.set_work(""); // from now on nothing is said that was said before
     end_soon();
     run_viewer(
         {.host = flags.host, .port = static_cast<uint16_t>(flags.port), .jpeg_queue = jpeg_queue.get()}, start, source,
         [&](const std::string& address) { report_address(flags, address, reporter); }, [] { return !interrupted(); });
-    reporter.event(R"({"event":"done"})");
+    reporter.result(R"({"event":"done"})");
     return 0;
 }
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/viewer/panel_text.h"
+#include "apps/viewer/wish_text.h"
 #include "base/json_text.h"
 
 namespace pertev {
@@ -12,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMostTold = 8; // texts that wait for one client; the oldest goes
 constexpr double kGreeting = 10;     // seconds within which a client must say hello
+constexpr double kTellWhyEvery = 4;  // seconds between two answers to a client that does not steer
 constexpr double kPiece = 0.2;       // seconds of the link that a piece of a PNG takes
 
 } // namespace
@@ -62,7 +65,7 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
         people_changed();
         return {};
     case MessageKind::Hand:
-        if (wheel_.hand(id, message->client)) people_changed();
+        if (wheel_.hand(id, message->client, now_s)) people_changed();
         return {};
     case MessageKind::Move:
     case MessageKind::Orbit:
@@ -81,12 +84,36 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
     case MessageKind::Unkey:
     case MessageKind::Follow:
     case MessageKind::Rate:
+    case MessageKind::Shape:
         break;
     }
     // Whoever has just lost the wheel may not know it yet: no reason to drop it. Looking at a place is free.
+    if (!wheel_.steers(id)) note_wish(id, client, *message, now_s);
     const bool may = wheel_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
     if (may && !inbox_.put(Steer{id, *std::move(message)}) && !inbox_.is_closed()) return "too many messages wait";
     return {};
+}
+
+/// Tells a client that does not steer why nothing happens, and the one that steers what was wished for.
+void Audience::note_wish(uint32_t id, Client& client, const ClientMessage& message, double now_s) {
+    if (message.kind == MessageKind::Pick && message.use == PickUse::Show) return; // is free
+    const std::string wish = wish_text(message);
+    if (wish.empty() || !wheel_.wish(id, wish, now_s)) return;
+    if (now_s - client.told_why_s < kTellWhyEvery) return; // a drag is many messages
+    client.told_why_s = now_s;
+    const std::string why =
+        wheel_.holder() != 0
+            ? fmt::format(
+                  "viewer {} steers, so this page cannot {}. Viewer {} sees that you wish it, and may hand over",
+                  wheel_.holder(), wish, wheel_.holder())
+            : "whoever steered has left, and the wheel waits a moment for them. \"ask to steer\" takes it";
+    put_text(client, notice_text("why", why));
+    people_changed();
+}
+
+void Audience::put_text(Client& client, std::string text) {
+    if (client.told.size() >= kMostTold) client.told.pop_front();
+    client.told.push_back(std::move(text));
 }
 
 void Audience::text_was_sent(uint32_t client) {
@@ -105,9 +132,7 @@ void Audience::close(uint32_t client, double now_s) {
 
 std::vector<uint32_t> Audience::look(double now_s) {
     const std::lock_guard lock(mutex_);
-    const uint32_t before = wheel_.holder();
-    wheel_.look(now_s);
-    if (wheel_.holder() != before) people_changed();
+    if (wheel_.look(now_s)) people_changed();
     std::vector<uint32_t> mute;
     for (const auto& [id, client] : clients_) {
         if (!client.has_joined && now_s - client.opened_s > kGreeting) mute.push_back(id);
@@ -137,8 +162,7 @@ void Audience::tell(uint32_t to, const std::string& text) {
     const std::lock_guard lock(mutex_);
     for (auto& [id, client] : clients_) {
         if (to != 0 && id != to) continue;
-        if (client.told.size() >= kMostTold) client.told.pop_front();
-        client.told.push_back(text);
+        put_text(client, text);
     }
     changed_.notify_one();
 }
@@ -159,7 +183,8 @@ bool Audience::is_behind(double now_s) const {
 std::string Audience::people_text(uint32_t you) const {
     std::string people;
     for (const Wheel::Seat& seat : wheel_.seats()) {
-        people += fmt::format(R"({}{{"id":{},"asks":{}}})", people.empty() ? "" : ",", seat.client, seat.asks);
+        people += fmt::format(R"({}{{"id":{},"asks":{},"wish":{}}})", people.empty() ? "" : ",", seat.client, seat.asks,
+                              json_string(seat.wish));
     }
     return fmt::format(R"({{"type":"people","you":{},"steers":{},"people":[{}]}})", you, wheel_.holder(), people);
 }

@@ -99,6 +99,7 @@ private:
         bool text_under_way = false, wants_welcome = true, wants_people = true;
         uint64_t state_seen = 0;
         std::deque<std::string> told;
+        double told_why_s = -1e9; // when it was told why it does not steer
     };
     std::string people_text(uint32_t you) const;
     std::optional<SendJob> text_job(uint32_t id, Client& client);
@@ -106,7 +107,9 @@ private:
     std::optional<SendJob> job_for_anyone(double now_s);
     double next_send_at_s(double now_s) const;
     void people_changed();
+    void put_text(Client& client, std::string text);
     bool may_speak(Client& client, double now_s);
+    void note_wish(uint32_t id, Client& client, const ClientMessage& message, double now_s);
 
     Inbox& inbox_;
     const std::string welcome_;

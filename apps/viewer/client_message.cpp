@@ -39,6 +39,11 @@ bool read_whole(dom::element value, ClientMessage& message) {
     return true;
 }
 
+template <uint32_t ClientMessage::*Field>
+bool read_side(dom::element value, ClientMessage& message) {
+    return read_whole<Field>(value, message) && message.*Field >= 1 && message.*Field <= 65535;
+}
+
 bool read_text(dom::element value, std::size_t longest, std::string& text) {
     std::string_view found;
     if (value.get_string().get(found) != simdjson::SUCCESS || found.size() > longest) return false;
@@ -122,6 +127,8 @@ constexpr Key kSetKeys[] = {kInput, {"name", read_string<&ClientMessage::name, 3
 constexpr Key kAckKeys[] = {{"frame", read_whole<&ClientMessage::frame>},
                             {"ms", read_float<&ClientMessage::milliseconds, 0, 1000000>}};
 constexpr Key kRateKeys[] = {{"hz", read_float<&ClientMessage::hertz, 1, 1000>}};
+constexpr Key kShapeKeys[] = {{"width", read_side<&ClientMessage::width>},
+                              {"height", read_side<&ClientMessage::height>}};
 constexpr Key kHandKeys[] = {{"to", read_whole<&ClientMessage::client>}};
 
 struct Form {
@@ -131,16 +138,27 @@ struct Form {
 };
 
 constexpr Form kForms[] = {
-    {"hello", MessageKind::Hello, kHelloKeys},   {"move", MessageKind::Move, kMoveKeys},
-    {"orbit", MessageKind::Orbit, kDragKeys},    {"look", MessageKind::Look, kDragKeys},
-    {"pan", MessageKind::Pan, kDragKeys},        {"zoom", MessageKind::Zoom, kStepKeys},
-    {"speed", MessageKind::Speed, kStepKeys},    {"pick", MessageKind::Pick, kPickKeys},
-    {"home", MessageKind::Home, kPlainKeys},     {"camera", MessageKind::Camera, kCameraKeys},
-    {"set", MessageKind::Set, kSetKeys},         {"meter", MessageKind::Meter, kPlainKeys},
-    {"play", MessageKind::Play, kPlayKeys},      {"time", MessageKind::Time, kTimeKeys},
-    {"key", MessageKind::Key, kTimeKeys},        {"unkey", MessageKind::Unkey, kCameraKeys},
-    {"follow", MessageKind::Follow, kPlainKeys}, {"rate", MessageKind::Rate, kRateKeys},
-    {"ack", MessageKind::Ack, kAckKeys},         {"ask", MessageKind::Ask, {}},
+    {"hello", MessageKind::Hello, kHelloKeys},
+    {"move", MessageKind::Move, kMoveKeys},
+    {"orbit", MessageKind::Orbit, kDragKeys},
+    {"look", MessageKind::Look, kDragKeys},
+    {"pan", MessageKind::Pan, kDragKeys},
+    {"zoom", MessageKind::Zoom, kStepKeys},
+    {"speed", MessageKind::Speed, kStepKeys},
+    {"pick", MessageKind::Pick, kPickKeys},
+    {"home", MessageKind::Home, kPlainKeys},
+    {"camera", MessageKind::Camera, kCameraKeys},
+    {"set", MessageKind::Set, kSetKeys},
+    {"meter", MessageKind::Meter, kPlainKeys},
+    {"play", MessageKind::Play, kPlayKeys},
+    {"time", MessageKind::Time, kTimeKeys},
+    {"key", MessageKind::Key, kTimeKeys},
+    {"unkey", MessageKind::Unkey, kCameraKeys},
+    {"follow", MessageKind::Follow, kPlainKeys},
+    {"rate", MessageKind::Rate, kRateKeys},
+    {"shape", MessageKind::Shape, kShapeKeys},
+    {"ack", MessageKind::Ack, kAckKeys},
+    {"ask", MessageKind::Ask, {}},
     {"hand", MessageKind::Hand, kHandKeys},
 };
 
@@ -205,6 +223,7 @@ bool moves_the_picture(MessageKind kind) {
     case MessageKind::Key:
     case MessageKind::Unkey:
     case MessageKind::Rate:
+    case MessageKind::Shape:
     case MessageKind::Ack:
     case MessageKind::Ask:
     case MessageKind::Hand:

@@ -33,6 +33,7 @@ enum class MessageKind : uint8_t {
     Unkey,  // a key goes
     Follow, // the camera goes its path, from its beginning
     Rate,   // of the page's screen
+    Shape,  // of the page's window
     Ack,    // a picture was drawn
     Ask,    // for the wheel
     Hand,   // the wheel, to another client
@@ -56,6 +57,7 @@ struct ClientMessage {
     float speed = 1;                         // Play: of time, [0, 64]
     float at = 0;                            // Time, Key: seconds, [0, 1e9]
     float hertz = 0;                         // Rate: pictures a second, [1, 1000]
+    uint32_t width = 0, height = 0;          // Shape: pixels of the screen, [1, 65535]
     uint32_t frame = 0;                      // Ack
     float milliseconds = 0;                  // Ack: of decoding and drawing, [0, 1e6]
     uint32_t client = 0;                     // Hand

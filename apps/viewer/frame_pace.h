@@ -19,6 +19,8 @@ public:
     /// Of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32, 1/16, 3/64 or 1/32.
     float scale() const;
     double frame_s() const { return frame_s_; }
+    /// Seconds that a frame of full size would take, by those before; 0: nothing is known.
+    double full_s() const { return full_s_; }
     /// Another time that a whole frame may take: the next scales keep that.
     void keep(double frame_s) { frame_s_ = frame_s; }
     /// Whether frames of this scale take no longer, by those before.

@@ -64,11 +64,15 @@ public:
     /// Puts the scene to this time; until then it is at rest, or where it began. Throws Error(OverLimit) where
     /// something lies too far out then; the next set_time makes good for it. Throws as next().
     virtual void set_time(double time_s) = 0;
-    /// The next picture: at rest more samples gather in the one before. Nothing where `abandon` broke it off, which is
-    /// for pictures at rest alone: the movement's are short. Throws Error(OutOfMemory, OverLimit, DeviceFault).
+    /// The next picture: at rest more samples gather in the one before; where a sample takes long, smaller pictures
+    /// come before the first. Nothing where `abandon` or `hurry` broke it off, which is for pictures at rest alone: the
+    /// movement's are short. Throws Error(OutOfMemory, OverLimit, DeviceFault).
     virtual std::optional<ShownFrame> next(const FrameRequest& request) = 0;
     /// While it is true, the picture at rest that is under way is not wanted any more.
     virtual std::atomic<bool>& abandon() = 0;
+    /// While it is true, somebody waits for next() to return, though its samples stay wanted: where a sample takes
+    /// long, the one under way is given up and those before stay.
+    virtual std::atomic<bool>& hurry() = 0;
 
     /// What lies at (x, y) of the picture, [0, 1] each from the upper left; nothing for the background.
     virtual std::optional<PickedPoint> pick(const Camera& camera, float x, float y) = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/viewer/file_name.h"
 #include "base/json_text.h"
 #include "scene/scene_origin.h"
 #include "session/place_text.h"
@@ -74,6 +75,7 @@ constexpr NumberRow kRows[] = {
     {"Now", "film hash", [](const ViewState&, const ViewNumbers& n) { return n.frame->hash; }},
     {"Now", "exposed by",
      [](const ViewState&, const ViewNumbers& n) { return fmt::format("{:+.2f} stops", n.frame->exposure_stops); }},
+    {"Now", "flags that make it", [](const ViewState&, const ViewNumbers& n) { return n.flags; }},
     {"Now", "scene", [](const ViewState&, const ViewNumbers& n) { return n.why_still; }},
     {"Now", "colours", [](const ViewState&, const ViewNumbers& n) { return n.frame->caption; }},
     {"Frames", "rendered",
@@ -124,6 +126,9 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     append(rows, row_json("Stages", "pack",
                           fmt::format("{:.1f} ms, {} KiB", numbers.pack_ms, (numbers.packed_bytes + 1023) / 1024)));
     append(rows, row_json("Stages", "packed by", numbers.encoder));
+    if (numbers.scene == nullptr) return rows;
+    for (const std::string& text : numbers.scene->made_up) append(rows, row_json("Scene", "made up", text));
+    for (const std::string& text : numbers.scene->left_out) append(rows, row_json("Scene", "left out", text));
     return rows;
 }
 
@@ -156,10 +161,14 @@ std::string welcome_text(const ViewerStart& start) {
         const std::string& name = start.scene->cameras[i].name;
         append(cameras, json_string(name.empty() ? fmt::format("camera {}", i) : name));
     }
+    const std::string name = file_name(start.record.scene.scene);
+    std::string about = row_json("Scene", "file", name);
+    append(about, row_json("Scene", "rendered by", start.record.device));
+    for (const auto& [label, value] : start.about) append(about, row_json("Scene", label, value));
     return fmt::format(
-        R"({{"type":"welcome","scene":{},"device":{},"width":{},"height":{},"cameras":[{}],"settings":[{}]}})",
-        json_string(start.record.scene.scene), json_string(start.record.device), start.view.picture.width,
-        start.view.picture.height, cameras, settings_json());
+        R"({{"type":"welcome","scene":{},"device":{},"width":{},"height":{},"cameras":[{}],"about":[{}],"settings":[{}]}})",
+        json_string(name), json_string(start.record.device), start.view.picture.width, start.view.picture.height,
+        cameras, about, settings_json());
 }
 
 std::string state_text(const ViewState& view, const ViewNumbers& numbers) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/viewer/file_name.h"
 #include "apps/viewer/panel_text.h"
 #include "base/error.h"
 #include "scene/scene_origin.h"
@@ -39,7 +40,8 @@ FrameRequest RenderLoop::request() const {
     FrameRequest request;
     request.camera = camera_.camera(view_.lens);
     request.view = view_;
-    request.is_moving = is_moving() && saves_.empty();
+    // The first picture is a small one: a sample of a large one may take long.
+    request.is_moving = (is_moving() || !last_) && saves_.empty();
     if (!saves_.empty()) request.view.is_real_time = false;
     request.budget_s = budget_s_;
     return request;
@@ -70,11 +72,12 @@ void RenderLoop::handle(const Command& command) {
     is_new_ = true;
     if (const Steer* asked = std::get_if<Steer>(&command)) {
         try {
-            return steer(*asked);
+            steer(*asked);
         } catch (const Error& error) { // of a place that was looked at, or of a light meter
             if (error.code() == ErrorCode::DeviceFault) throw;
-            return audience_.tell(asked->client, notice_text("error", error.what()));
+            tell_error(asked->client, error);
         }
+        return inbox_.expect(view_);
     }
     if (const Save* save = std::get_if<Save>(&command)) return saves_.push_back(*save);
     is_done_ = false;                   // somebody came: shows the present picture again
@@ -89,6 +92,15 @@ void RenderLoop::steer(const Steer& asked) {
     }
     if (message.kind == MessageKind::Rate) {
         view_.screen_rate = shown_.screen_rate = message.hertz;
+        return;
+    }
+    if (message.kind == MessageKind::Shape) {
+        if (!take_window_shape(view_, message.width, message.height)) return;
+        take_window_shape(shown_, message.width, message.height);
+        camera_.fit(aspect_of(view_.picture.width, view_.picture.height), view_.lens);
+        shown_.lens = view_.lens;
+        is_done_ = false;
+        budget_s_ = kFirstBudget;
         return;
     }
     is_done_ = is_done_ && message.kind == MessageKind::Pick; // to look at a place changes nothing
@@ -129,6 +141,7 @@ void RenderLoop::steer(const Steer& asked) {
         view_.display.exposure_stops = view_.finds_exposure ? 0 : source_.meter(request());
         break;
     case MessageKind::Rate: // above
+    case MessageKind::Shape:
     case MessageKind::Hello:
     case MessageKind::Ack:
     case MessageKind::Ask:
@@ -179,6 +192,11 @@ void RenderLoop::let_time_pass() {
     if (time_runs()) clock_.advance(std::min(passed, kLongestStep));
 }
 
+/// `client`: who asked for it; 0: all are told.
+void RenderLoop::tell_error(uint32_t client, const Error& error) {
+    audience_.tell(client, notice_text("error", without_folder(error.what(), start_.record.scene.scene)));
+}
+
 /// Scene and camera to the clock's time, as far as it moves them. Throws as FrameSource::set_time.
 void RenderLoop::follow_time() {
     if (!clock_.time_s || clock_.time_s == followed_s_) return;
@@ -224,13 +242,14 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
         return source_.next(wanted);
     } catch (const Error& error) {
         if (error.code() == ErrorCode::DeviceFault) throw;
-        audience_.tell(0, notice_text("error", error.what()));
+        tell_error(0, error);
         made_share_ = 1;
         is_done_ = error.code() == ErrorCode::OverLimit; // what is in view asks for too much: until it is another view
         const ViewState failed = std::exchange(view_, shown_);
         view_.display = failed.display;
         // What was set at rest is first asked for by a frame of the movement.
         if (failed.restir == shown_.restir) view_.restir.light = RestirLight::Off;
+        inbox_.expect(view_);
         tell_state();
         return std::nullopt;
     }
@@ -242,7 +261,7 @@ void RenderLoop::show_next() {
         follow_time();
     } catch (const Error& error) {
         if (error.code() == ErrorCode::DeviceFault) throw;
-        audience_.tell(0, notice_text("error", error.what()));
+        tell_error(0, error);
         const double back_s = shown_s_.value_or(0);
         is_done_ = clock_.time_s == back_s; // there is no way out of it but another time
         clock_.plays = false;
@@ -285,6 +304,9 @@ void RenderLoop::show_next() {
 /// How the present picture is made.
 PictureRecord RenderLoop::record() const {
     PictureRecord record = start_.record;
+    // Where the files lie is nobody's business but the machine's.
+    record.scene.scene = file_name(record.scene.scene);
+    record.scene.environment = file_name(record.scene.environment);
     if (start_.is_animated) record.scene.time_s = clock_.time_s;
     record.settings = view_.picture;
     record.display = view_.display;
@@ -327,7 +349,11 @@ void RenderLoop::tell_state() {
     numbers.encoder = packer_.encoder();
     numbers.phase = is_done_ ? "done" : (is_moving() ? "moving" : "gathering");
     numbers.flags = camera_.flags(view_.lens, start_.is_animated ? clock_.time_s : start_.still_s);
+    if (view_.window_pixels > 0) {
+        numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
+    }
     numbers.why_still = start_.why_still;
+    numbers.scene = &start_.record.scene;
     numbers.input = input_;
     numbers.steerer = steerer_;
     numbers.clock = clock_;

@@ -10,6 +10,7 @@
 #include "apps/viewer/packer.h"
 #include "apps/viewer/view_camera.h"
 #include "apps/viewer/viewer.h"
+#include "base/error.h"
 
 namespace pertev {
 
@@ -28,6 +29,7 @@ private:
     void steer_time(const ClientMessage& message);
     void steer_path(const Steer& steer);
     void pick(const Steer& steer);
+    void tell_error(uint32_t client, const Error& error);
     void set(const Steer& steer);
     void let_time_pass();
     void follow_time();

@@ -7,11 +7,11 @@
 
 #include "apps/viewer/layer_colors.h"
 #include "apps/viewer/reference_is_better.h"
-#include "apps/viewer/steering.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
+#include "image/tone_map_image.h"
 #include "render/film_channels.h"
 #include "render/ray_queue.h"
 #include "scene/scene_origin.h"
@@ -20,6 +20,7 @@ namespace pertev {
 namespace {
 
 constexpr uint32_t kFramesOfLayer = 32;            // at rest, after which a layer of the reconstruction stays as it is
+constexpr uint32_t kSamplesWorthAFrame = 16;       // of a picture at rest that a frame of its size comes before
 constexpr double kPass = 0.03;                     // seconds after which a render looks whether it is still wanted
 constexpr double kLeastRate = 30, kMostRate = 240; // of screens that a GPU's frames keep up with, a second
 
@@ -59,6 +60,12 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
 
+/// Whether a picture that is shown `as` this has the tones and the exposure that are asked for. `exposed` has the stops
+/// of now.
+bool is_shown_as(const Display& as, const FrameRequest& request, const ShownFrame& exposed) {
+    return as.tone_map == request.view.display.tone_map && as.exposure_stops == exposed.exposure_stops;
+}
+
 /// `picture`: a Session, or its Reconstruction.
 template <class Picture>
 Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stops) {
@@ -78,8 +85,14 @@ void tell_rendering(double seconds, ShownFrame& frame) {
 
 } // namespace
 
-SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s)
-    : session_(session), scene_(scene), pace_(frame_s) {
+bool SessionFrames::Seen::is_of(const FrameRequest& request, uint64_t changes) const {
+    const RenderSettings& asked = request.view.picture;
+    return scale > 0 && camera == request.camera && layer == request.view.layer && scene_changes == changes &&
+           same_light(picture, asked) && picture.width == asked.width && picture.height == asked.height;
+}
+
+SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s, double soon_s)
+    : session_(session), scene_(scene), pace_(frame_s), growth_(soon_s) {
     session_.abandon_when(&abandon_);
 }
 
@@ -219,18 +232,40 @@ void SessionFrames::meter_still(const FrameRequest& request, bool is_small) {
     begin_exposed(request, session_.meter(request.view.display.tone_map));
 }
 
+/// Whether the film has samples of this very picture at rest.
+bool SessionFrames::film_goes_on(const FrameRequest& request) {
+    return session_.history().samples > 0 && session_.camera() == request.camera &&
+           same_picture(session_.settings(), settings_for(request, 1));
+}
+
+/// The scale of the picture that comes before the samples at rest; nothing where these may gather.
+std::optional<float> SessionFrames::growth_scale(const FrameRequest& request) {
+    if (film_goes_on(request)) return std::nullopt;
+    if (!grown_.is_of(request, scene_changes_)) {
+        growth_.begin(seen_.is_of(request, scene_changes_) ? seen_.scale : 0, pace_.full_s());
+        grown_ = {request.view.picture, request.camera, request.view.layer, scene_changes_, 1};
+    }
+    // A frame of full size costs as much as a sample that the film does not get: where there are many, it is worth it.
+    const bool has_whole = request.view.picture.samples >= kSamplesWorthAFrame && request.view.is_reconstructed &&
+                           is_beauty(request.view.layer) && is_of_sequence(request.view);
+    return growth_.next(has_whole);
+}
+
 void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
     metered_ = {session_.settings(), request.camera, request.view.display.tone_map, scene_changes_, true};
     exposure_.set(stops);
 }
 
-ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) {
+/// `is_growing`: at rest, before its samples: with all their scatterings, and broken off where nobody waits for it.
+std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request, float scale, bool is_growing) {
     const Stopwatch whole;
     const double update_s = std::exchange(update_s_, 0);
     const bool goes_on = std::exchange(shows_reconstruction_, false);
     const uint32_t width_before = session_.settings().width;
     const std::optional<uint32_t> depth_before = session_.settings().frame_depth;
-    use(settings_for(request, scale));
+    RenderSettings picture = settings_for(request, scale);
+    if (is_growing) picture.frame_depth = picture.path.max_depth;
+    use(picture);
     const bool shows_layer = is_of_frames(request.view.layer);
     const ViewState& view = request.view;
     ReconstructionSettings settings =
@@ -245,7 +280,8 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
-    session_.render_frame(next_sample_, settings, view.restir);
+    session_.abandon_when(is_growing ? &hurry_ : nullptr);
+    if (!session_.render_frame(next_sample_, settings, view.restir)) return std::nullopt;
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
     reconstructed_as_ = session_.settings();
@@ -258,7 +294,9 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     const double reconstruction_s = session_.frame().seconds(), sharing_s = session_.sharing_seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
-    if (request.view.finds_exposure && !shows_layer) {
+    if (is_growing && !shows_layer) {
+        meter_still(request, true);
+    } else if (request.view.finds_exposure && !shows_layer) {
         exposure_.next(session_.frame_tones(), request.view.display.tone_map);
         metered_.is_there = false;
     }
@@ -275,8 +313,27 @@ ShownFrame SessionFrames::reconstruct(const FrameRequest& request, float scale) 
     frame.scale = scale;
     frame.samples = still_frames_;
     frame.is_final = shows_layer && !request.is_moving && still_frames_ >= kFramesOfLayer;
+    if (is_growing) {
+        growth_.took(scale, whole.seconds());
+        return frame;
+    }
     pace_.took(scale, whole.seconds(), update_s);
     tell_pace(request, frame);
+    return frame;
+}
+
+/// The reconstruction that samples have not caught up with yet, where it is to be shown otherwise than it is.
+std::optional<ShownFrame> SessionFrames::show_reconstruction_again(const FrameRequest& request) {
+    ShownFrame frame;
+    expose(request, frame);
+    if (is_shown_as(shown_as_, request, frame)) return std::nullopt;
+    reconstruction_ = tone_map_image(reconstruction_light_, request.view.display.tone_map, frame.exposure_stops);
+    half_samples_ = 0;
+    frame.image = reconstruction_;
+    frame.full_width = request.view.picture.width;
+    frame.full_height = request.view.picture.height;
+    frame.scale = static_cast<float>(reconstruction_.width) / static_cast<float>(frame.full_width);
+    frame.samples = still_frames_;
     return frame;
 }
 
@@ -312,11 +369,29 @@ bool SessionFrames::beats_reconstruction(const FrameRequest& request) {
 }
 
 std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
+    std::optional<ShownFrame> frame = make_next(request);
+    if (!frame) return frame;
+    shown_as_ = {request.view.display.tone_map, frame->exposure_stops, {}};
+    if (frame->is_reference) {
+        seen_.scale = 0;
+    } else {
+        seen_ = {request.view.picture, request.camera, request.view.layer, scene_changes_, frame->scale};
+    }
+    return frame;
+}
+
+std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) {
     const Stopwatch whole;
-    const bool is_small = request.is_moving || request.view.is_real_time;
-    const float scale = is_small ? scale_for(request) : 1;
-    if (is_of_frames(request.view.layer)) return reconstruct(request, scale);
-    if (is_small && is_beauty(request.view.layer) && is_of_sequence(request.view)) return reconstruct(request, scale);
+    const bool is_of_movement = request.is_moving || request.view.is_real_time;
+    const std::optional<float> grows_to = is_of_movement ? std::nullopt : growth_scale(request);
+    const bool is_growing = grows_to.has_value(), is_small = is_of_movement || is_growing;
+    const float scale = is_growing ? *grows_to : is_of_movement ? scale_for(request) : 1;
+    if (is_of_frames(request.view.layer) ||
+        (is_small && is_beauty(request.view.layer) && is_of_sequence(request.view))) {
+        std::optional<ShownFrame> frame = reconstruct(request, scale, is_growing);
+        if (frame && is_growing) growth_.showed(scale);
+        return frame;
+    }
     const double update_s = std::exchange(update_s_, 0);
     const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer) &&
                           request.view.is_reconstructed && same_light(reconstructed_as_, settings_for(request, scale));
@@ -325,8 +400,12 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
         ShownFrame frame;
         expose(request, frame);
         reconstruction_ = shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
+        reconstruction_light_ = session_.frame().picture();
     }
-    use(is_small ? small_settings_for(request, scale) : settings_for(request, scale));
+    if (competes) {
+        if (std::optional<ShownFrame> again = show_reconstruction_again(request)) return again;
+    }
+    use(is_of_movement ? small_settings_for(request, scale) : settings_for(request, scale));
     session_.set_camera(request.camera);
     const uint32_t wanted = is_beauty(request.view.layer) ? request.view.picture.samples : 1;
     const uint32_t before = session_.history().samples;
@@ -334,22 +413,34 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
     if (!was_begun) half_samples_ = 0;
     const uint32_t until = competes ? std::min(wanted, std::bit_floor(before) * 2 + !was_begun) : wanted;
     // A picture of the movement is finished whatever comes: input comes faster than pictures, and would break off each.
-    session_.abandon_when(is_small ? nullptr : &abandon_);
+    // At rest no whole sample is lost: who asked for another picture may get the same one after all. A short sample is
+    // waited for, and a long one goes through a film of its own. The first has none before it.
+    const bool is_slow = growth_.is_slow(), is_short = was_begun && growth_.is_short(sample_s_);
+    const std::atomic<bool>& stops = is_slow ? hurry_ : abandon_;
+    session_.abandon_when(is_of_movement || is_short ? nullptr : &stops);
+    session_.keep_samples_when_abandoned(!is_short);
     const Stopwatch render;
     ShownFrame frame;
     uint32_t added = 0;
-    if (before < wanted) {
+    ShownFrame exposed;
+    expose(request, exposed);
+    // The same samples are first shown as they are to be shown now.
+    const bool waits = was_begun && !is_small && is_slow && shows_film_ && !is_shown_as(shown_as_, request, exposed);
+    if (before < wanted && !waits) {
         added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
             if (now.made_share < 1 && request.tell_made) request.tell_made(now.made_share);
             const bool has_begun = now.samples_done > before; // a picture has a sample, whatever that takes
-            return (is_small || !abandon_) && (!has_begun || now.seconds < request.budget_s);
+            return (is_of_movement || !stops) && (!has_begun || now.seconds < request.budget_s);
         });
     }
     frame.render_s = render.seconds();
     if (added > 0 && session_.settings().time_kinds) frame.kind_seconds = session_.stats().kind_seconds;
-    if (added > 0 && !is_small) sample_s_ = frame.render_s / added;
-    if (abandon_ && !is_small) return std::nullopt;
+    if (added > 0 && !is_small) {
+        sample_s_ = frame.render_s / added;
+        growth_.took(1, sample_s_);
+    }
+    if (stops && !is_of_movement && added == 0 && !waits) return std::nullopt;
     frame.samples = session_.history().samples;
     if (frame.samples == 0) return std::nullopt;
     if (competes && frame.samples < wanted && !beats_reconstruction(request)) return std::nullopt;
@@ -372,45 +463,13 @@ std::optional<ShownFrame> SessionFrames::next(const FrameRequest& request) {
         frame.hash = film_hash();
         frame.stages.emplace_back("hash", 1e3 * hash.seconds());
     }
-    if (is_small && !was_begun) pace_.took(scale, whole.seconds(), update_s);
-    if (is_small) tell_pace(request, frame);
-    return frame;
-}
-
-std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, float y) {
-    const RenderSettings& now = session_.settings();
-    const float aspect = static_cast<float>(now.width) / static_cast<float>(now.height);
-    RenderSettings settings = now;
-    settings.width = settings.height = 1;
-    settings.samples = 1;
-    settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
-    settings.filter = PixelFilter::Box;
-    settings.filter_radius = 0;
-    settings.path.max_depth = 0;
-    const RenderResult seen = session_.look_aside(camera_through(camera, aspect, x, y), settings);
-    if (seen.ids.empty() || seen.ids.front().instance == kNoHit) return std::nullopt;
-    std::optional<Rgb> light;
-    if (shows_film_ && session_.camera() == camera) {
-        const Image film = session_.picture();
-        const auto place = [](float share, uint32_t side) {
-            return std::min(static_cast<uint32_t>(share * static_cast<float>(side)), side - 1);
-        };
-        const float* const values = film.at(place(x, film.width), place(y, film.height));
-        light = {values[0], values[1], values[2]};
+    if (is_growing) {
+        growth_.took(scale, whole.seconds());
+        growth_.showed(scale);
     }
-    PickedPoint picked = {.instance = seen.ids.front().instance,
-                          .primitive = seen.ids.front().primitive,
-                          .material = seen.ids.front().material};
-    const auto values = [&](const char* name) { return layer_named(seen, name).pixels.data(); };
-    const float *albedo = values("albedo"), *normal = values("normal"), *position = values("position");
-    picked.albedo = {albedo[0], albedo[1], albedo[2]};
-    picked.normal = {normal[0], normal[1], normal[2]};
-    const Scene& scene = scene_.scene();
-    picked.position = {position[0], position[1], position[2]};
-    if (!scene.is_far) picked.position = in_scene(scene, to_double(picked.position));
-    picked.distance = values("depth")[0];
-    picked.light = light;
-    return picked;
+    if (is_of_movement && !was_begun) pace_.took(scale, whole.seconds(), update_s);
+    if (is_of_movement) tell_pace(request, frame);
+    return frame;
 }
 
 float SessionFrames::meter(const FrameRequest& request) {

@@ -1,11 +1,13 @@
 #pragma once
 
 // The pictures of a Session, as the viewer shows them. While the camera or time moves: frames of one sample,
-// reconstructed with what those before have seen, at the resolution that keeps the frame rate. At rest: samples gather
-// at full size until all that were asked for are there; that film is the one of `pertev render`, to the bit.
+// reconstructed with what those before have seen, at the resolution that keeps the frame rate. At rest, where a sample
+// of all pixels takes long: pictures that grow (rest_growth.h). Then samples gather at full size until all that were
+// asked for are there; that film is the one of `pertev render`, to the bit.
 
 #include "apps/viewer/frame_pace.h"
 #include "apps/viewer/frame_source.h"
+#include "apps/viewer/rest_growth.h"
 #include "session/adaptive_exposure.h"
 #include "session/moving_scene.h"
 #include "session/session.h"
@@ -15,12 +17,13 @@ namespace pertev {
 class SessionFrames final : public FrameSource {
 public:
     /// `frame_s`: seconds that a frame may take while the view moves; on a GPU until the screen's rate is known.
-    /// `session` has the scene of `scene`; both outlive it.
-    SessionFrames(Session& session, MovingScene& scene, double frame_s);
+    /// `session` has the scene of `scene`; both outlive it. `soon_s`: RestGrowth's.
+    SessionFrames(Session& session, MovingScene& scene, double frame_s, double soon_s = RestGrowth::kSoon);
 
     void set_time(double time_s) override;
     std::optional<ShownFrame> next(const FrameRequest& request) override;
     std::atomic<bool>& abandon() override { return abandon_; }
+    std::atomic<bool>& hurry() override { return hurry_; }
     std::optional<PickedPoint> pick(const Camera& camera, float x, float y) override;
     float meter(const FrameRequest& request) override;
     RenderResult result() override { return session_.result(); }
@@ -28,7 +31,11 @@ public:
     void begin_exposed(const FrameRequest& request, float stops);
 
 private:
-    ShownFrame reconstruct(const FrameRequest& request, float scale);
+    std::optional<ShownFrame> make_next(const FrameRequest& request);
+    std::optional<ShownFrame> reconstruct(const FrameRequest& request, float scale, bool is_growing);
+    std::optional<float> growth_scale(const FrameRequest& request);
+    bool film_goes_on(const FrameRequest& request);
+    std::optional<ShownFrame> show_reconstruction_again(const FrameRequest& request);
     RenderSettings settings_for(const FrameRequest& request, float scale);
     RenderSettings small_settings_for(const FrameRequest& request, float scale);
     float scale_for(const FrameRequest& request);
@@ -46,17 +53,32 @@ private:
     bool is_behind_ = false; // the last set_time threw
     double update_s_ = 0;    // of the scene, since the last frame
     FramePace pace_;
-    std::atomic<bool> abandon_{false};
+    RestGrowth growth_;
+    /// A view, and how large its picture was.
+    struct Seen {
+        RenderSettings picture;
+        Camera camera;
+        ShownLayer layer = ShownLayer::Beauty;
+        uint64_t scene_changes = 0;
+        float scale = 0; // 0: of nothing
+        /// Whether it is the view of this request, at any size.
+        bool is_of(const FrameRequest& request, uint64_t changes) const;
+    };
+    Seen grown_;       // the view that growth_ is about
+    Seen seen_;        // that of the last small picture, while nothing larger is shown
+    Display shown_as_; // the last picture: its tones, with all stops
+    std::atomic<bool> abandon_{false}, hurry_{false};
     ReconstructionSettings reconstruction_settings_; // of the last frame
     RenderSettings reconstructed_as_;                // that the last frame was made with
     RestirSettings restir_settings_;
     uint32_t next_sample_ = 0;  // of the frames in real time
     uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
     bool shows_reconstruction_ = false;
-    bool shows_layer_ = false;  // of it
-    bool shows_film_ = false;   // the last picture was that at rest
-    Rgba8Image reconstruction_; // the last, as it is shown; empty while nothing competes with it
-    Rgba8Image half_;           // the picture at rest that is not shown yet, at half_samples_ of its samples
+    bool shows_layer_ = false;   // of it
+    bool shows_film_ = false;    // the last picture was that at rest
+    Rgba8Image reconstruction_;  // the last, as it is shown; empty while nothing competes with it
+    Image reconstruction_light_; // the same, linear
+    Rgba8Image half_;            // the picture at rest that is not shown yet, at half_samples_ of its samples
     uint32_t half_samples_ = 0;
     /// The hash of the film as it is; the one before where that is the same film.
     const std::string& film_hash();

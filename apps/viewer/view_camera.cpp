@@ -85,7 +85,7 @@ void ViewCamera::go_to(std::optional<double> time_s, Camera& lens) {
     if (is_own_) return;
     switch (guide_) {
     case Guide::Start:
-        if (start_.at && time_s) place(start_.at(*time_s), lens);
+        if (start_.at && time_s && !start_.framed) place(start_.at(*time_s), lens);
         return;
     case Guide::SceneCamera:
         if (!(scene_.cameras[index_] == base_)) place({.camera = scene_.cameras[index_]}, lens);
@@ -110,7 +110,13 @@ void ViewCamera::go_home(std::optional<double> time_s, Camera& lens) {
     base_ = lens = start_.camera;
     pose_ = start_.pose;
     is_own_ = false;
+    if (aspect_ > 0) fit(aspect_, lens);
     go_to(time_s, lens);
+}
+
+void ViewCamera::fit(float aspect, Camera& lens) {
+    aspect_ = aspect;
+    if (start_.framed && guide_ == Guide::Start && !is_own_) place(start_.framed(aspect), lens);
 }
 
 bool ViewCamera::take_scene_camera(uint32_t index, std::optional<double> time_s, Camera& lens) {

@@ -20,6 +20,8 @@ struct StartCamera {
     std::string name; // of the scene's cameras, for flags; empty for none
     /// Where the camera is once the scene is at a time; null: it stands.
     std::function<CameraSource(double time_s)> at;
+    /// The view that is made up for a picture of this width / height; null: the camera is not made up.
+    std::function<CameraSource(float aspect)> framed;
     bool moves = false;           // with time
     CameraPath path;              // where it has keys, that leads it
     std::optional<float> focus_m; // that was asked for; none: at what it looks at
@@ -54,6 +56,9 @@ public:
     /// Time has come to another `time_s`: whatever leads the camera is there. What of the lens was set by hand stays.
     void go_to(std::optional<double> time_s, Camera& lens);
 
+    /// The picture has another width / height: a view that is made up shows the whole thing again.
+    void fit(float aspect, Camera& lens);
+
     /// A step of somebody: Move, Orbit, Look, Pan or Zoom.
     void step(const ClientMessage& message, const Camera& lens, float speed);
     void turn_about(Vec3 centre) { pose_.centre = centre; }
@@ -78,6 +83,7 @@ private:
     Camera base_;        // as whatever leads it has it; its place until somebody steps
     Pose pose_;
     std::string name_;
+    float aspect_ = 0; // of fit(); 0: as at the start
     bool is_own_ = false;
     CameraPath path_;
     bool is_path_of_file_;

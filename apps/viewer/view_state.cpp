@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "apps/viewer/steering.h"
+#include "apps/viewer/window_shape.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "image/tone_map_image.h"
@@ -19,10 +20,6 @@ using Kind = ViewSetting::Kind;
 
 constexpr const char* kLayers[] = {"picture",   "albedo",      "normal",          "depth",  "instances", "triangles",
                                    "materials", "heat: nodes", "heat: triangles", "motion", "deviation"};
-
-/// Settings after which samples gather anew.
-constexpr std::string_view kOfSamples[] = {"layer",    "integrator", "max_depth", "mode", "fov",
-                                           "aperture", "focus",      "structure", "walk", "rta"};
 
 constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
 constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
@@ -318,9 +315,23 @@ const std::vector<ViewSetting>& view_settings() {
     return all;
 }
 
-bool begins_anew(const ClientMessage& message) {
-    if (message.kind != MessageKind::Set) return moves_the_picture(message.kind);
-    return std::ranges::find(kOfSamples, message.name) != std::end(kOfSamples);
+bool begins_anew(const ViewState& before, const ViewState& after) {
+    return before.layer != after.layer || before.is_real_time != after.is_real_time || !(before.lens == after.lens) ||
+           before.picture.tracers != after.picture.tracers || !same_picture(before.picture, after.picture);
+}
+
+bool is_shown_otherwise(const ViewState& before, const ViewState& after) {
+    return before.display.tone_map != after.display.tone_map ||
+           before.display.exposure_stops != after.display.exposure_stops ||
+           before.finds_exposure != after.finds_exposure;
+}
+
+bool take_window_shape(ViewState& state, uint32_t width, uint32_t height) {
+    if (state.window_pixels == 0) return false;
+    const PictureSize now = size_for_window(width, height, state.window_pixels);
+    const PictureSize before = {std::exchange(state.picture.width, now.width),
+                                std::exchange(state.picture.height, now.height)};
+    return now != before;
 }
 
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value) {

@@ -51,6 +51,7 @@ struct ViewState {
     uint32_t moving_depth = kMovingDepth; // scatterings at most, where that is fewer than the picture's
     float screen_rate = 0;                // pictures a second of the screen of who steers; 0: not known
     bool on_cuda = false;
+    uint64_t window_pixels = 0; // at most, of a picture that takes the window's shape; 0: its size was asked for
     std::vector<std::pair<IntegratorKind, std::string>> dark; // those that would show the scene as black, and why
 };
 
@@ -74,8 +75,15 @@ struct ViewSetting {
 /// All settings, in the panel's order.
 const std::vector<ViewSetting>& view_settings();
 
-/// Whether this asks for a picture to which samples that are being rendered mean nothing.
-bool begins_anew(const ClientMessage& message);
+/// Whether the picture at rest of `after` needs other samples than that of `before`.
+bool begins_anew(const ViewState& before, const ViewState& after);
+
+/// Whether the same samples look otherwise in `after`.
+bool is_shown_otherwise(const ViewState& before, const ViewState& after);
+
+/// Gives the picture the shape of a window of so many pixels, unless its size was asked for. Returns whether that is
+/// another size.
+bool take_window_shape(ViewState& state, uint32_t width, uint32_t height);
 
 /// Sets one by its name. Empty where that was done; else why not, and nothing was done.
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);

@@ -37,10 +37,10 @@ private:
 /// While it lives, the source's work is broken off as soon as the viewer is to end.
 class EndWatch {
 public:
-    EndWatch(const std::function<bool()>& goes_on, std::atomic<bool>& abandon)
-        : thread_([this, &goes_on, &abandon] {
+    EndWatch(const std::function<bool()>& goes_on, FrameSource& source)
+        : thread_([this, &goes_on, &source] {
               while (!is_over_) {
-                  if (!goes_on()) abandon = true;
+                  if (!goes_on()) source.abandon() = source.hurry() = true;
                   std::this_thread::sleep_for(std::chrono::milliseconds(20));
               }
           }) {}
@@ -66,12 +66,13 @@ void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSou
                 const std::function<bool()>& goes_on) {
     const ServerIdentity identity = {options.host, make_token(), "pertev-" + make_token(4), make_token()};
     Inbox inbox;
-    inbox.raise(source.abandon());
+    inbox.raise(source.abandon(), source.hurry());
+    inbox.expect(start.view);
     Audience audience(inbox, welcome_text(start));
     Reception reception(audience, inbox);
     WebServer server(options.host, options.port, identity, page_files(), reception, options.limits);
     listening(address_of(options.host, server.port(), identity.token));
-    const EndWatch watch(goes_on, source.abandon());
+    const EndWatch watch(goes_on, source);
     // In turns: the packer ends before the inbox closes, and that before the server goes.
     struct Closing {
         Inbox& inbox;

@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/viewer/frame_source.h"
 #include "apps/viewer/scene_clock.h"
@@ -33,6 +35,8 @@ struct ViewerStart {
     SceneClock clock;
     PictureRecord record; // for pictures that are saved
     float speed = 1;      // metres a second of keys
+    /// What the panel says of the scene beside its name: a label and its value a row, in the group "Scene".
+    std::vector<std::pair<std::string, std::string>> about;
 };
 
 /// Listens, calls `listening` with the address that lets in whoever has it, and goes on as long as `goes_on` says so;

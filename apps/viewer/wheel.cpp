@@ -8,14 +8,16 @@ void Wheel::give(uint32_t client) {
     holder_ = client;
     kept_for_.clear();
     for (Seat& seat : seats_) {
-        if (seat.client == client) seat.asks = false;
+        if (seat.client != client) continue;
+        seat.asks = false;
+        seat.wish.clear();
     }
 }
 
 void Wheel::join(uint32_t client, const std::string& key, double now_s) {
     const auto holder = std::ranges::find(seats_, holder_, &Seat::client);
     const bool held_it = holder != seats_.end() && !key.empty() && holder->key == key;
-    seats_.push_back({client, key, false});
+    seats_.push_back({client, key, false, {}, 0});
     if (held_it) return give(client);
     look(now_s);
     if (holder_ != 0) return;
@@ -41,16 +43,35 @@ void Wheel::ask(uint32_t client) {
     if (holder_ == 0) give(client);
 }
 
-bool Wheel::hand(uint32_t from, uint32_t to) {
+bool Wheel::hand(uint32_t from, uint32_t to, double now_s) {
     if (!steers(from) || std::ranges::find(seats_, to, &Seat::client) == seats_.end()) return false;
     give(to);
+    handed_by_ = from;
+    handed_s_ = now_s;
     return true;
 }
 
-void Wheel::look(double now_s) {
-    if (holder_ != 0 || seats_.empty()) return;
+bool Wheel::wish(uint32_t client, const std::string& what, double now_s) {
+    const auto seat = std::ranges::find(seats_, client, &Seat::client);
+    if (seat == seats_.end() || steers(client)) return false;
+    if (client == handed_by_ && now_s - handed_s_ < kHandingOver) return false;
+    seat->wish = what;
+    seat->wished_s = now_s;
+    return true;
+}
+
+bool Wheel::look(double now_s) {
+    bool has_changed = false;
+    for (Seat& seat : seats_) {
+        if (seat.wish.empty() || now_s - seat.wished_s < kWishStays) continue;
+        seat.wish.clear();
+        has_changed = true;
+    }
+    if (holder_ != 0 || seats_.empty()) return has_changed;
     const bool waits = !kept_for_.empty() && now_s - gone_s_ < kPatience;
-    if (!waits) give(seats_.front().client);
+    if (waits) return has_changed;
+    give(seats_.front().client);
+    return true;
 }
 
 } // namespace pertev

@@ -16,17 +16,24 @@ public:
         uint32_t client = 0;
         std::string key; // of the page, kept over reconnects
         bool asks = false;
+        std::string wish; // what it tried to do while another client steered; empty: nothing of late
+        double wished_s = 0;
     };
-    static constexpr double kPatience = 10; // seconds that the wheel waits for whoever held it
+    static constexpr double kWishStays = 20;  // seconds
+    static constexpr double kHandingOver = 1; // seconds within which the former holder may not know it yet
+    static constexpr double kPatience = 10;   // seconds that the wheel waits for whoever held it
 
     void join(uint32_t client, const std::string& key, double now_s);
     void leave(uint32_t client, double now_s);
     /// It asks for the wheel, and gets it where nobody holds it.
     void ask(uint32_t client);
     /// False, and nothing is done, unless `from` steers and `to` is there.
-    bool hand(uint32_t from, uint32_t to);
-    /// To be called now and then: the wheel does not wait for ever.
-    void look(double now_s);
+    bool hand(uint32_t from, uint32_t to, double now_s = 0);
+    /// A client that does not steer has tried to. Returns false where that is no wish: it steered a moment ago.
+    bool wish(uint32_t client, const std::string& what, double now_s);
+    /// To be called now and then: the wheel does not wait for ever, nor does a wish stay. Returns whether anything is
+    /// other than before.
+    bool look(double now_s);
 
     bool steers(uint32_t client) const { return holder_ == client && client != 0; }
     uint32_t holder() const { return holder_; } // 0: nobody
@@ -39,6 +46,8 @@ private:
     uint32_t holder_ = 0;
     std::string kept_for_; // the key of the holder that went away
     double gone_s_ = 0;
+    uint32_t handed_by_ = 0; // who handed it over last
+    double handed_s_ = 0;
 };
 
 } // namespace pertev

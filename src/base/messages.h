@@ -1,8 +1,11 @@
 #pragma once
 
-// What a library wants to say without printing: warnings (something of the input was left out or repaired) and
-// notices (a default was taken). The command line prints them; tests read them. Repeats are counted, not stored.
-// A warning of something missing (a texture that is not there or cannot be read) is one that a strict render ends with.
+// What a library wants to say without printing: warnings and notices. The command line prints them; tests read them.
+// Repeats are counted, not stored.
+//
+// One rule holds for all that is read: what is not known or cannot be read is left out with a warning (leave_out) that
+// names the file and the place in it, and only what leaves no picture is an error. A strict render ends where anything
+// was left out. What the scene lacks and is made for it (a camera, a light) is told by a notice (make_up).
 
 #include <cstddef>
 #include <string>
@@ -16,26 +19,47 @@ struct Message {
     bool is_warning = false;
     std::string text;
     std::size_t times = 1;
-    bool is_missing = false; // a warning that what the scene refers to is not there, or broken
+    bool is_left_out = false; // a warning: the picture lacks something that the input has
+    bool is_made_up = false;  // a notice: the picture has something that the input lacks
 };
 
 class Messages {
 public:
+    /// Something was repaired, or what was asked for has no effect.
     void warn(std::string text) { add(true, std::move(text)); }
-    void warn_of_missing(std::string text) { all_[add(true, std::move(text))].is_missing = true; }
+    /// The picture lacks something that the input has. A file of many faults names the first of them only.
+    void leave_out(std::string text) {
+        const bool is_one_too_many = left_out_ >= kMostLeftOut && !places_[1].contains(text);
+        Message& message = all_[add(true, is_one_too_many ? kMoreLeftOut : std::move(text))];
+        if (!message.is_left_out) ++left_out_;
+        message.is_left_out = true;
+    }
+    /// A default was taken, or there is something else to know.
     void note(std::string text) { add(false, std::move(text)); }
-    /// All that `other` has, after what is here.
+    /// The picture has something that the input lacks.
+    void make_up(std::string text) { all_[add(false, std::move(text))].is_made_up = true; }
+
+    /// Appends all messages of `other`.
     void add_all(const Messages& other) {
         for (const Message& message : other.all_) {
             Message& here = all_[add(message.is_warning, message.text)];
             here.times += message.times - 1;
-            here.is_missing = here.is_missing || message.is_missing;
+            if (message.is_left_out && !here.is_left_out) ++left_out_;
+            here.is_left_out = here.is_left_out || message.is_left_out;
+            here.is_made_up = here.is_made_up || message.is_made_up;
         }
     }
     const std::vector<Message>& all() const { return all_; }
 
+    // The texts of what was made up and of what was left out, in the order in which that was told.
+    std::vector<std::string> made_up() const { return texts_of(&Message::is_made_up); }
+    std::vector<std::string> left_out() const { return texts_of(&Message::is_left_out); }
+
 private:
-    /// Its place in all_.
+    static constexpr std::size_t kMostLeftOut = 100;
+    static constexpr const char* kMoreLeftOut = "more is left out than these warnings name";
+
+    /// Returns its place in all_.
     std::size_t add(bool is_warning, std::string text) {
         const auto [place, is_new] = places_[is_warning ? 1 : 0].try_emplace(text, all_.size());
         if (is_new) {
@@ -46,8 +70,17 @@ private:
         return place->second;
     }
 
+    std::vector<std::string> texts_of(bool Message::*kind) const {
+        std::vector<std::string> texts;
+        for (const Message& message : all_) {
+            if (message.*kind) texts.push_back(message.text);
+        }
+        return texts;
+    }
+
     std::vector<Message> all_;
     std::unordered_map<std::string, std::size_t> places_[2]; // of notices and warnings in all_
+    std::size_t left_out_ = 0;                               // messages of all_ that are
 };
 
 } // namespace pertev

@@ -4,11 +4,13 @@
 // from a stranger must not be able to read (and show in a picture) anything else.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/messages.h"
+#include "formats/list_folders.h"
 
 namespace pertev {
 
@@ -22,16 +24,26 @@ public:
     /// names `from` and --allow-path when it leads outside. The file need not exist.
     std::filesystem::path resolve(const std::filesystem::path& from, const std::string& reference) const;
 
-    /// As resolve, for a file that is read: where there is none of that path that may be read but one of that name
-    /// beside `from`, that one (exporters write paths of the machine they ran on), with a warning where the path leads
-    /// outside. Nothing where there is neither.
+    /// The file that `reference` means, for a file that is read. Where none of that path may be read it is the file
+    /// below the folder of `from` or below a folder that may be read whose path ends like `reference`, without regard
+    /// to the case of A to Z, if one file alone fits best: exporters write paths of the machine that they ran on. A
+    /// warning tells it. Returns nothing where no file fits, and after a warning where several do. Throws
+    /// Error(BadInput), which names --allow-path, where there is such a file outside alone.
     std::optional<std::filesystem::path> find(const std::filesystem::path& from, const std::string& reference,
                                               Messages& messages) const;
 
 private:
+    struct Located {
+        bool is_there, is_allowed;
+        std::filesystem::path path;
+    };
     bool is_allowed(const std::filesystem::path& canonical) const;
+    Located locate(const std::filesystem::path& name) const;
+    std::optional<std::filesystem::path> find_end_of(const std::filesystem::path& name,
+                                                     const std::filesystem::path& from, Messages& messages) const;
 
     std::vector<std::filesystem::path> roots_; // canonical
+    std::shared_ptr<FolderListing> listing_;   // of roots_
 };
 
 } // namespace pertev

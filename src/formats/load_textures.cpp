@@ -13,6 +13,7 @@
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
+#include "image/picture_primaries.h"
 #include "image/image_format.h"
 #include "image/srgb.h"
 
@@ -40,9 +41,10 @@ Image to_rgba(const Image& image) {
     return rgba;
 }
 
-/// What an image is read as: values as stored, or colours that are still sRGB-encoded.
+/// What an image is read as: values as stored, or colours that are still sRGB-encoded. Colours are converted to Rec.
+/// 709.
 struct Uses {
-    bool as_srgb = false, as_data = false;
+    bool as_srgb = false, as_data = false, as_color = false;
 };
 
 std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
@@ -52,6 +54,7 @@ std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
             if (!ref->has_image()) continue;
             Uses& use = uses.at(static_cast<std::size_t>(ref->image));
             (ref->is_srgb ? use.as_srgb : use.as_data) = true;
+            use.as_color |= ref == &material.base_color_texture || ref == &material.emission_texture;
         }
     }
     return uses;
@@ -95,12 +98,12 @@ TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses
 
 } // namespace
 
-int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference) {
+int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference, const std::string& place) {
     const std::optional<fs::path> path = access_.find(from, reference, *messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_->warn_of_missing(fmt::format("{}: there is no texture {}; its factor alone is used",
-                                                   from.string(), shortened(reference)));
+            messages_->leave_out(fmt::format("{}: there is no texture {}; its factor alone is used",
+                                             place.empty() ? from.string() : place, shortened(reference)));
         }
         return kNoImage;
     }
@@ -147,6 +150,7 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.texture_bytes = texture_bytes(read_image_header(bytes, name));
         if ((all_bytes += source.texture_bytes) > limit) return;
         source.is_png = recognise_image(bytes) == ImageFormat::Png;
+        source.color_matrix = color_matrix_of(bytes, name, &source.said);
         source.image = decode_image(bytes, name, &source.said);
     } catch (const Error& error) {
         source.fault = error.what();
@@ -168,7 +172,7 @@ void TextureLoader::decode_within(uint64_t limit) {
 
 void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     if (missing_ > kMissingNamed) {
-        messages_->warn_of_missing(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
+        messages_->leave_out(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
     }
     const uint64_t limit = budget(scene_bytes);
     decode_within(limit);
@@ -178,13 +182,15 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     std::vector<TextureImage> textures(sources_.size());
     parallel_for(sources_.size(), 1, [&](uint64_t i) {
         Source& source = sources_[i];
-        if (source.image) textures[i] = texture_of(*std::move(source.image), source.is_png, uses[i], source.name);
+        if (!source.image) return;
+        textures[i] = texture_of(*std::move(source.image), source.is_png, uses[i], source.name);
+        if (source.color_matrix && uses[i].as_color) convert_colors(*source.color_matrix, textures[i].rgba_float);
     });
     std::vector<int32_t> renumbered(sources_.size(), kNoImage);
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         messages_->add_all(sources_[i].said);
         if (!sources_[i].fault.empty()) {
-            messages_->warn_of_missing(fmt::format("{}; its factor alone is used", sources_[i].fault));
+            messages_->leave_out(fmt::format("{}; its factor alone is used", sources_[i].fault));
             continue;
         }
         PERTEV_CHECK(sources_[i].image);

@@ -1,8 +1,7 @@
 #pragma once
 
 // Collects the images that a scene refers to, each once, and decodes all of them in parallel. A picture that is missing
-// or broken is a warning, and what used it falls back to its factor; a picture outside the folders that the scene may
-// read is an error.
+// or broken is left out with a warning, and what used it falls back to its factor.
 
 #include <atomic>
 #include <cstddef>
@@ -17,6 +16,7 @@
 
 #include "base/messages.h"
 #include "formats/file_access.h"
+#include "image/color_primaries.h"
 #include "image/image.h"
 #include "scene/scene.h"
 
@@ -30,9 +30,9 @@ public:
     void say_to(Messages& messages) { messages_ = &messages; }
 
     /// Image index of the file `reference`, as written in `from` (see FileAccess::resolve); the same file, however
-    /// spelled, is one image. kNoImage after a warning where there is no such file. Throws Error(BadInput) when access
-    /// is refused.
-    int32_t add_file(const std::filesystem::path& from, const std::string& reference);
+    /// spelled, is one image. kNoImage after a warning, which names `place` or else `from`, where there is no such
+    /// file. Throws Error(BadInput) when access is refused.
+    int32_t add_file(const std::filesystem::path& from, const std::string& reference, const std::string& place = "");
 
     /// Image index of an encoded image in memory, which stays alive until load_into returns. `name` is for messages.
     int32_t add_bytes(std::string name, std::span<const std::byte> bytes);
@@ -58,6 +58,7 @@ private:
 
         uint64_t texture_bytes = 0;                           // that the picture will take; 0: not known yet
         std::optional<std::variant<Rgba8Image, Image>> image; // once it is decoded
+        std::optional<ColorMatrix> color_matrix;              // to Rec. 709, where its colours are others
         bool is_png = false;
         std::string fault; // why it never will be
         Messages said = {};

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "formats/obj_text.h"
-#include "formats/parse_number.h"
+#include "formats/parse_mtl_texture.h"
 
 namespace pertev {
 namespace {
@@ -76,28 +76,29 @@ public:
         std::string_view line;
         while (lines_.next(line)) {
             key_ = take_word(line);
-            if (!key_.empty() && key_[0] != '#') statement(line);
+            if (key_.empty() || key_[0] == '#') continue;
+            try {
+                statement(line);
+            } catch (const MtlFault& fault) {
+                messages_.leave_out(fmt::format("{}:{}: {}; the line is left out", file_, lines_.number(), fault.what));
+            }
         }
         for (const auto& [key, lines] : left_out_) {
-            messages_.warn(
+            messages_.leave_out(
                 fmt::format("{}:{}: {} of {}: left out", file_, lines.first_line, counted(lines.times, "line"), key));
         }
         if (too_long_.times > 0) {
-            messages_.warn(fmt::format("{}:{}: {} with more than the key takes: the rest left out", file_,
-                                       too_long_.first_line, counted(too_long_.times, "line")));
+            messages_.leave_out(fmt::format("{}:{}: {} with more than the key takes: the rest left out", file_,
+                                            too_long_.first_line, counted(too_long_.times, "line")));
         }
         if (unknown_.times > 0) {
-            messages_.warn(fmt::format("{}:{}: {} not understood ({} is the first): left out", file_,
-                                       unknown_.first_line, counted(unknown_.times, "line"), first_unknown_));
+            messages_.leave_out(fmt::format("{}:{}: {} not understood ({} is the first): left out", file_,
+                                            unknown_.first_line, counted(unknown_.times, "line"), first_unknown_));
         }
         return std::move(materials_);
     }
 
 private:
-    Error fault(const std::string& what) const {
-        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file_, lines_.number(), what));
-    }
-
     void statement(std::string_view line) {
         const std::string key = lower_case(key_);
         if (key == "newmtl") {
@@ -116,7 +117,9 @@ private:
         } else if (const NumberKey* as_number = find_key(kNumbers, key)) {
             to.*as_number->to = only_number(line);
         } else if (const MapKey* as_map = find_key(kMaps, key)) {
-            to.*as_map->to = texture(line);
+            MtlTexture& texture = to.*as_map->to;
+            texture = parse_mtl_texture(line);
+            texture.line = lines_.number();
         } else if (key == "d") {
             std::string_view ahead = line;
             if (take_word(ahead) == "-halo") line = ahead; // denser at the rim: taken as dense everywhere
@@ -139,27 +142,12 @@ private:
         unknown_.add(lines_.number());
     }
 
-    bool is_at_end(std::string_view line) const {
-        skip_space(line);
-        return line.empty() || line[0] == '#';
-    }
-
-    float number(std::string_view& line, std::string_view of) const {
-        if (is_at_end(line)) throw fault(fmt::format("{} lacks a number", of));
-        const std::string_view word = take_word(line);
-        std::string_view rest = word;
-        const std::optional<float> value = parse_float(rest);
-        if (!value || !rest.empty()) throw fault(fmt::format("{}: \"{}\" is not a number", of, shortened(word)));
-        if (!is_finite(*value)) throw fault(fmt::format("{}: {} is not a finite number", of, shortened(word)));
-        return *value;
-    }
-
     void check_end(std::string_view line) {
-        if (!is_at_end(line)) too_long_.add(lines_.number());
+        if (!is_mtl_end(line)) too_long_.add(lines_.number());
     }
 
     float only_number(std::string_view line) {
-        const float value = number(line, key_);
+        const float value = take_mtl_number(line, key_);
         check_end(line);
         return value;
     }
@@ -172,72 +160,11 @@ private:
             left_out_[fmt::format("{} {}", key_, word)].add(lines_.number());
             return std::nullopt;
         }
-        const float r = number(line, key_);
-        if (is_at_end(line)) return grey(r);
-        const float g = number(line, key_), b = number(line, key_);
+        const float r = take_mtl_number(line, key_);
+        if (is_mtl_end(line)) return grey(r);
+        const float g = take_mtl_number(line, key_), b = take_mtl_number(line, key_);
         check_end(line);
         return Rgb{r, g, b};
-    }
-
-    bool is_on(std::string_view& line, std::string_view of) const {
-        const std::string_view word = take_word(line);
-        if (word != "on" && word != "off") {
-            throw fault(fmt::format("{} {}: \"{}\" is neither on nor off", key_, of, shortened(word)));
-        }
-        return word == "on";
-    }
-
-    /// The one to three numbers of -o, -s and -t. A number that ends the line is the file's name.
-    void up_to_three(std::string_view& line, float (&to)[3]) const {
-        for (float& value : to) {
-            std::string_view ahead = line, word = take_word(ahead);
-            const std::optional<float> read = parse_float(word);
-            if (!read || !word.empty() || is_at_end(ahead)) return;
-            if (!is_finite(*read)) throw fault(fmt::format("{}: {} is not a finite number", key_, *read));
-            value = *read;
-            line = ahead;
-        }
-    }
-
-    MtlTexture texture(std::string_view line) const {
-        MtlTexture to;
-        for (;;) {
-            std::string_view ahead = line;
-            const std::string_view option = take_word(ahead);
-            if (option == "-o" || option == "-s" || option == "-t") {
-                Vec2& pair = option == "-s" ? to.scale : to.offset;
-                float numbers[3] = {pair.x, pair.y, 0};
-                up_to_three(ahead, numbers);
-                if (option != "-t") pair = {numbers[0], numbers[1]}; // -t is turbulence
-            } else if (option == "-clamp") {
-                to.clamp = is_on(ahead, option);
-            } else if (option == "-blendu" || option == "-blendv" || option == "-cc") {
-                is_on(ahead, option);
-            } else if (option == "-bm") {
-                to.bump_multiplier = number(ahead, key_);
-            } else if (option == "-mm") {
-                number(ahead, key_);
-                number(ahead, key_);
-            } else if (option == "-boost" || option == "-texres") {
-                number(ahead, key_);
-            } else if (option == "-imfchan") {
-                const std::string_view channel = take_word(ahead);
-                if (!channel.empty()) to.channel = channel[0];
-            } else if (option == "-colorspace") {
-                to.is_linear = take_word(ahead) == "linear";
-            } else if (option == "-type") {
-                take_word(ahead);
-            } else {
-                break; // a name may begin with a minus
-            }
-            line = ahead;
-        }
-        to.name = rest_as_name(line);
-        if (to.name.size() > 1 && to.name.front() == '"' && to.name.back() == '"') {
-            to.name = to.name.substr(1, to.name.size() - 2);
-        }
-        to.line = lines_.number();
-        return to;
     }
 
     ObjLines lines_;

@@ -6,18 +6,18 @@
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
+#include "formats/obj_pieces.h"
 #include "formats/obj_positions.h"
 #include "formats/obj_text.h"
 #include "formats/parse_number.h"
 #include "formats/triangulate_polygon.h"
-#include "image/srgb.h"
+#include "formats/vertex_colors.h"
 #include "scene/scene_origin.h"
 
 namespace pertev {
@@ -29,78 +29,13 @@ struct Face {
     uint32_t corner_count, line;
 };
 
-/// Faces of one material in one piece of the text.
+/// Faces of one object, group and material in one piece of the text.
 struct RawGroup {
-    std::string_view material;
+    ObjGroupKey key;
     uint32_t line = 0;              // of the first face
     std::vector<ObjCorner> corners; // of all faces, one after the other
     std::vector<Face> faces;
 };
-
-struct Counts {
-    std::size_t positions = 0, uvs = 0, normals = 0;
-};
-
-/// Whole statements, which one thread reads.
-struct Piece {
-    std::string_view text;
-    // What stands before it.
-    uint32_t line = 1; // the number of its first
-    Counts counts = {};
-    std::string_view material = {}; // of the last usemtl
-};
-
-/// Of about so many bytes, cut where a line ends that cannot be joined with the next, be it a comment or not.
-std::vector<Piece> cut_into_pieces(std::string_view text, char end_of_line, std::size_t piece_bytes) {
-    std::vector<Piece> pieces;
-    for (std::size_t begin = 0; begin < text.size();) {
-        std::size_t end = text.find(end_of_line, std::min(begin + piece_bytes, text.size()));
-        while (end != text.npos && ObjLines::is_joined(text, begin, end)) end = text.find(end_of_line, end + 1);
-        const std::size_t count = end == text.npos ? text.size() - begin : end + 1 - begin;
-        pieces.push_back({text.substr(begin, count)});
-        begin += count;
-    }
-    return pieces;
-}
-
-/// What a piece adds to what stands before the next.
-struct Survey {
-    uint32_t lines = 0;
-    Counts counts = {};
-    std::optional<std::string_view> material = {}; // of its last usemtl
-};
-
-/// Counts what PieceParser::statement makes.
-Survey survey(std::string_view text, char end_of_line) {
-    Survey found;
-    ObjLines lines(text, end_of_line, 1);
-    for (std::string_view line; lines.next(line);) {
-        const std::string_view key = take_word(line);
-        if (key == "v") ++found.counts.positions;
-        if (key == "vt") ++found.counts.uvs;
-        if (key == "vn") ++found.counts.normals;
-        if (key == "usemtl") found.material = rest_as_name(line);
-    }
-    found.lines = lines.number_behind() - 1;
-    return found;
-}
-
-/// Says of each piece what stands before it. Returns the counts of all together.
-Counts count_before(std::vector<Piece>& pieces, char end_of_line) {
-    std::vector<Survey> found(pieces.size());
-    parallel_for(pieces.size(), 1, [&](uint64_t i) { found[i] = survey(pieces[i].text, end_of_line); });
-    Piece before;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        before.text = pieces[i].text;
-        pieces[i] = before;
-        before.line += found[i].lines;
-        before.counts.positions += found[i].counts.positions;
-        before.counts.uvs += found[i].counts.uvs;
-        before.counts.normals += found[i].counts.normals;
-        if (found[i].material) before.material = *found[i].material;
-    }
-    return before.counts;
-}
 
 Error fault_at(const std::string& file, uint32_t line, const std::string& what) {
     return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file, line, what));
@@ -109,24 +44,20 @@ Error fault_at(const std::string& file, uint32_t line, const std::string& what) 
 /// Reads one piece: its vertices to their places in arrays that are as long as all will be.
 class PieceParser {
 public:
-    PieceParser(const Piece& piece, char end_of_line, const std::string& file, ObjData& data,
+    PieceParser(const ObjPiece& piece, char end_of_line, const std::string& file, ObjData& data,
                 const FoundMaterials* found_materials)
         : lines_(piece.text, end_of_line, piece.line), file_(file), before_(piece.counts), so_far_(piece.counts),
-          data_(data), found_materials_(found_materials), material_(piece.material) {}
+          data_(data), found_materials_(found_materials), key_(piece.key) {}
 
     void run() {
-        try {
-            for (std::string_view line; lines_.next(line);) statement(line);
-        } catch (const Error& error) {
-            fault = error;
-        }
+        for (std::string_view line; lines_.next(line);) statement(line);
     }
 
-    std::optional<Error> fault; // where it stopped
-    std::vector<Vec4> colors;   // of its positions; or none
+    std::vector<Vec4> colors; // of its positions, as written; or none
     std::vector<RawGroup> groups;
     std::vector<ObjMaterialFiles> material_files;
-    CountedLines bad_numbers, short_faces, points_and_lines, free_form, unknown;
+    std::string first_bad_face; // why its first face was left out
+    CountedLines bad_faces, bad_numbers, short_faces, points_and_lines, free_form, unknown;
 
 private:
     Error fault_here(const std::string& what) const { return fault_at(file_, lines_.number(), what); }
@@ -146,9 +77,9 @@ private:
             data_.uvs.at(so_far_.uvs++) = {t[0], next_number(line).value_or(0)};
             return;
         }
-        if (key == "usemtl") {
+        if (key == "usemtl" || key == "o" || key == "g") {
             current_ = nullptr;
-            material_ = rest_as_name(line);
+            (key == "o" ? key_.object : key == "g" ? key_.group : key_.material) = rest_as_name(line);
             return;
         }
         if (key == "mtllib") {
@@ -161,9 +92,9 @@ private:
     }
 
     void other(std::string_view key) {
-        // Grouping, smoothing groups (files that want smooth normals give them) and display hints change nothing.
-        for (const char* harmless : {"g", "o", "s", "mg", "lod", "bevel", "c_interp", "d_interp", "usemap", "maplib",
-                                     "shadow_obj", "trace_obj"}) {
+        // Smoothing groups (files that want smooth normals give them) and display hints change nothing.
+        for (const char* harmless :
+             {"s", "mg", "lod", "bevel", "c_interp", "d_interp", "usemap", "maplib", "shadow_obj", "trace_obj"}) {
             if (key == harmless) return;
         }
         for (const char* curved :
@@ -205,12 +136,11 @@ private:
             if (!value) break;
             rgb[found++] = *value;
         }
-        const Vec4 white = {1, 1, 1, 1};
         if (found == 3) { // one more alone is a weight for rational curves
-            colors.resize(so_far_.positions - before_.positions - 1, white);
-            colors.push_back({srgb_decode(rgb[0]), srgb_decode(rgb[1]), srgb_decode(rgb[2]), 1});
+            colors.resize(so_far_.positions - before_.positions - 1, kNoVertexColor);
+            colors.push_back({rgb[0], rgb[1], rgb[2], 1});
         } else if (!colors.empty()) {
-            colors.push_back(white);
+            colors.push_back(kNoVertexColor);
         }
     }
 
@@ -252,13 +182,20 @@ private:
 
     void face(std::string_view line) {
         if (current_ == nullptr) {
-            const auto [found, is_new] = by_material_.try_emplace(material_, groups.size());
-            if (is_new) groups.push_back({material_, lines_.number(), {}, {}});
+            const auto [found, is_new] = numbers_.try_emplace(key_, groups.size());
+            if (is_new) groups.push_back({key_, lines_.number(), {}, {}});
             current_ = &groups[found->second];
         }
         const std::size_t before = current_->corners.size();
-        for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
-            current_->corners.push_back(corner(word));
+        try {
+            for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
+                current_->corners.push_back(corner(word));
+            }
+        } catch (const Error& error) {
+            current_->corners.resize(before);
+            if (bad_faces.times == 0) first_bad_face = error.what();
+            bad_faces.add(lines_.number());
+            return;
         }
         const std::size_t count = current_->corners.size() - before;
         if (count < 3) {
@@ -271,34 +208,43 @@ private:
 
     ObjLines lines_;
     const std::string& file_;
-    const Counts before_;
-    Counts so_far_;
+    const ObjCounts before_;
+    ObjCounts so_far_;
     ObjData& data_;
     const FoundMaterials* found_materials_; // null: nobody asks
-    std::unordered_map<std::string_view, std::size_t> by_material_;
-    std::string_view material_;
-    RawGroup* current_ = nullptr; // of material_; null until a face needs it
+    ObjGroupNumbers numbers_;
+    ObjGroupKey key_;
+    RawGroup* current_ = nullptr; // of key_; null until a face needs it
 };
 
 class ObjParser {
 public:
     ObjParser(std::string_view text, const std::string& file, Messages& messages, std::size_t piece_bytes)
         : file_(file), messages_(messages), end_of_line_(ObjLines::end_of_line_of(text)),
-          pieces_(cut_into_pieces(text, end_of_line_, piece_bytes)) {}
+          pieces_(cut_into_obj_pieces(text, end_of_line_, piece_bytes)) {}
 
     ObjData run(const FoundMaterials& found_materials) {
         parse_pieces(found_materials);
         move_to_origin();
-        join_groups();
+        if (!join_groups(false)) {
+            messages_.note(fmt::format("{}: more than {} objects and groups: faces are put together by material alone",
+                                       file_, kMostObjGroups));
+            join_groups(true);
+        }
         join_colors();
         for (PieceParser& parser : parsers_)
             for (ObjMaterialFiles& files : parser.material_files) data_.material_files.push_back(std::move(files));
         data_.groups.resize(groups_.size());
-        std::vector<CountedLines> without_uv(groups_.size());
-        parallel_for(groups_.size(), 1, [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i]); });
+        std::vector<CountedLines> without_uv(groups_.size()), without_vertex(groups_.size());
+        parallel_for(groups_.size(), 1,
+                     [&](uint64_t i) { finish(groups_[i], data_.groups[i], without_uv[i], without_vertex[i]); });
         std::erase_if(data_.groups, [](const ObjGroup& group) { return group.corners.empty(); });
         CountedLines missing;
         for (const CountedLines& of_group : without_uv) missing.add(of_group);
+        leave_out_bad_faces();
+        CountedLines no_vertex;
+        for (const CountedLines& of_group : without_vertex) no_vertex.add(of_group);
+        say(no_vertex, "face", "with a vertex that is not in the file: left out");
         say(missing, "face corner", "with a texture coordinate or normal that is not in the file: without it");
         say(all_of(&PieceParser::bad_numbers), "line", "with a number missing or not readable");
         say(all_of(&PieceParser::short_faces), "face", "of fewer than three corners: left out");
@@ -309,7 +255,7 @@ public:
     }
 
 private:
-    using Parts = std::vector<RawGroup*>; // of one material, in the order of the text
+    using Parts = std::vector<RawGroup*>; // of one group, in the order of the text
 
     CountedLines all_of(CountedLines PieceParser::*what) const {
         CountedLines all;
@@ -317,13 +263,26 @@ private:
         return all;
     }
 
+    void leave_out_bad_faces() const {
+        const CountedLines bad = all_of(&PieceParser::bad_faces);
+        if (bad.times == 0) return;
+        const auto first =
+            std::ranges::find_if(parsers_, [](const PieceParser& parser) { return parser.bad_faces.times > 0; });
+        messages_.leave_out(fmt::format("{}; {} left out", first->first_bad_face, counted(bad.times, "such face")));
+    }
+
     void say(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        messages_.warn(fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text));
+        std::string said = fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text);
+        if (said.ends_with("left out")) {
+            messages_.leave_out(std::move(said));
+        } else {
+            messages_.warn(std::move(said));
+        }
     }
 
     void parse_pieces(const FoundMaterials& found_materials) {
-        const Counts all = count_before(pieces_, end_of_line_);
+        const ObjCounts all = count_before(pieces_, end_of_line_);
         if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
             throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
         }
@@ -334,9 +293,6 @@ private:
             parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_,
                                   i == 0 && found_materials ? &found_materials : nullptr);
         parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
-        for (const PieceParser& parser : parsers_) {
-            if (parser.fault) throw *parser.fault;
-        }
     }
 
     /// Round the positions that faces name. `position_at(i)`: of number i.
@@ -370,48 +326,60 @@ private:
         parallel_for(exact.size(), 4096, [&](uint64_t i) { data_.positions[i] = to_float(exact[i] - origin); });
     }
 
-    void join_groups() {
-        std::unordered_map<std::string_view, std::size_t> by_material;
+    /// Puts the parts of each group together. Returns false where there are more than kMostObjGroups.
+    bool join_groups(bool by_material_alone) {
+        ObjGroupNumbers numbers;
+        groups_.clear();
         for (PieceParser& parser : parsers_) {
             for (RawGroup& group : parser.groups) {
-                const auto [found, is_new] = by_material.try_emplace(group.material, groups_.size());
+                if (by_material_alone) group.key.object = group.key.group = {};
+                const auto [found, is_new] = numbers.try_emplace(group.key, groups_.size());
+                if (is_new && groups_.size() == kMostObjGroups && !by_material_alone) return false;
                 if (is_new) groups_.emplace_back();
                 groups_[found->second].push_back(&group);
             }
         }
+        return true;
     }
 
     void join_colors() {
         const auto has_colors = [](const PieceParser& parser) { return !parser.colors.empty(); };
         if (std::ranges::none_of(parsers_, has_colors)) return;
-        data_.colors.resize(data_.positions.size(), {1, 1, 1, 1});
+        data_.colors.resize(data_.positions.size(), kNoVertexColor);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             const auto first = static_cast<std::ptrdiff_t>(pieces_[i].counts.positions);
             std::ranges::copy(parsers_[i].colors, data_.colors.begin() + first);
         }
+        decode_vertex_colors(data_.colors, file_, messages_);
     }
 
     /// Checks a group's indices and cuts its faces into triangles.
-    void finish(const Parts& parts, ObjGroup& group, CountedLines& without) const {
-        group.material = parts.front()->material;
+    void finish(const Parts& parts, ObjGroup& group, CountedLines& without, CountedLines& without_vertex) const {
+        group.name = name_of(parts.front()->key);
+        group.material = parts.front()->key.material;
         group.line = parts.front()->line;
         std::size_t triangles = 0;
         for (const RawGroup* part : parts)
             for (const Face& face : part->faces) triangles += face.corner_count - 2;
         group.corners.reserve(3 * triangles);
         for (RawGroup* part : parts) {
-            cut_faces(*part, group, without);
+            cut_faces(*part, group, without, without_vertex);
             *part = {};
         }
     }
 
-    void cut_faces(RawGroup& raw, ObjGroup& group, CountedLines& without) const {
+    void cut_faces(RawGroup& raw, ObjGroup& group, CountedLines& without, CountedLines& without_vertex) const {
         std::vector<Vec3> polygon;
         std::vector<uint32_t> cut;
         ObjCorner* corners = raw.corners.data();
         for (const Face& face : raw.faces) {
             for (uint32_t i = 0; i < face.corner_count; ++i) check(corners[i], face.line, without);
-            if (face.corner_count == 3) {
+            const bool has_all = std::all_of(corners, corners + face.corner_count, [&](const ObjCorner& corner) {
+                return corner.position < data_.positions.size();
+            });
+            if (!has_all) {
+                without_vertex.add(face.line);
+            } else if (face.corner_count == 3) {
                 group.corners.insert(group.corners.end(), corners, corners + 3);
             } else {
                 polygon.clear();
@@ -426,11 +394,6 @@ private:
     }
 
     void check(ObjCorner& corner, uint32_t line, CountedLines& without) const {
-        if (corner.position >= data_.positions.size()) {
-            throw fault_at(file_, line,
-                           fmt::format("vertex index {} is out of range; the file has {} vertices",
-                                       uint64_t(corner.position) + 1, data_.positions.size()));
-        }
         if (corner.uv != kNoIndex && corner.uv >= data_.uvs.size()) {
             without.add(line);
             corner.uv = kNoIndex;
@@ -444,10 +407,10 @@ private:
     const std::string& file_;
     Messages& messages_;
     const char end_of_line_;
-    std::vector<Piece> pieces_;
+    std::vector<ObjPiece> pieces_;
     std::deque<PieceParser> parsers_; // of the pieces
     ObjData data_;
-    std::vector<Parts> groups_; // by material, in the order of first use
+    std::vector<Parts> groups_; // in the order of first use
 };
 
 } // namespace

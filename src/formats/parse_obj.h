@@ -1,7 +1,8 @@
 #pragma once
 
-// The text of a Wavefront OBJ file as arrays: vertices, and triangles by material. Wavefront's "Object Files (.obj)",
-// appendix B1 of the Advanced Visualizer manual; vertex colours as MeshLab and Blender write them.
+// The text of a Wavefront OBJ file as arrays: vertices, and triangles by object, group and material. Wavefront's
+// "Object Files (.obj)", appendix B1 of the Advanced Visualizer manual; vertex colours as MeshLab and Blender write
+// them.
 //
 // Why not tinyobjloader: its 2.0rc10 reads a number that it cannot parse, `nan` too, as 0 without a word; takes a
 // minute for one polygon of 200 000 corners; rounds numbers through libm's pow; and knows no line for what is wrong.
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "base/messages.h"
+#include "formats/vertex_table.h"
 #include "math/double_bounds3.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
@@ -25,11 +27,14 @@ namespace pertev {
 inline constexpr uint32_t kNoIndex = 0xffffffffu;
 
 /// Zero-based; texture coordinate and normal may be kNoIndex.
-struct ObjCorner {
-    uint32_t position, uv, normal;
-};
+using ObjCorner = VertexKey;
+
+/// Objects and groups are told apart up to so many (with their materials); where a file has more, its faces are put
+/// together by material alone.
+inline constexpr std::size_t kMostObjGroups = std::size_t(1) << 16;
 
 struct ObjGroup {
+    std::string name;               // of o and g, apart by a slash where both are there and differ; or empty
     std::string material;           // of usemtl; empty before the first
     uint32_t line = 0;              // of the first face
     std::vector<ObjCorner> corners; // [3 * triangles], in file order, every index in range
@@ -49,7 +54,7 @@ struct ObjData {
     std::vector<Vec4> colors;    // [positions], linear; or empty
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;        // v as in the file: upwards
-    std::vector<ObjGroup> groups; // by material, in the order of first use; none is empty
+    std::vector<ObjGroup> groups; // by object, group and material, in the order of first use; none is empty
     std::vector<ObjMaterialFiles> material_files;
 };
 

@@ -34,6 +34,14 @@ std::vector<std::string_view> words_of(std::string_view line) {
     return words;
 }
 
+/// In any case, with or without a colon.
+bool is_texture_file(std::string_view word) {
+    if (word.ends_with(':')) word.remove_suffix(1);
+    constexpr std::string_view key = "texturefile";
+    return std::ranges::equal(word, key,
+                              [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+}
+
 class HeaderParser {
 public:
     HeaderParser(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -55,6 +63,9 @@ public:
                 element(words);
             } else if (words[0] == "property") {
                 property(words);
+            } else if (header_.elements.empty()) {
+                // Blender 2.4 wrote "Created by Blender3D ...", and old Assimp its own name, without the word comment.
+                if (header_.unknown_line == 0) header_.unknown_line = line_number_;
             } else {
                 throw fault("a header line is element, property, comment, obj_info or end_header");
             }
@@ -81,8 +92,14 @@ private:
     /// Of the next line that is no comment.
     std::vector<std::string_view> next_words() {
         for (;;) {
-            const auto words = words_of(next_line());
+            const std::string_view line = next_line();
+            const auto words = words_of(line);
             if (!words.empty() && words[0] != "comment" && words[0] != "obj_info") return words;
+            if (words.size() >= 3 && words[0] == "comment" && is_texture_file(words[1])) {
+                const auto begin = static_cast<std::size_t>(words[2].data() - line.data()); // a name may hold spaces
+                const auto end = static_cast<std::size_t>(words.back().data() + words.back().size() - line.data());
+                header_.textures.push_back({std::string(line.substr(begin, end - begin)), line_number_});
+            }
         }
     }
 

@@ -26,10 +26,18 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
 };
 
+/// Of a comment `TextureFile NAME`.
+struct PlyTexture {
+    std::string name;
+    std::size_t line = 0;
+};
+
 struct PlyHeader {
     PlyFormat format = PlyFormat::Ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0; // bytes up to the body
+    std::vector<PlyTexture> textures;
+    std::size_t unknown_line = 0; // the first before the elements that is no header line, taken as a comment; 0: none
+    std::size_t size = 0;         // bytes up to the body
 };
 
 /// Bytes of one value in a binary file.

@@ -19,7 +19,7 @@
 namespace pertev {
 
 /// The scene that the file shows by default, not yet validated. Throws Error(BadInput) that names the file and the JSON
-/// pointer. Normal maps without tangents leave Mesh::tangents empty: the renderer derives them.
+/// pointer. Where the file has no tangents, Mesh::tangents is empty: validate() makes those that are needed.
 Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                 Messages& messages);
 /// The same for a file whose bytes are at hand; `path` names it and is what references are relative to.

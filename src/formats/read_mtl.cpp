@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "base/read_file.h"
 #include "formats/parse_mtl.h"
 #include "math/vec3.h"
@@ -16,7 +17,8 @@ float roughness_of(float exponent) { return sqrt(sqrt(2.0f / (max(exponent, 0.0f
 
 class Converter {
 public:
-    Converter(const fs::path& path, TextureLoader& loader) : path_(path), loader_(loader) {}
+    Converter(const fs::path& path, TextureLoader& loader, Messages& messages)
+        : path_(path), loader_(loader), messages_(messages) {}
 
     MtlMaterial convert(const MtlStatements& from) {
         MtlMaterial result;
@@ -41,7 +43,12 @@ private:
     TextureRef texture(const MtlTexture& from, bool is_colour) {
         TextureRef ref;
         if (from.name.empty()) return ref;
-        ref.image = loader_.add_file(fmt::format("{}:{}", path_.string(), from.line), from.name);
+        try {
+            ref.image = loader_.add_file(fmt::format("{}:{}", path_.string(), from.line), from.name);
+        } catch (const Error& error) { // it may not be read
+            if (error.code() != ErrorCode::BadInput) throw;
+            messages_.leave_out(fmt::format("{}; its factor alone is used", error.what()));
+        }
         ref.is_srgb = is_colour && !from.is_linear;
         if (from.clamp) ref.wrap_s = ref.wrap_t = Wrap::ClampToEdge;
         // uv' = scale uv + offset with v upwards; ours points down: v_down = 1 - v_up, on both sides.
@@ -119,6 +126,7 @@ private:
 
     const fs::path& path_;
     TextureLoader& loader_;
+    Messages& messages_;
 };
 
 std::size_t pixel_count(const TextureImage& image) {
@@ -166,7 +174,7 @@ std::map<std::string, MtlMaterial> read_mtl(const fs::path& path, TextureLoader&
 std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, const fs::path& path,
                                             TextureLoader& loader, Messages& messages) {
     std::map<std::string, MtlMaterial> materials;
-    Converter converter(path, loader);
+    Converter converter(path, loader, messages);
     for (const MtlStatements& said : parse_mtl(bytes, path.string(), messages)) {
         if (said.name.empty() || materials.contains(said.name)) continue;
         materials.emplace(said.name, converter.convert(said));
@@ -180,7 +188,8 @@ void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>&
     Material& to = material.material;
     if (material.normal_may_be_height && to.normal_texture.has_image()) {
         if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
-            messages.warn(fmt::format("{}: a map_bump that is a height map is left out; normal maps are read", file));
+            messages.leave_out(
+                fmt::format("{}: a map_bump that is a height map is left out; normal maps are read", file));
             to.normal_texture = {};
         }
     }

@@ -1,13 +1,14 @@
 #include "formats/read_obj.h"
 
 #include <algorithm>
-#include <bit>
 #include <future>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,7 @@
 #include "formats/load_textures.h"
 #include "formats/parse_obj.h"
 #include "formats/read_mtl.h"
+#include "formats/vertex_table.h"
 #include "scene/scene_origin.h"
 
 namespace fs = std::filesystem;
@@ -25,61 +27,46 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-/// Gives each different (position, uv, normal) of a group one vertex, in the order of first use. Open addressing: time
-/// and memory follow the group's own size, whatever its indices are.
-class VertexTable {
-public:
-    explicit VertexTable(std::size_t corners) : slots_(std::bit_ceil(2 * corners + 1), kNoIndex) {}
-
-    uint32_t vertex_of(const ObjCorner& corner) {
-        const std::size_t mask = slots_.size() - 1;
-        uint64_t hash = corner.position * 0x9e3779b97f4a7c15u;
-        hash = (hash ^ (hash >> 29) ^ corner.uv) * 0xbf58476d1ce4e5b9u;
-        hash = (hash ^ (hash >> 32) ^ corner.normal) * 0x94d049bb133111ebu;
-        for (std::size_t at = (hash >> 20) & mask;; at = (at + 1) & mask) {
-            if (slots_[at] == kNoIndex) {
-                slots_[at] = static_cast<uint32_t>(vertices_.size());
-                vertices_.push_back(corner);
-                return slots_[at];
-            }
-            const ObjCorner& known = vertices_[slots_[at]];
-            if (known.position == corner.position && known.uv == corner.uv && known.normal == corner.normal) {
-                return slots_[at];
-            }
-        }
-    }
-    const std::vector<ObjCorner>& vertices() const { return vertices_; }
-
-private:
-    std::vector<uint32_t> slots_;
-    std::vector<ObjCorner> vertices_;
-};
-
 bool has_texture(const Material& m) {
     return std::ranges::any_of(m.textures(), [](const TextureRef* texture) { return texture->has_image(); });
 }
 
 void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& data, const std::string& file,
                                           Messages& messages) {
-    std::size_t materials = 0;
+    std::set<uint32_t> materials;
     std::string first;
     for (std::size_t i = 0; i < data.groups.size(); ++i) {
+        const uint32_t material = scene.instances[i].material;
         const std::vector<ObjCorner>& corners = data.groups[i].corners;
-        if (!has_texture(scene.materials[i]) ||
+        if (!has_texture(scene.materials[material]) || materials.contains(material) ||
             std::none_of(corners.begin(), corners.end(), [](const ObjCorner& c) { return c.uv == kNoIndex; })) {
             continue;
         }
-        if (materials++ == 0) first = data.groups[i].material;
+        if (materials.empty()) first = data.groups[i].material;
+        materials.insert(material);
     }
-    if (materials == 0) return;
+    if (materials.empty()) return;
     messages.warn(fmt::format("{}: {} with a texture, but on faces without texture coordinates ({} is the first): "
                               "its corner is seen there",
-                              file, counted(materials, "material"), shortened(first)));
+                              file, counted(materials.size(), "material"), shortened(first)));
+}
+
+/// A texture tells the colour where there is one: scanners write the same colours to the vertices as well.
+void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages& messages) {
+    std::size_t dropped = 0;
+    for (const Instance& instance : scene.instances) {
+        std::vector<Vec4>& colors = scene.meshes[instance.mesh].colors;
+        if (colors.empty() || !scene.materials[instance.material].base_color_texture.has_image()) continue;
+        colors.clear();
+        ++dropped;
+    }
+    if (dropped == 0) return;
+    messages.warn(fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
 }
 
 Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     Mesh mesh;
-    mesh.name = group.material;
+    mesh.name = group.name.empty() ? group.material : group.name;
     mesh.origin = fmt::format("line {}", group.line);
     VertexTable table(group.corners.size());
     mesh.indices.reserve(group.corners.size());
@@ -127,14 +114,27 @@ void wind_after_normals(Mesh& mesh) {
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
                                           Messages& messages) {
     const std::string place = fmt::format("{}:{}", obj.string(), line.line);
-    if (const std::optional<fs::path> whole = access.find(place, line.names, messages)) return {*whole};
+    bool is_refused = false; // where a file may not be read, that has been told
+    const auto find = [&](const std::string& name) -> std::optional<fs::path> {
+        try {
+            return access.find(place, name, messages);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            messages.leave_out(fmt::format("{}; what it describes is grey", error.what()));
+            is_refused = true;
+            return std::nullopt;
+        }
+    };
+    if (const std::optional<fs::path> whole = find(line.names)) return {*whole};
+    if (is_refused) return {};
     std::vector<fs::path> found;
     std::istringstream names(line.names);
     for (std::string name; names >> name;) {
-        if (const std::optional<fs::path> path = access.find(place, name, messages)) {
+        is_refused = false;
+        if (const std::optional<fs::path> path = find(name)) {
             found.push_back(*path);
-        } else {
-            messages.warn_of_missing(
+        } else if (!is_refused) {
+            messages.leave_out(
                 fmt::format("{}: there is no material file {}; what it describes is grey", place, shortened(name)));
         }
     }
@@ -199,35 +199,45 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     Scene scene;
     set_origin(data.box, scene);
     scene.meshes.resize(data.groups.size());
+    std::unordered_map<std::string_view, uint32_t> numbers; // of materials
     std::size_t unknown = 0;
     std::string first_unknown;
     for (uint32_t i = 0; i < data.groups.size(); ++i) {
         const std::string& name = data.groups[i].material;
-        const auto known = materials.find(name);
-        if (known != materials.end()) {
-            scene.materials.push_back(known->second.material);
-        } else {
-            scene.materials.push_back(grey_material(name, data));
-            if (!name.empty() && unknown++ == 0) first_unknown = name;
+        const auto [number, is_new] = numbers.try_emplace(name, static_cast<uint32_t>(scene.materials.size()));
+        if (is_new) {
+            const auto known = materials.find(name);
+            if (known != materials.end()) {
+                scene.materials.push_back(known->second.material);
+            } else {
+                scene.materials.push_back(grey_material(name, data));
+                if (!name.empty() && unknown++ == 0) first_unknown = name;
+            }
         }
-        scene.instances.push_back({.name = name, .mesh = i, .material = i, .world_from_local = {}});
+        scene.instances.push_back({.name = data.groups[i].name.empty() ? name : data.groups[i].name,
+                                   .mesh = i,
+                                   .material = number->second,
+                                   .world_from_local = {}});
     }
 
     if (data.groups.empty()) {
         scene.no_instances =
             fmt::format("{} and no face; expected a line such as f 1 2 3", counted(data.positions.size(), "position"));
+        const std::vector<std::string> left_out = messages.left_out();
+        if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
     }
 
     if (unknown > 0 && !options.geometry_only) {
-        messages.warn(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
-                                  counted(unknown, "material"), shortened(first_unknown)));
+        messages.leave_out(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
+                                       counted(unknown, "material"), shortened(first_unknown)));
     }
 
     parallel_invoke([&] { loader.load_into(scene); },
                     [&] {
                         parallel_for(data.groups.size(), 1, [&](uint64_t i) {
                             scene.meshes[i] = make_mesh(data.groups[i], data);
-                            if (scene.materials[i].is_emissive()) wind_after_normals(scene.meshes[i]);
+                            const Material& material = scene.materials[scene.instances[i].material];
+                            if (material.is_emissive()) wind_after_normals(scene.meshes[i]);
                         });
                     });
 
@@ -240,6 +250,7 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
         material = finished.material;
     }
     warn_of_textures_without_coordinates(scene, data, file, messages);
+    drop_colors_beside_textures(scene, file, messages);
     return scene;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Wavefront OBJ with its .mtl files. One mesh and one instance for each material, in the order of first use. See
-// parse_obj.h and read_mtl.h for what is read and how it is converted.
+// Wavefront OBJ with its .mtl files. One mesh and one instance for each object, group and material, in the order of
+// first use. See parse_obj.h and read_mtl.h for what is read and how it is converted.
 
 #include <cstddef>
 #include <filesystem>

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <charconv>
-#include <cstring>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -17,9 +15,13 @@
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
-#include "formats/parse_number.h"
+#include "formats/load_textures.h"
+#include "formats/ply_body.h"
 #include "formats/ply_header.h"
+#include "formats/ply_slots.h"
+#include "formats/ply_textures.h"
 #include "formats/triangulate_polygon.h"
+#include "formats/vertex_colors.h"
 #include "image/srgb.h"
 #include "scene/scene_origin.h"
 
@@ -28,190 +30,11 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-/// The body as a row of values; where it stands is known for messages.
-class Body {
-public:
-    Body(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file)
-        : begin_(reinterpret_cast<const char*>(bytes.data())), at_(begin_ + header.size), end_(begin_ + bytes.size()),
-          format_(header.format), file_(file) {}
+bool is_float(PlyType type) { return type == PlyType::Float32 || type == PlyType::Float64; }
 
-    Error fault(const std::string& what) const {
-        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {} {}: {}", file_, place(), element_, number_, what));
-    }
-    void set_place(const std::string& element, uint64_t number) {
-        element_ = element;
-        number_ = number;
-    }
-    bool is_binary() const { return format_ != PlyFormat::Ascii; }
-    void set_number(uint64_t number) { number_ = number; }
-
-    /// The fewest bytes that a value takes: in text a digit and a space.
-    std::size_t least_size(PlyType type) const { return format_ == PlyFormat::Ascii ? 2 : size_of(type); }
-
-    /// Throws unless `count` things of `least` bytes each may still follow.
-    void expect(uint64_t count, std::size_t least, const char* what) const {
-        // The last value of a text may stand without a space after it.
-        const uint64_t left = static_cast<uint64_t>(end_ - at_) + (format_ == PlyFormat::Ascii ? 1 : 0);
-        if (count > left / least) {
-            throw fault(fmt::format("{} {} do not fit into the {} bytes that are left", count, what, end_ - at_));
-        }
-    }
-
-    double value(PlyType type) {
-        switch (format_) {
-        case PlyFormat::Ascii:
-            return text_value(type);
-        case PlyFormat::LittleEndian:
-            return binary_value<false>(type);
-        case PlyFormat::BigEndian:
-            return binary_value<true>(type);
-        }
-        return 0;
-    }
-
-    /// Count of a list, checked against what is left.
-    uint64_t list_count(const PlyProperty& property) {
-        const double count = value(property.count_type);
-        if (!(count >= 0 && count < 0x1p32)) throw fault("a list's count is not within 0 and 2^32 - 1");
-        const auto whole = static_cast<uint64_t>(count);
-        expect(whole, least_size(property.type), "entries of a list");
-        return whole;
-    }
-
-    void skip(const PlyProperty& property) {
-        uint64_t values = property.is_list ? list_count(property) : 1;
-        if (format_ != PlyFormat::Ascii) {
-            if (!property.is_list) expect(1, size_of(property.type), "values");
-            at_ += values * size_of(property.type);
-            return;
-        }
-        for (; values > 0; --values) word();
-    }
-
-private:
-    /// The line in a text, the byte in a binary file.
-    std::string place() const {
-        if (format_ != PlyFormat::Ascii) return fmt::format(" byte {}", at_ - begin_);
-        std::size_t lines = 1;
-        for (const char* c = begin_; c != at_; ++c) {
-            lines += *c == '\n' || (*c == '\r' && c + 1 != end_ && c[1] != '\n');
-        }
-        return std::to_string(lines);
-    }
-
-    std::string_view word() {
-        const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
-        while (at_ != end_ && is_space(*at_)) ++at_;
-        const char* begin = at_;
-        while (at_ != end_ && !is_space(*at_)) ++at_;
-        if (begin == at_) throw fault("the file ends here");
-        return {begin, static_cast<std::size_t>(at_ - begin)};
-    }
-
-    double text_value(PlyType type) {
-        const std::string_view text = word();
-        std::string_view rest = text;
-        if (type == PlyType::Float32 || type == PlyType::Float64) {
-            const std::optional<double> number = parse_float<double>(rest);
-            if (number && rest.empty()) return *number;
-        } else {
-            int64_t number = 0;
-            const auto [after, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
-            if (ec == std::errc{} && after == text.data() + text.size()) return static_cast<double>(number);
-        }
-        throw fault(fmt::format("\"{}\" is not a number of the property's type", text.substr(0, 40)));
-    }
-
-    template <class T, bool big_endian>
-    double load() {
-        if (static_cast<std::size_t>(end_ - at_) < sizeof(T)) throw fault("the file ends here");
-        std::array<char, sizeof(T)> bytes;
-        std::memcpy(bytes.data(), at_, sizeof(T));
-        if constexpr (big_endian) std::reverse(bytes.begin(), bytes.end());
-        at_ += sizeof(T);
-        return static_cast<double>(std::bit_cast<T>(bytes));
-    }
-
-    template <bool big_endian>
-    double binary_value(PlyType type) {
-        static_assert(std::endian::native == std::endian::little);
-        switch (type) {
-        case PlyType::Int8:
-            return load<int8_t, big_endian>();
-        case PlyType::UInt8:
-            return load<uint8_t, big_endian>();
-        case PlyType::Int16:
-            return load<int16_t, big_endian>();
-        case PlyType::UInt16:
-            return load<uint16_t, big_endian>();
-        case PlyType::Int32:
-            return load<int32_t, big_endian>();
-        case PlyType::UInt32:
-            return load<uint32_t, big_endian>();
-        case PlyType::Float32:
-            return load<float, big_endian>();
-        case PlyType::Float64:
-            return load<double, big_endian>();
-        }
-        return 0;
-    }
-
-    const char* begin_;
-    const char* at_;
-    const char* end_;
-    PlyFormat format_;
-    const std::string& file_;
-    std::string element_ = "header";
-    uint64_t number_ = 0;
-};
-
-enum Slot : std::size_t { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue, kAlpha, kU, kV, kSlots };
-
-std::size_t slot_of(const std::string& name) {
-    struct Name {
-        std::string_view name;
-        Slot slot;
-    };
-    static constexpr Name names[] = {
-        {"x", kX},
-        {"y", kY},
-        {"z", kZ},
-        {"nx", kNormalX},
-        {"ny", kNormalY},
-        {"nz", kNormalZ},
-        {"red", kRed},
-        {"green", kGreen},
-        {"blue", kBlue},
-        {"alpha", kAlpha},
-        {"r", kRed},
-        {"g", kGreen},
-        {"b", kBlue},
-        {"a", kAlpha},
-        {"diffuse_red", kRed},
-        {"diffuse_green", kGreen},
-        {"diffuse_blue", kBlue},
-        {"u", kU},
-        {"v", kV},
-        {"s", kU},
-        {"t", kV},
-        {"texture_u", kU},
-        {"texture_v", kV},
-        {"texture_s", kU},
-        {"texture_t", kV},
-        {"texcoord_u", kU},
-        {"texcoord_v", kV},
-        {"s0", kU},
-        {"t0", kV},
-    };
-    for (const Name& known : names) {
-        if (known.name == name) return known.slot;
-    }
-    return kSlots;
-}
-
-/// Colour channel of a file's type to [0, 1]; integers are display values.
+/// Colour channel of a file's type to [0, 1], linear; a float one as it stands.
 float colour(double value, PlyType type, bool is_alpha) {
-    if (type == PlyType::Float32 || type == PlyType::Float64) return static_cast<float>(value);
+    if (is_float(type)) return static_cast<float>(value);
     const double full = type == PlyType::UInt16 ? 65535.0 : 255.0;
     const float encoded = static_cast<float>(value / full);
     return is_alpha ? encoded : srgb_decode(encoded);
@@ -229,6 +52,7 @@ public:
     /// Round what the faces name, in the coordinates of the file: origin_for() it has been taken off the mesh.
     const DoubleBounds3& box() const { return box_; }
 
+    /// The file's mesh. Its faces are those of sizes() and of_faces().
     Mesh run(Messages& messages) {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
             throw Error(ErrorCode::BadInput, file_ +
@@ -241,23 +65,56 @@ public:
             std::size_t least = 0;
             for (const PlyProperty& p : element.properties)
                 least += body_.least_size(p.is_list ? p.count_type : p.type);
-            body_.expect(element.count, std::max<std::size_t>(least, 1), "elements");
-            if (element.name == "vertex") {
-                vertices(element);
-            } else {
-                lists(element);
+            try {
+                const bool may_be_cut_off = element.name == "face" || element.name == "tristrips";
+                if (!may_be_cut_off) body_.expect(element.count, std::max<std::size_t>(least, 1), "elements");
+                if (element.name == "vertex") {
+                    vertices(element);
+                } else {
+                    lists(element);
+                }
+            } catch (const Error& error) {
+                const bool has_faces = !mesh_.positions.empty() && !sizes_.empty();
+                if (error.code() != ErrorCode::BadInput || element.name == "vertex" || !has_faces) throw;
+                if (!of_faces_.textures.empty())
+                    sizes_.resize(of_faces_.textures.size()); // the last may lack its texture
+                corners_.resize(std::accumulate(sizes_.begin(), sizes_.end(), std::size_t(0)));
+                messages.leave_out(fmt::format("{}; what follows is left out", error.what()));
+                break;
             }
         }
         move_to_origin();
+        if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, messages);
+        if (!of_faces_.textures.empty() && of_faces_.textures.size() != sizes_.size()) {
+            messages.leave_out(file_ + ": textures of faces beside triangle strips are left out");
+            of_faces_ = {};
+        }
+        if (!of_faces_.uvs.empty()) split_vertices(of_faces_.uvs, corners_, mesh_);
         triangulate();
         warn_of_face_properties(messages);
+        body_.warn_of_long_lines(messages);
+        if (bad_indices_ > 0) {
+            messages.leave_out(fmt::format(
+                "{}; what {} left out", first_bad_index_,
+                bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_)));
+        }
+        if (bad_textures_ > 0) {
+            messages.leave_out(fmt::format("{}: {} of a texture that is not in the header: without it", file_,
+                                           counted(bad_textures_, "face")));
+        }
         if (strays_ > 0) {
-            messages.warn(fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
+            messages.leave_out(
+                fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
         }
         return std::move(mesh_);
     }
+    const std::vector<uint32_t>& sizes() const { return sizes_; }
+    const PlyFaceTextures& of_faces() const { return of_faces_; }
 
 private:
+    static bool is_face_uv(const PlyProperty& p) {
+        return p.is_list && (p.name == "texcoord" || p.name == "texture_uv" || p.name == "texcoords");
+    }
     static bool is_indices(const PlyProperty& p) {
         return p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index");
     }
@@ -271,13 +128,14 @@ private:
             if (element.name != "face" || element.count == 0) continue;
             bool has_colour = false, has_uv = false;
             for (const PlyProperty& p : element.properties) {
-                const std::size_t slot = p.is_list ? kSlots : slot_of(p.name);
+                const std::size_t slot = p.is_list ? kSlots : ply_slot_of(p.name);
                 has_colour |= slot == kRed || slot == kGreen || slot == kBlue;
-                has_uv |= p.is_list && (p.name == "texcoord" || p.name == "texture_uv" || p.name == "texcoords");
+                has_uv |= is_face_uv(p) && header_.textures.empty();
             }
-            if (has_colour) messages.warn(file_ + ": colours of faces are left out; those of vertices are read");
+            if (has_colour) messages.leave_out(file_ + ": colours of faces are left out; those of vertices are read");
             if (has_uv)
-                messages.warn(file_ + ": texture coordinates of faces are left out; those of vertices are read");
+                messages.leave_out(file_ +
+                                   ": texture coordinates of faces are left out: no comment TextureFile has a texture");
         }
     }
 
@@ -290,7 +148,7 @@ private:
         std::array<PlyType, kSlots + 1> types = {};
         for (const PlyProperty& p : element.properties) {
             // The first of a name counts: `s` and `u` may both be there.
-            std::size_t slot = p.is_list ? kSlots : slot_of(p.name);
+            std::size_t slot = p.is_list ? kSlots : ply_slot_of(p.name);
             if (has[slot]) slot = kSlots;
             slots.push_back(slot);
             has[slot] = true;
@@ -301,17 +159,18 @@ private:
         const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
         const auto count = static_cast<std::size_t>(element.count);
         mesh_.positions.resize(count);
-        const auto is_float = [&](Slot slot) { return body_.is_binary() && types[slot] == PlyType::Float32; };
-        const bool is_rounded = !(is_float(kX) && is_float(kY) && is_float(kZ)); // by a mesh's positions
+        const auto is_exact = [&](PlySlot slot) { return body_.is_binary() && types[slot] == PlyType::Float32; };
+        const bool is_rounded = !(is_exact(kX) && is_exact(kY) && is_exact(kZ)); // by a mesh's positions
         if (is_rounded) exact_.reserve(count);
         if (has_normal) mesh_.normals.resize(count);
         if (has_colour) mesh_.colors.resize(count);
         if (has_uv) mesh_.uv[0].resize(count);
+        has_float_colors_ = has_colour && is_float(types[kRed]) && is_float(types[kGreen]) && is_float(types[kBlue]);
 
         std::array<double, kSlots + 1> values = {};
         values[kAlpha] = 1;
-        const auto number = [&](Slot slot) { return static_cast<float>(values[slot]); };
-        const auto channel = [&](Slot slot) { return colour(values[slot], types[slot], slot == kAlpha); };
+        const auto number = [&](PlySlot slot) { return static_cast<float>(values[slot]); };
+        const auto channel = [&](PlySlot slot) { return colour(values[slot], types[slot], slot == kAlpha); };
         for (std::size_t i = 0; i < count; ++i) {
             body_.set_number(i);
             for (std::size_t k = 0; k < slots.size(); ++k) {
@@ -330,45 +189,99 @@ private:
                                    has[kAlpha] ? channel(kAlpha) : 1.0f};
             }
             if (has_uv) mesh_.uv[0][i] = {number(kU), 1 - number(kV)};
+            body_.end_element();
         }
     }
 
     /// Faces and triangle strips; every other element is skipped.
     void lists(const PlyElement& element) {
         const bool is_face = element.name == "face", is_strip = element.name == "tristrips";
+        const bool has_textures = is_face && !header_.textures.empty();
+        const bool has_uv = has_textures && std::ranges::any_of(element.properties, is_face_uv);
+        const bool has_numbers = has_textures && std::ranges::any_of(element.properties, is_texture_number);
         for (uint64_t i = 0; i < element.count; ++i) {
             body_.set_number(i);
             bool taken = false;
+            uint64_t corners = 0;
+            face_uvs_.clear();
+            double texture = 0;
             for (const PlyProperty& p : element.properties) {
                 if ((is_face || is_strip) && !taken && is_indices(p)) {
                     taken = true;
-                    is_face ? face(p) : strip(p);
+                    corners = is_face ? face(p) : strip(p);
+                } else if (has_uv && is_face_uv(p)) {
+                    face_uv(p);
+                } else if (has_numbers && is_texture_number(p)) {
+                    texture = body_.value(p.type);
                 } else {
                     body_.skip(p);
                 }
             }
+            body_.end_element();
+            if (corners >= 3 && has_uv) add_face_uvs(corners, texture);
+            if (corners >= 3 && (has_uv || has_numbers)) of_faces_.textures.push_back(texture_of(texture));
         }
     }
 
-    uint32_t checked(double value) const {
-        if (!(value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value))) {
-            throw body_.fault(fmt::format("vertex index {} is out of range; there are {} vertices, counted from 0",
-                                          value, vertex_count_));
-        }
-        return static_cast<uint32_t>(value);
+    static bool is_texture_number(const PlyProperty& p) { return !p.is_list && p.name == "texnumber"; }
+
+    void face_uv(const PlyProperty& property) {
+        const uint64_t count = body_.list_count(property);
+        for (uint64_t i = 0; i < count; ++i) face_uvs_.push_back(static_cast<float>(body_.value(property.type)));
     }
 
-    void face(const PlyProperty& property) {
+    /// A face without a pair of coordinates for each of its corners has no texture.
+    void add_face_uvs(uint64_t corners, double& texture) {
+        const bool is_whole = face_uvs_.size() == 2 * corners;
+        if (!is_whole) texture = kNoPlyTexture;
+        for (std::size_t k = 0; k < corners; ++k) {
+            of_faces_.uvs.push_back(is_whole ? Vec2{face_uvs_[2 * k], 1 - face_uvs_[2 * k + 1]} : Vec2{});
+        }
+    }
+
+    int32_t texture_of(double number) {
+        if (number == kNoPlyTexture) return kNoPlyTexture;
+        for (std::size_t i = 0; i < header_.textures.size(); ++i) {
+            if (number == static_cast<double>(i)) return static_cast<int32_t>(i);
+        }
+        ++bad_textures_;
+        return kNoPlyTexture;
+    }
+
+    /// Returns nothing, which counts as a fault, for a value that is no vertex.
+    std::optional<uint32_t> vertex_of(double value) {
+        if (value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value)) {
+            return static_cast<uint32_t>(value);
+        }
+        if (bad_indices_++ == 0) {
+            first_bad_index_ =
+                body_
+                    .fault(fmt::format("vertex index {} is out of range; there are {} vertices, counted from 0", value,
+                                       vertex_count_))
+                    .what();
+        }
+        return std::nullopt;
+    }
+
+    /// Returns the number of corners, 0 of a face that is left out.
+    uint64_t face(const PlyProperty& property) {
         const uint64_t count = body_.list_count(property);
         if (count < 3) ++strays_;
+        const std::size_t before = corners_.size();
         for (uint64_t i = 0; i < count; ++i) {
-            const uint32_t corner = checked(body_.value(property.type));
-            if (count >= 3) corners_.push_back(corner);
+            const std::optional<uint32_t> corner = vertex_of(body_.value(property.type));
+            if (corner && count >= 3) corners_.push_back(*corner);
         }
-        if (count >= 3) sizes_.push_back(static_cast<uint32_t>(count));
+        if (count >= 3 && corners_.size() - before == count) {
+            sizes_.push_back(static_cast<uint32_t>(count));
+        } else {
+            corners_.resize(before);
+        }
+        return corners_.size() - before;
     }
 
-    void strip(const PlyProperty& property) {
+    /// Returns 0: strips have no textures.
+    uint64_t strip(const PlyProperty& property) {
         const uint64_t count = body_.list_count(property);
         uint32_t before[2] = {};
         uint64_t length = 0; // since the strip began; -1 begins a new one
@@ -378,7 +291,12 @@ private:
                 length = 0;
                 continue;
             }
-            const uint32_t corner = checked(value);
+            const std::optional<uint32_t> vertex = vertex_of(value);
+            if (!vertex) {
+                length = 0;
+                continue;
+            }
+            const uint32_t corner = *vertex;
             if (length >= 2) {
                 const bool is_odd = length % 2 != 0;
                 corners_.insert(corners_.end(), {before[is_odd ? 1 : 0], before[is_odd ? 0 : 1], corner});
@@ -388,6 +306,7 @@ private:
             before[1] = corner;
             ++length;
         }
+        return 0;
     }
 
     /// Takes off in double what lies between the file's origin and the faces.
@@ -433,7 +352,7 @@ private:
         }
     }
 
-    Body body_;
+    PlyBody body_;
     const PlyHeader& header_;
     const std::string& file_;
     uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
@@ -441,27 +360,31 @@ private:
     std::vector<DoubleVec3> exact_; // positions, where the file has more digits than floats
     DoubleBounds3 box_;
     std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
-    uint64_t strays_ = 0;
+    PlyFaceTextures of_faces_;
+    std::vector<float> face_uvs_; // of the face that is read
+    bool has_float_colors_ = false;
+    uint64_t strays_ = 0, bad_indices_ = 0, bad_textures_ = 0;
+    std::string first_bad_index_;
 };
 
 } // namespace
 
-Scene read_ply(const fs::path& path, const FileAccess&, const ReadOptions& options, Messages& messages) {
+Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
     const std::string file = path.string();
     const std::vector<std::byte> bytes = read_file(path);
-    const PlyHeader header = parse_ply_header(bytes, file);
-    Scene scene;
+    PlyHeader header = parse_ply_header(bytes, file);
+    if (header.unknown_line > 0) {
+        messages.warn(fmt::format("{}:{}: a header line that is not understood is taken as a comment", file,
+                                  header.unknown_line));
+    }
+    if (options.geometry_only) header.textures.clear();
     Reader reader(bytes, header, file);
-    scene.meshes.push_back(reader.run(messages));
-    set_origin(reader.box(), scene);
-    Mesh& mesh = scene.meshes.back();
+    Mesh mesh = reader.run(messages);
     mesh.name = path.stem().string();
     if (options.geometry_only) mesh.colors.clear();
-    Material material;
-    material.name = mesh.name;
-    if (!mesh.colors.empty()) material.base_color = grey(1);
-    scene.materials.push_back(std::move(material));
-    scene.instances.push_back({.name = mesh.name, .mesh = 0, .material = 0, .world_from_local = {}});
+    TextureLoader loader(access, messages);
+    Scene scene = make_ply_scene(std::move(mesh), reader.sizes(), reader.of_faces(), header, file, loader, messages);
+    set_origin(reader.box(), scene);
     return scene;
 }
 

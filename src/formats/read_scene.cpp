@@ -11,9 +11,11 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "formats/builtin_scenes.h"
+#include "formats/file_choices.h"
 #include "formats/read_gltf.h"
 #include "formats/read_obj.h"
 #include "formats/read_ply.h"
+#include "scene/invisible_materials.h"
 #include "scene/validate.h"
 
 namespace pertev {
@@ -23,13 +25,14 @@ struct FormatReader {
     std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Messages&);
     bool tells_sides; // its files can say whether a surface emits from both faces
+    bool tells_space; // their coordinates are metres, y up
 };
 
 const std::array kReaders = {
-    FormatReader{".obj", read_obj, false},
-    FormatReader{".ply", read_ply, false},
-    FormatReader{".gltf", read_gltf, true},
-    FormatReader{".glb", read_gltf, true},
+    FormatReader{".obj", read_obj, false, false},
+    FormatReader{".ply", read_ply, false, false},
+    FormatReader{".gltf", read_gltf, true, true},
+    FormatReader{".glb", read_gltf, true, true},
 };
 
 /// Null for an extension that no reader has.
@@ -55,7 +58,14 @@ Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions&
 
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_file_or_builtin(path, options, messages);
+    // Formats that have neither, and files that have none.
+    if (scene.clips.empty() && !options.animation.empty()) choose_clips(path.string(), {}, options.animation);
+    if (scene.file_scenes.empty() && !options.file_scene.empty()) {
+        choose_file_scene(path.string(), {}, options.file_scene);
+    }
+    if (!tells_space(path)) place_in_metres(options.space, scene);
     validate(scene, path.string(), messages);
+    warn_of_invisible_materials(scene, path.string(), messages);
     if (options.two_sided_lights) {
         for (Material& material : scene.materials) material.two_sided_emission = true;
     }
@@ -65,6 +75,12 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
 bool tells_lamp_sides(const std::filesystem::path& path) {
     const FormatReader* reader = find_reader(path);
     return reader == nullptr || reader->tells_sides;
+}
+
+bool tells_space(const std::filesystem::path& path) {
+    if (builtin_scene(path.string())) return true;
+    const FormatReader* reader = find_reader(path);
+    return reader == nullptr || reader->tells_space;
 }
 
 bool is_scene_name(const std::filesystem::path& path) {

@@ -7,17 +7,42 @@ namespace pertev {
 namespace {
 
 constexpr float kMiddleGrey = 0.18f;
-constexpr double kBurntShare = 0.005; // of all pixels: half of what is promised, for what a small picture averages away
-constexpr double kBrightShare = 0.1;  // of what counts
-constexpr float kBright = 0.8f;       // as shown: 1 is white
+constexpr double kBurntShare =
+    0.005;                           // of what counts: half of what is promised, for what a small picture averages away
+constexpr double kBrightShare = 0.1; // likewise
+constexpr float kBright = 0.8f;      // as shown: 1 is white
 constexpr double kTrimmedShare = 0.1; // at either end of the mean
 constexpr int kMostHundredths = 6000; // of a stop
 
 /// Light of one place in the picture, and how many pixels it stands for.
 struct Tone {
-    float luminance;
+    float light; // luminance, or the largest channel
     double weight;
 };
+
+/// Luminance, weighted towards the middle of the picture, where the thing is; and the largest channel, by which paint
+/// burns, weighted alike everywhere.
+struct Tones {
+    std::vector<Tone> luminance, largest; // from dark to bright
+};
+
+struct DoubleRgb {
+    double r = 0, g = 0, b = 0;
+    void add(Rgb c) {
+        r += static_cast<double>(c.r);
+        g += static_cast<double>(c.g);
+        b += static_cast<double>(c.b);
+    }
+    Rgb over(double weight) const {
+        return {static_cast<float>(r / weight), static_cast<float>(g / weight), static_cast<float>(b / weight)};
+    }
+};
+
+/// How much a place counts in the mean: 1 in the middle of the picture, 1/8 in its corners. `x` and `y`: [0, 1].
+double weight_of_place(double x, double y) {
+    const double inwards = std::max(0.0, 1 - 2 * ((x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5)));
+    return 0.125 + 0.875 * inwards * inwards;
+}
 
 bool has_weight(const Image& image) { return image.channels % 2 == 0; }
 
@@ -30,29 +55,37 @@ float weight_of(const Image& image, const float* pixel) {
     return has_weight(image) ? clamp(pixel[image.channels - 1], 0.0f, 1.0f) : 1.0f;
 }
 
-/// Mean luminance of each of about 40 blocks along the longer side, from dark to bright. Of single pixels the
-/// logarithms would tell of the noise: few samples leave many pixels dark and a few bright, and the picture would come
-/// out too bright. Blocks without light tell nothing.
-std::vector<Tone> block_tones(const Image& image) {
+/// Means of each of about 40 blocks along the longer side. Of single pixels the logarithms would tell of the noise: few
+/// samples leave many pixels dark and a few bright, and the picture would come out too bright. Blocks without light
+/// tell nothing.
+Tones block_tones(const Image& image) {
     const uint32_t side = std::max<uint32_t>(1, std::max(image.width, image.height) / 40);
     const uint32_t columns = (image.width + side - 1) / side, rows = (image.height + side - 1) / side;
-    std::vector<double> sums(std::size_t(columns) * rows), weights(sums.size());
+    std::vector<DoubleRgb> sums(std::size_t(columns) * rows);
+    std::vector<double> weights(sums.size());
     for (uint32_t y = 0; y < image.height; ++y) {
         for (uint32_t x = 0; x < image.width; ++x) {
             const float* pixel = image.at(x, y);
             const float weight = weight_of(image, pixel);
             if (!(weight > 0)) continue;
             const std::size_t block = std::size_t(y / side) * columns + x / side;
-            sums[block] += static_cast<double>(luminance(light_of(image, pixel)));
+            sums[block].add(light_of(image, pixel));
             weights[block] += static_cast<double>(weight);
         }
     }
-    std::vector<Tone> tones;
+    Tones tones;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        const auto mean = static_cast<float>(sums[i] / weights[i]); // 0 / 0 is none
-        if (mean > 0 && is_finite(mean)) tones.push_back({mean, weights[i]});
+        if (!(weights[i] > 0)) continue;
+        const Rgb mean = sums[i].over(weights[i]);
+        const float light = luminance(mean);
+        if (!(light > 0 && is_finite(mean))) continue;
+        const double x = (static_cast<double>(i % columns) + 0.5) / columns;
+        const double y = (static_cast<double>(i / columns) + 0.5) / rows;
+        tones.luminance.push_back({light, weights[i] * weight_of_place(x, y)});
+        tones.largest.push_back({max_component(mean), weights[i]});
     }
-    std::ranges::sort(tones, {}, &Tone::luminance);
+    std::ranges::sort(tones.luminance, {}, &Tone::light);
+    std::ranges::sort(tones.largest, {}, &Tone::light);
     return tones;
 }
 
@@ -69,20 +102,20 @@ float trimmed_log_mean(const std::vector<Tone>& tones) {
     for (const Tone& tone : tones) {
         const double end = begin + tone.weight;
         const double inside = std::min(end, last) - std::max(begin, first);
-        if (inside > 0) sum += inside * static_cast<double>(log2(tone.luminance));
+        if (inside > 0) sum += inside * static_cast<double>(log2(tone.light));
         begin = end;
     }
     return static_cast<float>(sum / (last - first));
 }
 
-/// Luminance that `share` of the weight lies above.
-float luminance_below(const std::vector<Tone>& tones, double share) {
+/// Light that `share` of the weight lies above.
+float light_below(const std::vector<Tone>& tones, double share) {
     double left = share * total_weight(tones);
     for (std::size_t i = tones.size(); i-- > 0;) {
         left -= tones[i].weight;
-        if (left < 0) return tones[i].luminance;
+        if (left < 0) return tones[i].light;
     }
-    return tones.front().luminance;
+    return tones.front().light;
 }
 
 /// Rounded once, so that it is the float that a reader makes of the same number in decimals.
@@ -105,28 +138,28 @@ bool is_burnt(Rgb light, ToneMap kind, float scale) {
     return to_byte(shown.r) == 255 && to_byte(shown.g) == 255 && to_byte(shown.b) == 255;
 }
 
-/// Share of all pixels that come out white of light that counts.
+/// Share of what counts that comes out white.
 double burnt_share(const Image& image, ToneMap kind, float stops) {
     const float scale = exposure_scale(stops);
-    double burnt = 0;
+    double burnt = 0, all = 0;
     const std::size_t pixels = std::size_t(image.width) * image.height;
     for (std::size_t i = 0; i < pixels; ++i) {
         const float* pixel = &image.pixels[i * image.channels];
         const float weight = weight_of(image, pixel);
-        if (weight > 0 && is_burnt((1 / weight) * light_of(image, pixel), kind, scale)) {
-            burnt += static_cast<double>(weight);
-        }
+        if (!(weight > 0)) continue;
+        all += static_cast<double>(weight);
+        if (is_burnt((1 / weight) * light_of(image, pixel), kind, scale)) burnt += static_cast<double>(weight);
     }
-    return burnt / static_cast<double>(pixels);
+    return burnt / all;
 }
 
 } // namespace
 
 float auto_exposure_stops(const Image& linear, ToneMap kind) {
-    const std::vector<Tone> tones = block_tones(linear);
-    if (tones.empty()) return 0;
-    const float bright = luminance_below(tones, kBrightShare);
-    const float to_grey = log2(kMiddleGrey) - trimmed_log_mean(tones);
+    const Tones tones = block_tones(linear);
+    if (tones.luminance.empty()) return 0;
+    const float bright = light_below(tones.largest, kBrightShare);
+    const float to_grey = log2(kMiddleGrey) - trimmed_log_mean(tones.luminance);
     int hundredths = to_int(floor(100.0f * to_grey + 0.5f), -kMostHundredths, kMostHundredths);
     hundredths = most_that_are_fine(
         hundredths, [&](float stops) { return tone_map(grey(bright), kind, exposure_scale(stops)).g <= kBright; });

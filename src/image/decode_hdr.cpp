@@ -31,6 +31,8 @@ public:
         return {static_cast<uint32_t>(width_), static_cast<uint32_t>(height_), true};
     }
 
+    const std::optional<ColorPrimaries>& primaries() const { return primaries_; }
+
     Image read() {
         read_header();
         const uint64_t line_length = x_is_major_ ? height_ : width_, lines = x_is_major_ ? width_ : height_;
@@ -94,12 +96,31 @@ private:
             } else if (line.starts_with("COLORCORR=")) {
                 line.remove_prefix(10);
                 for (float& scale : scale_) scale /= next_number(line);
+            } else if (line.starts_with("PRIMARIES=")) {
+                read_primaries(line.substr(10));
             }
         }
         if (!has_format) fail("the header has no line FORMAT=32-bit_rle_rgbe");
         for (const float scale : scale_) {
             if (!is_finite(scale) || !(scale > 0)) fail("the product of EXPOSURE and COLORCORR is out of range");
         }
+    }
+
+    /// Numbers that cannot be read are 0.
+    void read_primaries(std::string_view text) {
+        std::array<double, 8> numbers = {};
+        for (double& number : numbers) {
+            while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+            if (error != std::errc()) number = 0;
+            text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+        }
+        primaries_.reset();
+        if (numbers == std::array<double, 8>{}) return;
+        primaries_ = {.red = {numbers[0], numbers[1]},
+                      .green = {numbers[2], numbers[3]},
+                      .blue = {numbers[4], numbers[5]},
+                      .white = {numbers[6], numbers[7]}};
     }
 
     void read_resolution() {
@@ -208,11 +229,18 @@ private:
     uint64_t width_ = 0, height_ = 0;
     bool x_is_major_ = false, x_is_reversed_ = false, y_is_reversed_ = false;
     std::array<float, 3> scale_ = {1, 1, 1};
+    std::optional<ColorPrimaries> primaries_;
 };
 
 } // namespace
 
 Image decode_hdr(std::span<const std::byte> bytes, const std::string& name) { return HdrReader(bytes, name).read(); }
+
+std::optional<ColorPrimaries> read_hdr_primaries(std::span<const std::byte> bytes, const std::string& name) {
+    HdrReader reader(bytes, name);
+    reader.read_header();
+    return reader.primaries();
+}
 
 ImageHeader read_hdr_header(std::span<const std::byte> bytes, const std::string& name) {
     return HdrReader(bytes, name).read_header();

@@ -6,16 +6,22 @@
 // is mantissa * 2^(exponent - 136), without Radiance's later half unit, as other renderers read it.
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "image/color_primaries.h"
 #include "image/image.h"
 #include "image/image_header.h"
 
 namespace pertev {
 
-/// RGB picture, linear. Values are divided by the header's EXPOSURE and COLORCORR (products of all lines).
+/// RGB picture, linear, by the primaries of the file. Values are divided by the header's EXPOSURE and COLORCORR
+/// (products of all lines).
 Image decode_hdr(std::span<const std::byte> bytes, const std::string& name);
+/// The numbers of the header's line PRIMARIES; nothing where there is none, or eight zeros, which Photoshop writes for
+/// none.
+std::optional<ColorPrimaries> read_hdr_primaries(std::span<const std::byte> bytes, const std::string& name);
 /// See read_image_header.
 ImageHeader read_hdr_header(std::span<const std::byte> bytes, const std::string& name);
 

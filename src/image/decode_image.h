@@ -20,7 +20,9 @@ namespace pertev {
 ///   PNG with 16 bits         Image of the file's 1 to 4 channels in [0, 1], values as stored: still sRGB-encoded
 ///                            where the picture is colour (recognise_image tells this case from the next two)
 ///   HDR                      Image, RGB, linear; divided by the file's EXPOSURE and COLORCORR
-///   EXR                      Image, RGB, RGBA, Y or YA, linear; of the display window, 0 where there is no data
+///   EXR                      Image, RGB, RGBA, Y or YA, linear, values as stored (image/picture_primaries.h tells of
+///   which
+///                            primaries); of the display window, 0 where there is no data
 /// Throws Error(BadInput) for what is damaged, cut short or none of these, Error(OverLimit) for more pixels than
 /// base/limits.h allows. Damage that leaves every pixel known (a bad checksum in a comment) is a warning.
 std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name,

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
@@ -139,6 +140,19 @@ ExrMetadata ExrReader::metadata() const {
     }
     std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     return result;
+}
+
+bool ExrReader::has_primaries() const {
+    const Imf::Header& header = state_->header(0);
+    return header.find("chromaticities") != header.end();
+}
+
+std::optional<ColorPrimaries> ExrReader::primaries() const {
+    const auto* attribute = state_->header(0).findTypedAttribute<Imf::ChromaticitiesAttribute>("chromaticities");
+    if (attribute == nullptr) return std::nullopt;
+    const Imf::Chromaticities& from = attribute->value();
+    const auto to = [](const Imath::V2f& c) { return Chromaticity{double(c.x), double(c.y)}; };
+    return ColorPrimaries{.red = to(from.red), .green = to(from.green), .blue = to(from.blue), .white = to(from.white)};
 }
 
 std::vector<ExrChannel> ExrReader::read(std::size_t part, const std::vector<ChannelInfo>& wanted, bool all_as_float) {

@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "image/color_primaries.h"
 #include "image/exr_file.h"
 
 namespace pertev {
@@ -34,6 +36,8 @@ public:
     uint32_t width() const;                                    // of the first part's display window
     uint32_t height() const;
     ExrMetadata metadata() const; // of the first part
+    bool has_primaries() const;   // the first part's header has an attribute `chromaticities`, which all parts share
+    std::optional<ColorPrimaries> primaries() const; // nothing also where that attribute is of another type
 
     /// Values of the named channels of a part, in that order, over the display window. Ids (uint) stay integers
     /// unless `all_as_float`. Throws Error(BadInput) for damaged pixels and for a subsampled channel.

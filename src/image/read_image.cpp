@@ -4,6 +4,7 @@
 #include "image/check_image_size.h"
 #include "image/decode_image.h"
 #include "image/image_format.h"
+#include "image/picture_primaries.h"
 #include "image/srgb.h"
 #include "image/srgb_table.h"
 
@@ -50,7 +51,9 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, Mess
     std::variant<Rgba8Image, Image> decoded = decode_image(bytes, name, messages);
     if (const Rgba8Image* image = std::get_if<Rgba8Image>(&decoded))
         return linear_from_bytes(*image, bytes.size(), name);
-    Image image = with_colour(std::move(std::get<Image>(decoded)), bytes.size(), name);
+    Image& stored = std::get<Image>(decoded);
+    if (const auto matrix = color_matrix_of(bytes, name, messages)) convert_colors(*matrix, stored);
+    Image image = with_colour(std::move(stored), bytes.size(), name);
     if (recognise_image(bytes) == ImageFormat::Png) {
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
             if (i % image.channels != 3) image.pixels[i] = srgb_decode(image.pixels[i]);

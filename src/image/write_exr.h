@@ -1,7 +1,9 @@
 #pragma once
 
 // Writes OpenEXR: 32-bit float, lossless (ZIP of 16 rows; of one, where 16 are over 256 MiB), scanlines; further layers
-// beside the picture; metadata. Equal pictures give equal bytes: nothing of the time or the machine goes in.
+// beside the picture; metadata. Equal pictures give equal bytes: nothing of the time or the machine goes in. Colours
+// are Rec. 709. No attribute `chromaticities` says so, because that is what a file without one holds by the format's
+// rule.
 
 #include <cstddef>
 #include <cstdint>

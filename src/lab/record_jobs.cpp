@@ -63,6 +63,7 @@ Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& me
     if (job.is_grey) return make_grey_scene(file, messages);
     OpenOptions options;
     options.scene = file;
+    options.use = SceneUse::Benchmark;
     return open_scene(options, messages);
 }
 

@@ -29,8 +29,31 @@ HD inline float alpha_at(const SceneView& scene, const MaterialView& material, c
     color.channel = 3;
     float alpha = textured_factor(scene, mesh, material.alpha, color, i, u, v);
     alpha = textured_factor(scene, mesh, alpha, material.alpha_texture, i, u, v);
-    if (mesh.colors != nullptr) alpha *= interpolate(mesh.colors, i, u, v).w;
+    if (mesh.colors != nullptr) {
+        // So written that equal values stay what they are.
+        const float a = mesh.colors[i.a].w;
+        alpha *= a + (u * (mesh.colors[i.b].w - a) + v * (mesh.colors[i.c].w - a));
+    }
     return alpha;
+}
+
+/// What the coin of a blended surface belongs to: the triangle, but at its border the edge or the corner that the hit
+/// lies on, known by the positions of its ends. A ray exactly through an edge meets the triangles on both sides of it
+/// (trace/intersect/intersect_triangle.h), and with one coin they count as one surface.
+HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u, float v) {
+    constexpr float kLeastWeight = 0x1p-20f; // weights round by a quarter of this at most
+    const float w = 1.0f - u - v;
+    if (min(u, min(v, w)) >= kLeastWeight) return primitive;
+    const auto hash_of = [&](uint32_t vertex) {
+        const Vec3 p = mesh.positions[vertex];
+        return hash_words(bits_of(p.x + 0.0f), bits_of(p.y + 0.0f), bits_of(p.z + 0.0f)).x; // -0 as 0
+    };
+    const TriangleIndices i = triangle_indices(mesh, primitive);
+    uint32_t sum = 0; // in whichever order the neighbour has the ends
+    if (w >= kLeastWeight) sum += hash_of(i.a);
+    if (u >= kLeastWeight) sum += hash_of(i.b);
+    if (v >= kLeastWeight) sum += hash_of(i.c);
+    return sum;
 }
 
 /// The coin of blended surfaces that the ray of a sample's path tosses after `depth` scatterings.
@@ -62,9 +85,10 @@ struct AcceptHit {
         const InstanceView& placed = scene.instances[instance];
         if (placed.has_alpha == 0) return true;
         const MaterialView& material = scene.materials[placed.material];
-        const float alpha = alpha_at(scene, material, scene.meshes[placed.mesh], primitive, u, v);
+        const MeshView& mesh = scene.meshes[placed.mesh];
+        const float alpha = alpha_at(scene, material, mesh, primitive, u, v);
         if (material.alpha_mode == AlphaMode::Mask) return alpha >= material.alpha_cutoff;
-        return unit_interval(hash_words(key, instance, primitive).x) < alpha;
+        return unit_interval(hash_words(key, instance, coin_owner(mesh, primitive, u, v)).x) < alpha;
     }
 };
 

@@ -19,10 +19,13 @@ struct AddFrameToFilm {
         if (light.w != 0) add_radiance(film, pixel, {light.x, light.y, light.z});
         const Hit hit = {
             .t = 0, .u = place.z, .v = place.w, .instance = bits_of(place.x), .primitive = bits_of(place.y)};
-        if (hit.instance != kNoHit) add_hit(pixel, hit);
+        const bool is_background = shows_background(scene, hit.instance);
+        if (!is_background) add_hit(pixel, hit);
         if ((film.aovs & kAovIds) != 0 && is_first) {
-            const uint32_t material = hit.instance == kNoHit ? kNoHit : scene.instances[hit.instance].material;
-            film.ids[pixel] = {hit.instance, hit.primitive, material};
+            film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
+            if (!is_background) {
+                film.ids[pixel] = {hit.instance, hit.primitive, scene.instances[hit.instance].material};
+            }
         }
     }
 

@@ -13,9 +13,16 @@ struct RayLine {
     Vec3 origin, direction; // unit
 };
 
-/// `surface` is what `hit` made. `time`: of the ray, while the shutter is open.
+/// Of a camera ray that met nothing.
+HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
+    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
+}
+
+/// `surface` is what `hit` made. A ground that was made up counts as background. `time`: of the ray, while the shutter
+/// is open.
 HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample, const RayLine& ray, const Hit& hit,
                              const Surface& surface, const PictureView& picture, float time = kAtRest) {
+    if (shows_background(picture.scene, hit.instance)) return add_no_first_hit(film, pixel, sample);
     add_channel(film, pixel, kFilmHits, 1.0f);
     if ((film.aovs & kAovAlbedo) != 0) {
         add_channels(film, pixel, channel_offset(film.aovs, kAovAlbedo),
@@ -36,11 +43,6 @@ HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t samp
         add_channels(film, pixel, channel, picture.scene.position_shift);
     }
     if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {hit.instance, hit.primitive, surface.material};
-}
-
-/// Of a camera ray that met nothing.
-HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
-    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
 }
 
 } // namespace pertev

@@ -48,6 +48,7 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
     instances.views.reserve(scene.instances.size());
     instances.passing.resize((scene.instances.size() + 31) / 32);
     view.instance_count = static_cast<uint32_t>(scene.instances.size());
+    view.background = 0;
     view.triangle_count = 0;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
@@ -57,6 +58,7 @@ PartArrays list_instances(const PreparedScene& prepared, Instances& instances, S
         view.triangle_count += scene.meshes[instance.mesh].triangle_count();
         const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
         const uint16_t hides_back = material.double_sided ? 0 : 1;
+        if (instance.is_background) view.background = static_cast<uint32_t>(i) + 1;
         view.any_alpha |= has_alpha;
         view.any_hidden_back |= hides_back;
         instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;

@@ -57,9 +57,15 @@ struct SceneView {
     // first_triangle[i + 1]. Null where there are more than 32 bits count.
     const uint32_t* first_triangle; // [instance_count + 1]
     uint32_t instance_count;
+    uint32_t background;     // 1 + the instance that layers show as background (Instance::is_background); 0: none
     uint64_t triangle_count; // of all instances
     MotionsView motions;     // while the shutter is open
 };
+
+/// Whether a camera ray that meets this instance shows the background; true of kNoHit, too.
+HD inline bool shows_background(const SceneView& scene, uint32_t instance) {
+    return instance == kNoHit || instance + 1 == scene.background;
+}
 
 /// The three vertex numbers of a triangle.
 struct TriangleIndices {

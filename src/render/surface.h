@@ -166,20 +166,15 @@ HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, 
     return is_behind ? -triangle.normal : triangle.normal;
 }
 
-/// The frame before the normal map: interpolated normal, tangent given or from the texture coordinates.
+/// The frame before the normal map: interpolated normal and tangent, turned as the map's coordinates are.
 HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle,
-                              const Hit& hit, Vec3 normal, Vec3 geometric_normal, uint8_t uv_set) {
-    Vec4 tangent = {0, 0, 0, 1};
-    if (mesh.tangents != nullptr) {
-        const Vec4 local = interpolate(mesh.tangents, triangle.i, hit.u, hit.v);
-        const Vec3 world = transform_vector(instance.world_from_local, {local.x, local.y, local.z});
-        tangent = {world.x, world.y, world.z, instance.is_mirrored != 0 ? -local.w : local.w};
-    } else if (const Vec2* uv = mesh.uv[uv_set]) {
-        const Vec2 first = uv[triangle.i.a];
-        tangent = tangent_from_uv(triangle.ab, triangle.ac, uv[triangle.i.b] - first, uv[triangle.i.c] - first,
-                                  geometric_normal);
-    }
-    return frame_with_tangent(normal, tangent);
+                              const Hit& hit, Vec3 normal, const TextureRef& map) {
+    if (mesh.tangents == nullptr) return make_frame(normal); // no texture coordinates either (make_tangents.h)
+    const Vec4 local = interpolate(mesh.tangents, triangle.i, hit.u, hit.v);
+    const Vec3 world = transform_vector(instance.world_from_local, {local.x, local.y, local.z});
+    const Frame frame =
+        frame_with_tangent(normal, {world.x, world.y, world.z, instance.is_mirrored != 0 ? -local.w : local.w});
+    return frame_of_transformed_map(frame, {map.m00, map.m01}, {map.m10, map.m11});
 }
 
 /// Sine of the angle between a vertex normal (mesh space, any length) and the geometric one.
@@ -207,7 +202,7 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
     }
     if (has_texture<kKnown>(material.normal_texture)) {
         const TextureRef& ref = material.normal_texture;
-        const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, geometric_normal, ref.uv_set);
+        const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, ref);
         const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
                                           scene.linear_from_srgb);
         normal = mapped_normal(frame, {texel.x, texel.y, texel.z}, material.normal_scale);

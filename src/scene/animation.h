@@ -29,7 +29,8 @@ struct AnimationChannel {
     uint32_t target = 0; // index into Scene::nodes; of parts of cameras into Scene::cameras, of lights Scene::lights
     AnimatedPart part = AnimatedPart::Translation;
     Interpolation interpolation = Interpolation::Linear;
-    std::vector<float> times; // seconds, at least 0, each above the one before
+    /// Seconds, none below the one before. Of keys at one time the last counts from then on, the first up to then.
+    std::vector<float> times;
     /// A value for each time, one after the other; for CubicSpline three: tangent into the key, value, tangent out of
     /// it, both a second. A value is 3 numbers (Translation in metres, Scale, LightIntensity), 4 (Rotation: a
     /// quaternion x, y, z, w, not 0), as many as the node has morph_weights, or 1 (CameraFov and cones in radians,
@@ -37,13 +38,20 @@ struct AnimationChannel {
     std::vector<float> values;
 };
 
-/// All animations of a scene play at once, each from time 0, and hold their last value. Where two change the same part,
-/// the later one counts.
+/// All animations of a scene (Scene::animations) play at once, each from time 0, and hold their last value. Where two
+/// change the same part, the later one counts. A file may have more animations than the scene plays: see Clip.
 struct Animation {
     std::string name, origin;
     std::vector<AnimationChannel> channels;
 
     double end_s() const; // the last key's time, seconds; 0 without any
+};
+
+/// One animation of a file, whether or not it plays. Those that play are Scene::animations.
+struct Clip {
+    std::string name;
+    double end_s = 0; // the last key's time, seconds
+    bool plays = false;
 };
 
 /// Of each node, whether a time may come at which it stands elsewhere: an animation moves it or one above it.

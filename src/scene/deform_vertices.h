@@ -54,7 +54,9 @@ struct DeformVertices {
             if (tangents != nullptr && target.tangents != nullptr) tangent += weight * target.tangents[i];
         }
         Transform skin;
+        float handedness = 1;
         if (blend(i, skin)) {
+            if (determinant(skin) < 0) handedness = -1; // what mirrors the surface mirrors the bitangent with it
             position = transform_point(skin, position);
             normal = deform_normal(skin, normal);
             tangent = transform_vector(skin, tangent);
@@ -69,7 +71,7 @@ struct DeformVertices {
         if (!is_finite(tangent)) {
             tangent = normals == nullptr ? normalize_safely(xyz(base_tangents[i])) : make_frame(normals[i]).tangent;
         }
-        tangents[i] = {tangent.x, tangent.y, tangent.z, base_tangents[i].w};
+        tangents[i] = {tangent.x, tangent.y, tangent.z, handedness * base_tangents[i].w};
     }
 
     /// The mean, by weight, of the transforms of the joints that move vertex `i`; false where none does.

@@ -43,7 +43,7 @@ Bounds3 bounds_of(const Scene& scene) {
     Bounds3 bounds;
     for (const Instance& instance : scene.instances) {
         const Bounds3& local = of_mesh[instance.mesh];
-        if (local.is_empty() || instance.is_hidden) continue;
+        if (local.is_empty() || instance.is_hidden || instance.is_background) continue;
         for (int corner = 0; corner < 8; ++corner) {
             bounds.extend(transform_point(instance.world_from_local, corner_of(local, corner)));
         }

@@ -35,6 +35,9 @@ struct Instance {
     Transform
         node_from_local;    // its place within the node: world_from_local is that of the node times it, without a skin
     bool is_hidden = false; // its transform is singular, as by a scale of 0: not there; world_from_local says nothing
+    /// Rays meet it, but ids, layers and alpha show it as background, and bounds_of() leaves it out: a made-up ground.
+    /// One instance at most is, the last.
+    bool is_background = false;
 };
 
 struct Scene {
@@ -47,8 +50,11 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Node> nodes; // a glTF file's, by their numbers there; also those that hold nothing
     std::vector<Skin> skins;
-    std::vector<MeshShape> shapes; // of those meshes that morph targets or a skin can move
-    std::vector<Animation> animations;
+    std::vector<MeshShape> shapes;         // of those meshes that morph targets or a skin can move
+    std::vector<Animation> animations;     // those that play
+    std::vector<Clip> clips;               // all animations of the file, in its order
+    std::vector<std::string> file_scenes;  // the names of all scenes of the file, in its order
+    uint32_t file_scene = 0;               // index into file_scenes: the one that this is
     DoubleVec3 origin_in_file = {0, 0, 0}; // of all coordinates here, in those of the file, metres
     bool is_far = false;                   // it lies over 2^12 of the scene's own sizes from the file's origin
     std::string no_instances;              // where there are none: what the file has instead, and what would be right
@@ -73,7 +79,7 @@ inline bool is_mirroring(const Transform& world_from_local) { return determinant
 /// Whether all of `local` lies within kMaxCoordinate once it is placed.
 bool lies_near(const Transform& world_from_local, const Bounds3& local);
 
-/// World-space box of all instances that are not hidden.
+/// World-space box of all instances that are neither hidden nor background.
 Bounds3 bounds_of(const Scene& scene);
 
 } // namespace pertev

@@ -84,4 +84,17 @@ bool shape_mesh(MeshShape& shape, std::span<const float> morph_weights, std::spa
     return true;
 }
 
+void shape_at_rest(Scene& scene, std::span<MeshShape* const> shapes) {
+    if (shapes.empty()) return;
+    const std::vector<Transform> world_from_node =
+        world_from_nodes(places_of(scene.nodes, parents_first(scene.nodes)), scene.origin_in_file);
+    for (MeshShape* shape : shapes) {
+        std::vector<Transform> joints;
+        if (shape->skin != kNoSkin) joints = joint_transforms(scene.skins[shape->skin], world_from_node);
+        const std::span<const float> weights =
+            shape->node == kNoNode ? std::span<const float>() : scene.nodes[shape->node].morph_weights;
+        shape_mesh(*shape, weights, joints, scene.meshes[shape->mesh]);
+    }
+}
+
 } // namespace pertev

@@ -11,12 +11,15 @@
 #include "base/message_text.h"
 #include "math/double_vec3.h"
 #include "scene/shape_mesh.h"
+#include "scene/tangents/make_tangents.h"
 #include "scene/validate_materials.h"
 #include "scene/validate_mesh.h"
 #include "scene/validate_nodes.h"
 
 namespace pertev {
 namespace {
+
+constexpr const char* kTooFar = "lies further out than 2^40 metres";
 
 class Validator {
 public:
@@ -34,16 +37,22 @@ public:
         drop_empty_meshes();
         const std::size_t with_triangles = scene_.instances.size();
         drop_singular_instances();
-        if (scene_.instances.empty()) throw no_geometry(all - with_triangles, with_triangles);
+        if (scene_.instances.empty()) {
+            if (first_misplaced_.ends_with(kTooFar)) {
+                throw Error(ErrorCode::OverLimit, fmt::format("{}: {}; scale the scene down", file_, first_misplaced_));
+            }
+            if (!first_misplaced_.empty()) throw bad(first_misplaced_);
+            throw no_geometry(all - with_triangles, with_triangles);
+        }
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i) camera(i);
         for (std::size_t i = 0; i < scene_.lights.size(); ++i) light(i);
+        make_tangents(scene_);
     }
 
 private:
     Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what)); }
     Error too_far(const std::string& what) const {
-        return Error(ErrorCode::OverLimit,
-                     fmt::format("{}: {} lies further out than 2^40 metres; scale the scene down", file_, what));
+        return Error(ErrorCode::OverLimit, fmt::format("{}: {} {}; scale the scene down", file_, what, kTooFar));
     }
 
     Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
@@ -108,28 +117,20 @@ private:
             const std::size_t joints = shape->skin == kNoSkin ? 0 : scene_.skins[shape->skin].joints.size();
             const MeshRepairs repairs = repair_shape(*shape, mesh, joints, of);
             repairs_ += repairs;
-            if (repairs.normals + repairs.tangents > 0) shape_at_rest(*shape);
+            if (repairs.normals + repairs.tangents > 0) shape_at_rest(scene_, {&shape, 1});
         }
-    }
-
-    /// By what the shape has become.
-    void shape_at_rest(MeshShape& shape) {
-        std::vector<Transform> joints;
-        if (shape.skin != kNoSkin) {
-            joints = joint_transforms(
-                scene_.skins[shape.skin],
-                world_from_nodes(places_of(scene_.nodes, parents_first(scene_.nodes)), scene_.origin_in_file));
-        }
-        const std::span<const float> weights =
-            shape.node == kNoNode ? std::span<const float>() : scene_.nodes[shape.node].morph_weights;
-        shape_mesh(shape, weights, joints, scene_.meshes[shape.mesh]);
     }
 
     void report() {
-        const auto say = [&](uint64_t count, const char* thing, const char* what) {
-            if (count > 0) messages_.warn(fmt::format("{}: {} {}", file_, counted(count, thing), what));
+        const auto text = [&](uint64_t count, const char* thing, const char* what) {
+            return fmt::format("{}: {} {}", file_, counted(count, thing), what);
         };
-        say(repairs_.not_finite, "triangle", "with a vertex that is not finite: left out");
+        const auto say = [&](uint64_t count, const char* thing, const char* what) {
+            if (count > 0) messages_.warn(text(count, thing, what));
+        };
+        if (repairs_.not_finite > 0) {
+            messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite: left out"));
+        }
         say(repairs_.without_area, "triangle", "without area: left out");
         say(repairs_.normals, "normal", "of length zero or not finite: replaced by the surface's own");
         say(repairs_.tangents, "tangent", "of length zero or not finite: replaced");
@@ -163,10 +164,15 @@ private:
         for (const Mesh& mesh : scene_.meshes) bounds.push_back(bounds_of(mesh));
         std::size_t i = 0, dropped = 0;
         std::erase_if(scene_.instances, [&](const Instance& instance) {
-            check_place(i, instance, bounds[instance.mesh]);
-            const bool drops = is_singular(instance.world_from_local) && !moves_[i];
-            if (drops && dropped++ == 0) first_singular_ = place_of(i, instance);
-            ++i;
+            const std::size_t number = i++;
+            if (const std::string fault = fault_of_place(instance, bounds[instance.mesh]); !fault.empty()) {
+                const std::string what = fmt::format("{} {}", place_of(number, instance), fault);
+                if (first_misplaced_.empty()) first_misplaced_ = what;
+                messages_.leave_out(fmt::format("{}: {}; it is left out", file_, what));
+                return true;
+            }
+            const bool drops = is_singular(instance.world_from_local) && !moves_[number];
+            if (drops && dropped++ == 0) first_singular_ = place_of(number, instance);
             return drops;
         });
         for (Instance& instance : scene_.instances) {
@@ -179,10 +185,11 @@ private:
                                    file_, counted(dropped, "instance"), first_singular_));
     }
 
-    void check_place(std::size_t i, const Instance& instance, const Bounds3& local) const {
+    /// Empty where it can be placed so.
+    static std::string fault_of_place(const Instance& instance, const Bounds3& local) {
         const Transform& m = instance.world_from_local;
-        if (!is_finite(m)) throw bad(place_of(i, instance) + ": its transform is not finite");
-        if (!local.is_empty() && !lies_near(m, local)) throw too_far(place_of(i, instance));
+        if (!is_finite(m)) return "has a transform that is not finite";
+        return local.is_empty() || lies_near(m, local) ? "" : kTooFar;
     }
 
     static bool is_near(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
@@ -239,8 +246,8 @@ private:
     const std::string& file_;
     Messages& messages_;
     MeshRepairs repairs_;
-    std::vector<bool> moves_;                       // may_move of the instances there are
-    std::string first_empty_mesh_, first_singular_; // where they are described
+    std::vector<bool> moves_;                                         // may_move of the instances there are
+    std::string first_empty_mesh_, first_singular_, first_misplaced_; // where they are described
 };
 
 } // namespace

@@ -84,8 +84,8 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     }
     if (times.empty()) return "it has no key times; expected at least one";
     for (std::size_t i = 0; i < times.size(); ++i) {
-        if (!is_finite(times[i]) || times[i] < 0 || (i > 0 && times[i] <= times[i - 1])) {
-            return fmt::format("key time {} is {}; expected seconds from 0 on, each above the one before", i, times[i]);
+        if (!is_finite(times[i]) || (i > 0 && times[i] < times[i - 1])) {
+            return fmt::format("key time {} is {}; expected finite seconds, none below the one before", i, times[i]);
         }
     }
     const std::size_t numbers = numbers_in_value(channel, scene);

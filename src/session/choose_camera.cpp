@@ -53,8 +53,8 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     Messages unsaid; // of a view that is not to be: it looks elsewhere
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
-    messages.note(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {} --target {})",
-                              place_text(scene, eye, 4), text_of(*choice.target)));
+    messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {} --target {})",
+                                 place_text(scene, eye, 4), text_of(*choice.target)));
     return camera;
 }
 
@@ -79,10 +79,10 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
     const float away = length(middle - camera.world_from_camera.translation);
     const float distance = seen.value_or(max(away, 0x1p-40f));
     camera.focus_distance = rounded(distance, 4);
-    messages.note(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,
-                              seen ? "the distance of what is in the middle of the picture"
-                                   : "the distance of the scene's middle, for nothing is in that of the picture",
-                              distance));
+    messages.make_up(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,
+                                 seen ? "the distance of what is in the middle of the picture"
+                                      : "the distance of the scene's middle, for nothing is in that of the picture",
+                                 distance));
 }
 
 /// `flattened`: the camera's angle of view has become a height.
@@ -132,9 +132,9 @@ void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
     const Target target = target_from(scene, in_scene(scene, *choice.eye));
     choice.target = told_place(scene, target.position, 6);
     choice.is_aimed = true;
-    messages.note(fmt::format("--eye without --target: it looks {} (--eye {} --target {})",
-                              target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
-                              text_of(*choice.eye), place_text(scene, target.position, 6)));
+    messages.make_up(fmt::format("--eye without --target: it looks {} (--eye {} --target {})",
+                                 target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
+                                 text_of(*choice.eye), place_text(scene, target.position, 6)));
 }
 
 Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {

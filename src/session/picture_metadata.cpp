@@ -7,8 +7,10 @@
 
 #include "base/json_text.h"
 #include "base/version.h"
+#include "formats/file_choices.h"
 #include "image/tone_map_image.h"
 #include "session/settings_text.h"
+#include "session/survey/ground.h"
 
 namespace pertev {
 namespace {
@@ -71,10 +73,15 @@ SceneSource source_of(const OpenOptions& options, const Scene& scene) {
             .environment = environment_text(options),
             .environment_scale = options.environment_scale,
             .environment_rotation_deg = options.environment_rotation_deg,
+            .up_axis = options.up_axis,
+            .unit = options.unit,
             .lamps = lamps,
             .has_environment = scene.environment.has_value(),
+            .has_ground = has_ground(scene),
             .two_sided_lights = options.two_sided_lights,
             .show_back_faces = options.show_back_faces,
+            .animation = clip_choice(scene.clips),
+            .file_scene = file_scene_choice(scene),
             .position_origin = scene.is_far ? std::optional(scene.origin_in_file) : std::nullopt};
 }
 
@@ -181,6 +188,8 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                           {"pertev.frame", static_cast<int32_t>(record.frame->number)},
                           {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
     }
+    if (!scene.animation.empty()) metadata.emplace_back("pertev.animation", scene.animation);
+    if (!scene.file_scene.empty()) metadata.emplace_back("pertev.file_scene", scene.file_scene);
     if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
     if (scene.shutter) {
         metadata.emplace_back("pertev.shutter", fmt::format("{},{}", scene.shutter->open_s, scene.shutter->close_s));
@@ -188,6 +197,9 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     append(metadata, camera_metadata(record.camera));
     if (scene.position_origin) metadata.emplace_back("pertev.position_origin", comma_separated(*scene.position_origin));
     append(metadata, environment_metadata(scene));
+    if (!scene.up_axis.empty()) metadata.emplace_back("pertev.up_axis", scene.up_axis);
+    if (!scene.unit.empty()) metadata.emplace_back("pertev.unit", scene.unit);
+    if (scene.has_ground) metadata.emplace_back("pertev.ground", std::string("on"));
     if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && record.display->false_colors) {
@@ -204,6 +216,8 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
     append(metadata, {{"pertev.spp", static_cast<int32_t>(stats.samples)},
                       {"pertev.device", record.device},
                       {"pertev.hash", hash},
+                      {"pertev.made_up", json_strings(record.scene.made_up)},
+                      {"pertev.left_out", json_strings(record.scene.left_out)},
                       {"pertev.invalid_samples", static_cast<double>(stats.invalid_samples)},
                       {"pertev.load_seconds", record.scene.load_seconds},
                       {"pertev.build_seconds", record.scene.build_seconds},

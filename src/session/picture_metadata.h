@@ -24,12 +24,16 @@ struct SceneSource {
     std::string environment;     // asked for: file or colour; empty: none was
     float environment_scale = 1; // factor
     float environment_rotation_deg = 0;
+    std::string up_axis, unit;    // of the file's coordinates, asked for; empty: not
     std::string lamps;            // set to amounts of light, a line each; empty: none
     bool has_environment = false; // the scene has one: asked for, its own or the default
+    bool has_ground = false;      // a made-up one
     bool two_sided_lights = false, show_back_faces = false;
-    std::optional<double> time_s;                  // that it is shown at; none: at rest
-    std::optional<Shutter> shutter;                // open at that time; none: it is of one moment
+    std::string animation, file_scene; // choices among the file's (formats/file_choices.h); empty: no others
+    std::optional<double> time_s;      // that it is shown at; none: at rest
+    std::optional<Shutter> shutter;    // open at that time; none: it is of one moment
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty: none are said
+    std::vector<std::string> made_up, left_out;    // messages: for the scene; of what it has
     std::optional<DoubleVec3> position_origin;     // of a far scene: what positions are relative to; none: the file's
     double load_seconds = 0, build_seconds = 0;    // of reading; of the trees
 };

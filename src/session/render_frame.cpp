@@ -40,7 +40,7 @@ NoisyFrame& Session::fit(std::optional<NoisyFrame>& frame, uint32_t width, uint3
     return frame.emplace(queue_, width, height, splits_light);
 }
 
-void Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
+bool Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
     if (!makes_frames(settings_.integrator)) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--integrator {}: frames are reconstructed of path's samples alone",
@@ -74,7 +74,11 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     frame_kind_seconds_ = {};
     const LightChangeView change = look_for_change(of_light, settings);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
-    take_sample(number, camera_, of_light, frame);
+    take_sample(number, camera_, of_light, frame, abandon_);
+    if (abandon_ != nullptr && *abandon_) { // parts of the sample may be missing
+        cut_frames();
+        return false;
+    }
     const PictureView light = view_of(camera_, of_light);
     const PreviousScene before = has_moved_ ? PreviousScene{places_before_.data(), scene_->meshes_before()}
                                             : PreviousScene{light.scene.instances, light.scene.meshes};
@@ -101,13 +105,16 @@ void Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     has_moved_ = false; // the frame is whole, whatever follows
     const bool has_changed = std::exchange(scene_has_changed_, false);
     keep_light(number, of_light, settings.follow_light && has_changed);
+    return true;
 }
 
-/// Sample `number` of each pixel of `frame`, at its size.
-void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame) {
+/// Renders sample `number` of each pixel of `frame`, at its size. While `*abandon` is true, pixels are left out.
+void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
+                          const std::atomic<bool>* abandon) {
     settings.width = settings.path.frame_width = frame.width();
     settings.height = frame.height();
     Integrator& integrator = begin(camera, settings, 1);
+    integrator.abandon_when(abandon);
     frame.begin();
     integrator.render(number, 1, frame.film_view());
     frame_rays_ = frame_rays_ + integrator.rays();

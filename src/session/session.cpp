@@ -285,6 +285,10 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
+    // The first sample has nothing before it that could be kept.
+    const bool is_apart = keeps_samples_ && abandon_ != nullptr && first > 0 && !denoises;
+    if (!is_apart) pass_film_.reset();
+    Film& into = is_apart ? fit(pass_film_, settings_) : film;
     bool makes = false;
     const auto goes_on = [&](double made_share) {
         makes = true;
@@ -304,14 +308,17 @@ uint32_t Session::render(uint32_t samples, const std::function<bool(const Render
         if (denoises) {
             render_signals(integrator, first + done, pass);
         } else {
-            added = integrator.render_while(first + done, pass, film.view(),
+            if (is_apart) into.clear();
+            added = integrator.render_while(first + done, pass, into.view(),
                                             [&] { return !keep_going || keep_going(now()); });
         }
         if (abandon_ != nullptr && *abandon_) { // parts of a sample may be missing
+            if (is_apart) break;
             begin_film();
             return 0;
         }
         if (added == 0) break;
+        if (is_apart) film.add(into);
         done += added;
         const double seconds = watch.seconds();
         history_.samples = first + done;

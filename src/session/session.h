@@ -110,9 +110,10 @@ public:
     /// A frame of a sequence: renders sample `number` of each pixel and reconstructs the picture from it and from the
     /// frames since the last cut, each of which had its own scene and camera. The film stays as it is. The frame is
     /// a function of scene, camera, settings and number of each of these frames, on every device alike. `restir` is
-    /// off where the path settings ask for indirect light alone, or find lights by one strategy alone. Throws
-    /// Error(OutOfMemory, DeviceFault), and Error(BadInput) for an integrator that makes no frames (makes_frames).
-    void render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir = {});
+    /// off where the path settings ask for indirect light alone, or find lights by one strategy alone. Returns false,
+    /// and the frames begin anew, where the flag of abandon_when broke it off. Throws Error(OutOfMemory, DeviceFault),
+    /// and Error(BadInput) for an integrator that makes no frames (makes_frames).
+    bool render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir = {});
     /// Of the last render_frame, for its exposure (session/adaptive_exposure.h). Throws as render_frame.
     FrameTones frame_tones() const;
     /// Of the last render_frame. Another resolution_scale is a cut.
@@ -135,9 +136,12 @@ public:
     /// Nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera rays; empty
     /// where that cannot be told (packets). Throws as look_aside.
     std::vector<RayWork> count_camera_work();
-    /// From now on render() breaks off in the middle of a sample when `*flag` is true, on the CPU alone; the film then
-    /// begins anew. Null: never. `flag` outlives the session.
+    /// From now on render() and render_frame() break off in the middle of a sample when `*flag` is true, on the CPU
+    /// alone; the film then begins anew. Null: never. `flag` outlives the session.
     void abandon_when(const std::atomic<bool>* flag) { abandon_ = queue_.is_cuda() ? nullptr : flag; }
+    /// While this is set, an abandoned render() keeps the whole samples that the film had. Each pass then goes through
+    /// a second film, which takes as much memory again, so this pays only for samples that take long.
+    void keep_samples_when_abandoned(bool keeps) { keeps_samples_ = keeps; }
 
     const History& history() const { return history_; }
     const Camera& camera() const { return camera_; }
@@ -150,7 +154,8 @@ private:
     void cut_frames();
     void keep_places();
     void copy_places();
-    void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame);
+    void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
+                     const std::atomic<bool>* abandon = nullptr);
     LightChangeView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
     void keep_light(uint32_t number, const RenderSettings& of_light, bool goes_on);
     bool take_tracer();
@@ -180,6 +185,7 @@ private:
     FilterTable filter_;
     Buffer<MotionKey> camera_motion_; // while the shutter is open
     std::optional<Film> film_, meter_film_;
+    std::optional<Film> pass_film_; // the pass under way, where an abandoned one must leave film_ alone
     std::optional<NoisyFrame> noisy_frame_;
     std::optional<NoisyFrame> features_; // of frames whose light is found at a lower resolution
     std::optional<Reconstruction> reconstruction_;
@@ -211,6 +217,7 @@ private:
     uint64_t picture_number_ = 1; // another one for each picture that samples go to the film of
     uint64_t begun_number_ = 0;   // of the picture that main_ has begun; 0: of some other
     const std::atomic<bool>* abandon_ = nullptr;
+    bool keeps_samples_ = false;
 };
 
 /// Bytes of the device's memory that a session asks for by the time it has rendered `settings.samples` in one call.

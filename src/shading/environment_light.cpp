@@ -41,7 +41,8 @@ std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages
             ++infinite;
             value = kLargestHalf;
         }
-        return clamp(value * scale, 0.0f, 0x1.fffffep127f);
+        value = min(value * scale, 0x1p120f); // sums of these are finite
+        return value < 0x1p-100f ? 0.0f : value;
     };
     parallel_for(count, 1 << 16, [&](uint64_t i) {
         const float white = 1.0f;
@@ -60,30 +61,13 @@ std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages
     return pixels;
 }
 
-/// Mean of f^2 over a unit square, f bilinear with these corner values.
-double mean_square(double f00, double f10, double f01, double f11) {
-    return (f00 * f00 + f10 * f10 + f01 * f01 + f11 * f11 + f00 * f10 + f00 * f01 + f10 * f11 + f01 * f11) / 9.0 +
-           (f00 * f11 + f10 * f01) / 18.0;
-}
-
-/// Root mean square of the bilinearly filtered image over texel x of the middle of three rows, each [width].
-double filtered_rms(const std::array<const Rgb*, 3>& rows, uint32_t x, uint32_t width) {
-    const std::array<uint32_t, 3> columns = {x == 0 ? width - 1 : x - 1, x, x + 1 == width ? 0 : x + 1};
-    double f[3][3];
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            const Rgb p = rows[i][columns[j]];
-            f[i][j] = static_cast<double>(p.r) + static_cast<double>(p.g) + static_cast<double>(p.b);
-        }
-    }
-    double sum = 0;
-    for (const std::size_t i : {0, 2}) {
-        for (const std::size_t j : {0, 2}) { // the quarter of the texel towards that corner
-            sum += mean_square(f[1][1], 0.5 * (f[1][1] + f[1][j]), 0.5 * (f[1][1] + f[i][1]),
-                               0.25 * (f[1][1] + f[1][j] + f[i][1] + f[i][j]));
-        }
-    }
-    return std::sqrt(0.25 * sum);
+/// Returns the mean of what a patch is drawn by, in units of panorama_brightness.
+double mean_brightness(const PanoramaCorners& corners) {
+    float greatest;
+    const BilinearPatch density = panorama_density(corners, greatest);
+    if (!(greatest > 0)) return 0;
+    const auto wide = [](float x) { return static_cast<double>(x); };
+    return 0.25 * wide(greatest) * (wide(density.f00) + wide(density.f10) + wide(density.f01) + wide(density.f11));
 }
 
 } // namespace
@@ -105,31 +89,36 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
     const double turns = static_cast<double>(environment.rotation) / 6.283185307179586;
     data.rotation_turns = static_cast<float>(turns - std::floor(turns));
     if (data.rotation_turns >= 1.0f) data.rotation_turns = 0;
-    data.row_bounds.resize(data.height + 1);
-    for (uint32_t y = 0; y <= data.height; ++y) {
-        data.row_bounds[y] = static_cast<float>(sin_squared(1.5707963267948966 * y / data.height));
+    data.row_bounds.resize(data.height / 2 + 2); // as far as the row at the equator
+    for (uint32_t edge = 1; edge < data.row_bounds.size(); ++edge) {
+        data.row_bounds[edge] = static_cast<float>(sin_squared(1.5707963267948966 * (edge - 0.5) / data.height));
     }
 
     struct Sums {
         double r = 0, g = 0, b = 0;
     };
-    std::vector<Sums> row_sums(data.height); // of pixel times the row's share of the sphere
-    std::vector<double> row_weights(data.height);
+    const uint32_t rows = data.height + 1;
+    std::vector<Sums> row_sums(rows); // radiance times the row's share of the sphere
+    std::vector<double> row_weights(rows);
     const std::size_t starts = data.width + 1, guide = (std::size_t(1) << guide_bits_for(data.width)) + 1;
-    data.columns.starts.resize(data.height * starts);
-    data.columns.guide.resize(data.height * guide);
-    const auto row = [&](uint64_t y) { return data.pixels.data() + y * data.width; };
-    parallel_for(data.height, 16, [&](uint64_t y) {
-        const uint64_t from_pole = std::min<uint64_t>(y, data.height - 1 - y);
-        const double share = static_cast<double>(data.row_bounds[from_pole + 1] - data.row_bounds[from_pole]);
-        const std::array<const Rgb*, 3> rows = {row(y == 0 ? 0 : y - 1), row(y),
-                                                row(std::min<uint64_t>(y + 1, data.height - 1))};
+    data.columns.starts.resize(rows * starts);
+    data.columns.guide.resize(rows * guide);
+    EnvironmentView view; // for the rows and corners of patches
+    view.width = data.width, view.height = data.height;
+    view.pixels = data.pixels.data(), view.row_bounds = data.row_bounds.data();
+    parallel_for(rows, 16, [&](uint64_t y) {
+        const PanoramaRow row = panorama_row(view, static_cast<uint32_t>(y));
+        const double share = static_cast<double>(row.upper - row.lower);
         std::vector<double> weights(data.width);
         for (uint32_t x = 0; x < data.width; ++x) {
-            weights[x] = share * filtered_rms(rows, x, data.width);
-            row_sums[y].r += share * static_cast<double>(rows[1][x].r);
-            row_sums[y].g += share * static_cast<double>(rows[1][x].g);
-            row_sums[y].b += share * static_cast<double>(rows[1][x].b);
+            const PanoramaCorners corners = panorama_corners(view, x, static_cast<uint32_t>(y));
+            weights[x] = share * mean_brightness(corners);
+            const auto add = [&](double& sum, float upper, float lower) {
+                sum += 0.5 * share * (static_cast<double>(upper) + static_cast<double>(lower));
+            };
+            add(row_sums[y].r, corners.upper_left.r, corners.lower_left.r);
+            add(row_sums[y].g, corners.upper_left.g, corners.lower_left.g);
+            add(row_sums[y].b, corners.upper_left.b, corners.lower_left.b);
         }
         row_weights[y] = build_ordered_table(weights, std::span(data.columns.starts).subspan(y * starts, starts),
                                              std::span(data.columns.guide).subspan(y * guide, guide));

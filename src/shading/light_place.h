@@ -44,10 +44,11 @@ HD inline bool find_light(const LightSetView& view, const LightPlace& place, Vec
     if (place.instance == kInEnvironment) {
         sample = {};
         sample.wi = {float_of(place.index), place.u, place.v};
-        sample.pdf = pdf_environment(view, sample.wi);
-        if (!(sample.pdf > 0)) return false;
+        const EnvironmentHit hit = find_environment(view, sample.wi, true);
+        if (!(hit.pdf > 0)) return false;
+        sample.pdf = hit.pdf;
         sample.distance = kInfinity;
-        sample.radiance = environment_radiance(view.environment, sample.wi);
+        sample.radiance = hit.radiance;
         return true;
     }
     if (place.instance == kPunctualPlace) {

@@ -245,10 +245,15 @@ HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, Vec3 fro
     return is_finite(pdf) ? pdf : 0.0f;
 }
 
-/// Density with which sample_light draws direction `wi` for the environment, 1/sr; 0 without one.
-HD inline float pdf_environment(const LightSetView& view, Vec3 wi) {
-    if (!view.has_environment() || view.choice.starts == nullptr) return 0;
-    return ordered_pmf(view.choice, view.environment_source) * environment_pdf(view.environment, wi);
+/// What direction `wi` meets in the environment, with the density with which sample_light draws it, 1/sr.
+HD inline EnvironmentHit find_environment(const LightSetView& view, Vec3 wi, bool wants_pdf) {
+    if (!view.has_environment()) return {{0, 0, 0}, 0};
+    EnvironmentHit hit = find_environment(view.environment, wi, wants_pdf && view.choice.starts != nullptr);
+    if (hit.pdf > 0) hit.pdf = ordered_pmf(view.choice, view.environment_source) * hit.pdf;
+    return hit;
 }
+
+/// That density alone; 0 without an environment.
+HD inline float pdf_environment(const LightSetView& view, Vec3 wi) { return find_environment(view, wi, true).pdf; }
 
 } // namespace pertev

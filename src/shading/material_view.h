@@ -14,7 +14,8 @@ struct MaterialView {
     MaterialKind kind;
     AlphaMode alpha_mode;
     bool two_sided_emission;
-    float alpha, alpha_cutoff;
+    float alpha;
+    float alpha_cutoff; // Mask: a ray is stopped where alpha is at least this (alpha_that_reaches)
     Rgb base_color, emission, eta, k;
     float metallic, roughness, ior, normal_scale;
     TextureRef base_color_texture, alpha_texture, metallic_texture, roughness_texture, emission_texture, normal_texture;
@@ -44,12 +45,18 @@ HD inline bool has_texture(const TextureRef& slot) {
     return has_textures(kKnown) && slot.has_image();
 }
 
+/// Returns the least alpha that counts as equal to the cutoff or above it. Alpha is a product of a factor, bilinear
+/// texels and a vertex's, and each of these rounds by at most 2^-23 of itself, so that what equals the cutoff on paper
+/// may come out a little below it. One step of a texel of 16 bits is 32 times more than this. A cutoff above 1 hides
+/// everything.
+inline float alpha_that_reaches(float cutoff) { return cutoff > 1 ? cutoff : (1.0f - 0x1p-21f) * cutoff; }
+
 inline MaterialView make_material_view(const Material& m) {
     return {.kind = m.kind,
             .alpha_mode = m.alpha_mode,
             .two_sided_emission = m.two_sided_emission,
             .alpha = m.alpha,
-            .alpha_cutoff = m.alpha_cutoff,
+            .alpha_cutoff = alpha_that_reaches(m.alpha_cutoff),
             .base_color = m.base_color,
             .emission = m.emission,
             .eta = m.eta,

@@ -1,6 +1,6 @@
 #pragma once
 
-// The frame that a BSDF works in: interpolated normal, tangent given or from the texture coordinates, normal map.
+// The frame that a BSDF works in: interpolated normal and tangent, normal map.
 // Conventions of glTF 2.0 section 3.7.2.1 and 3.9.3: x of the map is the tangent, y = cross(normal, tangent) * w points
 // to the top of the image, so against growing v.
 //
@@ -39,18 +39,6 @@ HD inline Vec3 world_normal(const Transform& local_from_world, Vec3 local_normal
     return dot(normal, geometric_normal) > 0 ? normal : geometric_normal;
 }
 
-/// Tangent (xyz, not unit: along growing u) and handedness (w) of a triangle with edges ab, ac and texture coordinates
-/// that grow by uv_ab, uv_ac along them. `geometric_normal` is of the front. Zero where the coordinates give none.
-HD inline Vec4 tangent_from_uv(Vec3 ab, Vec3 ac, Vec2 uv_ab, Vec2 uv_ac, Vec3 geometric_normal) {
-    const float det = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
-    if (!(abs(det) > 0) || !is_finite(det)) return {0, 0, 0, 1};
-    const float sign = copysign(1.0f, det);
-    const Vec3 along_u = sign * (uv_ac.y * ab - uv_ab.y * ac);
-    const Vec3 along_v = sign * (uv_ab.x * ac - uv_ac.x * ab);
-    const float w = dot(cross(geometric_normal, along_u), along_v) > 0 ? -1.0f : 1.0f; // y is against growing v
-    return {along_u.x, along_u.y, along_u.z, w};
-}
-
 /// Frame with z = `normal` (unit), x as near to `tangent` (xyz, any length) as can be, y by its handedness, so
 /// left-handed where w < 0. An arbitrary right-handed frame about the normal where the tangent has no direction across
 /// it.
@@ -60,6 +48,20 @@ HD inline Frame frame_with_tangent(Vec3 normal, Vec4 tangent) {
     if (!(length_squared(across) > 1e-10f)) return make_frame(normal);
     const Vec3 x = normalize(across);
     return {x, (tangent.w < 0 ? -1.0f : 1.0f) * cross(normal, x), normal};
+}
+
+/// `frame` (orthonormal) as it is for a map that is looked up at transformed coordinates: u' grows by u_by.x with u and
+/// by u_by.y with v, v' by v_by likewise. Its x lies along growing u' where v' is constant, and a transform that
+/// mirrors turns it over. A scale alone changes nothing, and neither does a transform without an inverse.
+HD inline Frame frame_of_transformed_map(const Frame& frame, Vec2 u_by, Vec2 v_by) {
+    if (u_by.y == 0 && v_by.x == 0 && u_by.x > 0 && v_by.y > 0) return frame;
+    const float det = u_by.x * v_by.y - u_by.y * v_by.x;
+    if (!(abs(det) > 0) || !is_finite(det)) return frame;
+    const float sign = copysign(1.0f, det);
+    const Vec3 along = sign * (v_by.y * frame.tangent + v_by.x * frame.bitangent); // y of the frame is against v
+    const Vec3 x = normalize_or(along, frame.tangent);
+    const float handedness = sign * copysign(1.0f, dot(cross(frame.normal, frame.tangent), frame.bitangent));
+    return {x, handedness * cross(frame.normal, x), frame.normal};
 }
 
 /// Unit normal that a normal map's texel asks for: `texel` is the colour in [0, 1], `scale` the map's strength.

@@ -192,7 +192,7 @@ TEST_CASE("Khronos' animated models give the same pictures stepped to as afresh"
         Messages messages;
         Scene rest = read_gltf(*path, FileAccess(*path, {}), {}, messages);
         validate(rest, name, messages);
-        add_default_light(rest, messages);
+        add_default_light(rest, SceneUse::Picture, messages);
         const Camera camera = choose_camera({}, rest, 1.5f, messages);
         std::vector<double> times = {0.4, 1, 0.9};
         if (rest.animations.empty()) times.resize(1);

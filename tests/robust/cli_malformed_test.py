@@ -152,7 +152,7 @@ class FilesDamagedHere(MalformedTest):
         whole = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
         for text, status in [("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", 2), ("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 2),
                              (whole + "v inf 0 0\nf 1 2 4\n", 0), (whole + "v 1e39 0 0\nf 1 2 4\n", 0),
-                             (whole + "f 1 2 9\n", 2), (whole + "f 1 1 2\n", 0), ("v 0 0 0\n", 2)]:
+                             (whole + "f 1 2 9\n", 0), (whole + "f 1 1 2\n", 0), ("v 0 0 0\n", 2)]:
             self.put("mesh.obj", text.encode())
             with self.subTest(text=text):
                 self.assertEqual(self.survive("mesh.obj", "info", "mesh.obj"), status)
@@ -164,7 +164,9 @@ class FilesDamagedHere(MalformedTest):
         self.put("whole.png", self.whole("whole.png"))
         with open(os.path.join(inner, "model.gltf"), "w", encoding="utf-8") as file:
             file.write(gltf_with_texture("../whole.png"))
-        self.assertEqual(self.survive_render("whole.png", "inner/model.gltf"), 2)
+        self.assertEqual(self.survive_render("whole.png", "inner/model.gltf", warns=True), 0)
+        self.assertIn("--allow-path", self.run_pertev("info", "inner/model.gltf").stderr)
+        self.refuse(2, "render", "inner/model.gltf", "-o", "x.png", "--strict", says=["whole.png", "--allow-path"])
         self.assertEqual(self.survive_render("whole.png", "inner/model.gltf", "--allow-path", "."), 0)
 
 

@@ -21,7 +21,8 @@ class WhatIsRefused(CliTest):
                      "--size x", "--size 10x", "--size 10x10x10", "--size -1x10", "--size nanxnan", "--device gpu",
                      "--device cuda:x", "--eye 1,2", "--eye 1,2,nan", "--target 1,2,3,4", "--up x,y,z",
                      "--structure x", "--walk x", "--walk moon=compressed", "--walk shadow=x", "--rta x", "--order x",
-                     "--distribution x", "--build x", "--build sbvh", "--environment -1,0,0", "--environment 1,2", "--environment no.hdr", "--allow-path nowhere"]:
+                     "--distribution x", "--build x", "--build sbvh", "--environment -1,0,0", "--environment 1,2", "--environment no.hdr", "--allow-path nowhere",
+                     "--unit inch", "--unit 0", "--unit nan", "--up-axis w", "--up-axis -z"]:
             with self.subTest(flag=flag):
                 arguments = flag.split()
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", *arguments, says=[arguments[-2] if len(arguments) > 2 else arguments[0]])

@@ -24,9 +24,9 @@ class Viewer:
     """A viewer of a small picture, on a port of its own; ends with the block."""
 
     def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4, device="cpu", desktop=""):
-        """`desktop`: a folder with a desktop's programs; it may then open a browser."""
+        """`desktop`: a folder with a desktop's programs; it may then open a browser. `size`: empty: the window's shape."""
         self.device, self.desktop = device, desktop
-        self.arguments = ["view", scene, "--size", size, "--spp", str(spp), "--port", "0", "--device", device, *arguments]
+        self.arguments = ["view", scene, *(["--size", size] if size else []), "--spp", str(spp), "--port", "0", "--device", device, *arguments]
         if not desktop:
             self.arguments.append("--no-browser")
 

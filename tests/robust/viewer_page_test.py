@@ -85,7 +85,7 @@ class Page(unittest.TestCase):
                    "const floor = at(640, 690), wall = at(360, 300); "
                    "return floor[0] + floor[1] + floor[2] > 150 && wall[0] > 2 * wall[1]; })()")
         self.assertIn("film hash", page.value("document.querySelector('#readings').innerText"))
-        rate = page.until("/screen of who steers\\s+(\\d+) a second/.exec(document.querySelector('#readings').innerText)?.[1]")
+        rate = page.until("/screen of who steers\\s*(\\d+) a second/.exec(document.querySelector('#readings').textContent)?.[1]")
         self.assertTrue(10 <= int(rate) <= 300, rate)
         rendered = self.eye.done()["hash"]
         self.assertEqual(page.value("document.body.dataset.hash"), rendered)
@@ -356,7 +356,7 @@ class Page(unittest.TestCase):
         page.key("KeyA", "a", up=False)
         while time.monotonic() < end:
             time.sleep(0.5)
-            latency = re.search(r"input to picture\s+(\d+) ms", page.value("document.querySelector('#readings').innerText"))
+            latency = re.search(r"input to picture\s*(\d+) ms", page.value("document.querySelector('#readings').textContent"))
             waits += [int(latency.group(1))] if latency else []
             if resident == 0 and time.monotonic() > end - 0.7 * STEERING_S:
                 resident, heap = self.viewer.resident_bytes(), heap_bytes()

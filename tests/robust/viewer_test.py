@@ -54,7 +54,8 @@ class Access(WithViewer):
     def test_all_files_of_the_page_come_with_the_cookie_and_their_type(self):
         for path, kind in [("/", "text/html"), ("/main.js", "text/javascript"), ("/link.js", "text/javascript"),
                            ("/keys.js", "text/javascript"), ("/panel.js", "text/javascript"), ("/time.js", "text/javascript"),
-                           ("/screen.js", "text/javascript"), ("/style.css", "text/css"),
+                           ("/screen.js", "text/javascript"), ("/people.js", "text/javascript"),
+                           ("/groups.js", "text/javascript"), ("/gone.js", "text/javascript"), ("/style.css", "text/css"),
                            ("/icon.svg", "image/svg+xml")]:
             status, headers, body = self.get(path)
             self.assertEqual((status, headers["content-type"].split(";")[0]), (200, kind), path)
@@ -157,6 +158,7 @@ class Fuzzed(WithViewer):
                     '{"type":"look","n":9,"dx":0.1,"dy":-0.1}', '{"type":"pan","n":10,"dx":0.1,"dy":0.1}',
                     '{"type":"zoom","n":11,"steps":1}', '{"type":"speed","n":12,"steps":-1}', '{"type":"home","n":13}',
                     '{"type":"camera","n":14,"index":0}', '{"type":"rate","hz":60}', '{"type":"ask"}',
+                    '{"type":"shape","width":640,"height":480}',
                     '{"type":"hello","key":"again"}']
         with open(os.path.join(SOURCES, "apps", "viewer", "client_message.cpp"), encoding="utf-8") as file:
             kinds = set(re.findall(r'{"(\w+)", MessageKind::', file.read()))

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/read_scene.h"
+#include "scene/tangents/make_tangents.h"
 #include "session/session.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
@@ -191,6 +192,7 @@ BiasScene bent_normals() {
         material.roughness = 0.3f;
         material.normal_texture = {.image = 1, .m00 = 4, .m11 = 4};
     }
+    make_tangents(bent.scene);
     bent.camera.world_from_camera = look_at({0.3f, 0.25f, 5}, {0, 0.3f, 0}, {0, 1, 0});
     bent.camera.fov_y = 0.7f;
     return bent;

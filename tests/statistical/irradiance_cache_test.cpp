@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -185,4 +186,60 @@ TEST_CASE("the error of irradiance caching falls with the accuracy and the rays 
     CAPTURE(by_rays);
     CHECK(by_rays < -0.9);
     CHECK(variances.back() < 1e-4);
+}
+
+namespace {
+
+/// A closed room with a ball of clear glass beneath a small bright lamp. Of a thousand rays that leave the floor a few
+/// find the lamp by way of the ball.
+Scene room_with_caustic() {
+    Scene scene = test::room_with_ball(test::of_roughness(MaterialKind::Dielectric, 0), test::white(0.7f), true);
+    scene.environment.reset();
+    for (Material& material : scene.materials) {
+        if (material.kind == MaterialKind::Dielectric) material.base_color = {1, 1, 1};
+    }
+    test::add(scene, test::sheet({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), test::white(0.7f));
+    test::add(scene, test::sheet({0.1f, 1.6f, 0.1f}, {0.06f, 0, 0}, {0, 0, 0.06f}),
+              {.name = "lamp", .base_color = {0, 0, 0}, .emission = {400, 400, 400}});
+    return scene;
+}
+
+/// Of each block of pixels the median of their red: a few bright pixels do not move it, a blotch does.
+std::vector<double> block_medians(const Image& picture, uint32_t side) {
+    std::vector<double> medians;
+    for (uint32_t top = 0; top + side <= picture.height; top += side) {
+        for (uint32_t left = 0; left + side <= picture.width; left += side) {
+            std::vector<double> values;
+            for (uint32_t i = 0; i < side * side; ++i) {
+                values.push_back(static_cast<double>(picture.at(left + i % side, top + i / side)[0]));
+            }
+            std::nth_element(values.begin(), values.begin() + side * side / 2, values.end());
+            medians.push_back(values[side * side / 2]);
+        }
+    }
+    return medians;
+}
+
+} // namespace
+
+TEST_CASE("records have no blotches of the lamps that later bounces see by way of glass") {
+    Queue queue = test::queue_asked_for();
+    Messages messages;
+    const Scene scene = room_with_caustic();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto medians = [&](const CacheBudget& budget, uint32_t seed) {
+        return block_medians(cached_picture(queue, prepared, IntegratorKind::IrradianceCache, budget, seed), 8);
+    };
+    const std::vector<double> reference = medians({0.25f, 16384, 16, 48}, 100);
+    double most = 0, least = kInfinity;
+    for (uint32_t seed = 0; seed < 3; ++seed) {
+        const std::vector<double> found = medians({0.25f, 256, 16, 48}, seed);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            most = std::max(most, found[i] / reference[i]);
+            least = std::min(least, found[i] / reference[i]);
+        }
+    }
+    MESSAGE("blocks have ", least, " to ", most, " of the light that many rays find");
+    CHECK(most < 1.2);
+    CHECK(least > 0.8);
 }

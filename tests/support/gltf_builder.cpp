@@ -108,14 +108,19 @@ Scene read_gltf_text(const std::string& json) {
     return read_gltf_text(json, messages);
 }
 
-std::string gltf_error(const std::string& json) {
+std::string gltf_fault(const std::string& json) {
+    Messages messages;
+    std::string text;
     try {
-        read_gltf_text(json);
+        read_gltf_text(json, messages);
+        const std::vector<std::string> left_out = messages.left_out();
+        if (left_out.empty()) return "";
+        text = left_out.front();
+        if (text.ends_with(" is left out")) text = text.substr(0, text.rfind("; "));
     } catch (const Error& error) {
-        const std::string text = error.what();
-        return text.substr(std::min(text.size(), text.find("model.gltf")));
+        text = error.what();
     }
-    return "";
+    return text.substr(std::min(text.size(), text.find("model.gltf")));
 }
 
 bool has_warning(const Messages& messages, const std::vector<std::string>& parts) {

@@ -70,9 +70,10 @@ private:
 /// Writes "model.gltf" into a new folder and reads it.
 Scene read_gltf_text(const std::string& json, Messages& messages, bool geometry_only = false);
 Scene read_gltf_text(const std::string& json);
-/// The message of the Error that reading throws, from "model.gltf" on; "" when there is none. Any other exception
+/// What is wrong with a document, from "model.gltf" on: the message of the Error that reading throws, or the first
+/// warning of something left out, without its words that say what is. "" when there is neither. Any other exception
 /// passes.
-std::string gltf_error(const std::string& json);
+std::string gltf_fault(const std::string& json);
 /// Whether a warning holds all of `parts`.
 bool has_warning(const Messages& messages, const std::vector<std::string>& parts);
 

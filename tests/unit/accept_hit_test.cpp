@@ -1,9 +1,14 @@
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <doctest/doctest.h>
 
+#include "math/portable_math.h"
 #include "render/accept_hit.h"
 #include "render/scene_on_device.h"
+#include "tests/support/random.h"
+#include "trace/intersect/intersect_triangle.h"
 
 using namespace pertev;
 
@@ -93,4 +98,183 @@ TEST_CASE("the coin of a blended surface is a function of path, instance and pri
     }
     CHECK(other_primitive > 300);
     CHECK(other_place == 0);
+}
+
+namespace {
+
+/// A scene of one instance.
+struct OneSurface {
+    OneSurface(const Mesh& mesh, const Material& material, const std::vector<TextureImage>& images = {})
+        : device(queue, prepare(mesh, material, images)) {}
+
+    PreparedScene prepare(const Mesh& mesh, const Material& material, const std::vector<TextureImage>& images) {
+        scene.meshes = {mesh};
+        scene.materials = {material};
+        scene.images = images;
+        scene.instances.push_back({"", 0, 0, {}});
+        Messages messages;
+        return prepare_scene(scene, {}, messages);
+    }
+    bool stops(uint32_t primitive, float u, float v, uint32_t key = 0) const {
+        return AcceptHit{device.view(), {}, {}, key}(0, primitive, u, v);
+    }
+
+    Scene scene;
+    Queue queue = Queue::make_cpu();
+    SceneOnDevice device;
+};
+
+Mesh triangle_of_alpha(float a, float b, float c) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.colors = {{1, 1, 1, a}, {1, 1, 1, b}, {1, 1, 1, c}};
+    mesh.indices = {0, 1, 2};
+    return mesh;
+}
+
+/// The share of places on the triangle that the surface stops rays at.
+double share_stopped(const OneSurface& surface, uint32_t places = 20'000) {
+    test::Random random(3);
+    uint32_t stopped = 0;
+    for (uint32_t i = 0; i < places; ++i) {
+        const float u = random.unit(), v = random.unit() * (1 - u);
+        stopped += surface.stops(0, u, v, i);
+    }
+    return static_cast<double>(stopped) / places;
+}
+
+} // namespace
+
+TEST_CASE("a cut-out stops rays where the alpha of vertices equals the cutoff") {
+    for (const float alpha : {1.0f, 0.5f, 0.3f, 1.0f / 3}) {
+        const Material masked = {.alpha_mode = AlphaMode::Mask, .alpha_cutoff = alpha};
+        CAPTURE(alpha);
+        CHECK(share_stopped({triangle_of_alpha(alpha, alpha, alpha), masked}) == 1);
+        // A step of 16 bits less is less.
+        const float less = alpha - 1.0f / 65535;
+        CHECK(share_stopped({triangle_of_alpha(less, less, less), masked}) == 0);
+    }
+    // Products that are less than the cutoff when they are rounded: 0.7 x 0.7 and 0.9 x 0.9.
+    CHECK(0.7f * 0.7f < 0.49f);
+    CHECK(share_stopped({triangle_of_alpha(0.7f, 0.7f, 0.7f),
+                         {.alpha = 0.7f, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.49f}}) == 1);
+    CHECK(0.9f * 0.9f < 0.81f);
+    CHECK(share_stopped({triangle_of_alpha(0.9f, 0.9f, 0.9f),
+                         {.alpha = 0.9f, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.81f}}) == 1);
+    // A cutoff above 1 hides all, however little it is above.
+    CHECK(share_stopped({triangle_of_alpha(1, 1, 1), {.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 1.0000001f}}) ==
+          0);
+}
+
+TEST_CASE("a cut-out stops rays where the alpha of texels equals the cutoff, whichever of 256 that is") {
+    for (uint32_t value = 1; value < 256; ++value) {
+        Mesh mesh = triangle_of_alpha(1, 1, 1);
+        mesh.colors.clear();
+        mesh.uv[0] = {{0, 0}, {1, 0}, {0, 1}};
+        TextureImage image;
+        image.rgba8 = {1, 1, {255, 255, 255, static_cast<uint8_t>(value)}};
+        const Material masked = {.base_color_texture = {.image = 0},
+                                 .alpha_mode = AlphaMode::Mask,
+                                 .alpha_cutoff = static_cast<float>(value / 255.0)};
+        CAPTURE(value);
+        CHECK(share_stopped({mesh, masked, {image}}, 20) == 1);
+    }
+}
+
+TEST_CASE("a blended surface whose vertices have alpha 1 stops every ray") {
+    CHECK(share_stopped({triangle_of_alpha(1, 1, 1), {.alpha_mode = AlphaMode::Blend}}, 1'000'000) == 1);
+}
+
+namespace {
+
+/// A fan of triangles round a middle, each with vertices of its own, as exporters write what has flat normals.
+Mesh fan(uint32_t sides, test::Random& random) {
+    std::vector<Vec3> rim;
+    for (uint32_t i = 0; i < sides; ++i) {
+        const float angle = kTwoPi * static_cast<float>(i) / static_cast<float>(sides), size = 1 + random.unit();
+        rim.push_back({size * cos(angle), size * sin(angle), random.unit() - 0.5f});
+    }
+    Mesh mesh;
+    for (uint32_t i = 0; i < sides; ++i) {
+        const Vec3 corners[3] = {{0, i % 2 == 0 ? 0.0f : -0.0f, 0}, rim[i], rim[(i + 1) % sides]};
+        for (uint32_t k = 0; k < 3; ++k) { // each triangle begins with another of its corners
+            mesh.indices.push_back(static_cast<uint32_t>(mesh.positions.size()));
+            mesh.positions.push_back(corners[(i + k) % 3]);
+        }
+    }
+    return mesh;
+}
+
+/// The triangles of the mesh that a ray along -z meets at (x, y), and where.
+struct Met {
+    uint32_t primitive;
+    float u, v;
+};
+std::vector<Met> triangles_met(const Mesh& mesh, float x, float y) {
+    std::vector<Met> met;
+    const Vec3 direction = {0, 0, -1};
+    const RayShear shear = make_ray_shear(direction);
+    for (uint32_t i = 0; i < mesh.indices.size() / 3; ++i) {
+        const auto corner = [&](uint32_t k) { return mesh.positions[mesh.indices[3 * i + k]]; };
+        TriangleHit hit;
+        if (intersect_triangle({x, y, 4}, shear, 0, kInfinity, corner(0), corner(1), corner(2), hit))
+            met.push_back({i, hit.u, hit.v});
+    }
+    return met;
+}
+
+} // namespace
+
+TEST_CASE("the triangles of a blended surface that a ray meets on their edge or corner count once") {
+    test::Random random(11);
+    uint32_t on_edges = 0, at_corners = 0;
+    for (uint32_t round = 0; round < 40; ++round) {
+        const uint32_t sides = 3 + round % 5;
+        const Mesh mesh = fan(sides, random);
+        const OneSurface pane(mesh, {.alpha = 0.25f, .alpha_mode = AlphaMode::Blend});
+        const auto stop_alike = [&](const std::vector<Met>& met) {
+            uint32_t stopped = 0;
+            for (uint32_t key = 0; key < 2000; ++key) {
+                const bool first = pane.stops(met[0].primitive, met[0].u, met[0].v, key * 7919);
+                for (const Met& m : met) CHECK(pane.stops(m.primitive, m.u, m.v, key * 7919) == first);
+                stopped += first;
+            }
+            CHECK(std::abs(stopped / 2000.0 - 0.25) < 5 * std::sqrt(0.25 * 0.75 / 2000));
+        };
+        const std::vector<Met> middle = triangles_met(mesh, 0, 0);
+        REQUIRE(middle.size() == sides);
+        ++at_corners;
+        stop_alike(middle);
+        // Halfway to a rim's vertex is exactly on the edge that leads there.
+        for (uint32_t i = 0; i < mesh.positions.size(); ++i) {
+            const Vec3 half = 0.5f * mesh.positions[i];
+            const std::vector<Met> met = triangles_met(mesh, half.x, half.y);
+            if (met.size() != 2) continue;
+            ++on_edges;
+            stop_alike(met);
+        }
+    }
+    CHECK(at_corners == 40);
+    CHECK(on_edges > 100);
+}
+
+TEST_CASE("each edge of a blended surface tosses a coin of its own") {
+    test::Random random(12);
+    const Mesh mesh = fan(6, random);
+    const OneSurface pane(mesh, {.alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
+    const OneSurface other_place(
+        [&] {
+            Mesh moved = mesh;
+            for (Vec3& p : moved.positions) p.x += 1;
+            return moved;
+        }(),
+        {.alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
+    uint32_t of_edges = 0, of_places = 0, of_inside = 0;
+    for (uint32_t key = 0; key < 1000; ++key) {
+        const bool first = pane.stops(0, 0, 0.5f, key);
+        of_edges += first != pane.stops(0, 0.5f, 0, key);
+        of_places += first != other_place.stops(0, 0, 0.5f, key);
+        of_inside += first != pane.stops(0, 0.1f, 0.5f, key);
+    }
+    for (const uint32_t differing : {of_edges, of_places, of_inside}) CHECK(std::abs(differing / 1000.0 - 0.5) < 0.07);
 }

@@ -74,6 +74,44 @@ TEST_CASE("of a few very bright pixels at most half a hundredth of the picture i
     CHECK(stops_of(sparks) == 0.0f);
 }
 
+TEST_CASE("paint keeps its colour: its largest channel stays below four fifths, but for a tenth of the picture") {
+    const Image plain = picture([](uint32_t, uint32_t) { return 0.0f; });
+    for (const Rgb paint : {Rgb{0.8f, 0.02f, 0.02f}, Rgb{0.02f, 0.02f, 0.8f}}) {
+        Image image = plain;
+        for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+            image.pixels[i] = paint.r, image.pixels[i + 1] = paint.g, image.pixels[i + 2] = paint.b;
+        }
+        for (const ToneMap tone_map : kAll) {
+            const float largest = max_component(paint), stops = stops_of(image, tone_map);
+            CHECK(pertev::tone_map(grey(largest), tone_map, exposure_scale(stops)).g <= 0.801f);
+            CHECK(stops > -2); // and is not dark for it
+        }
+    }
+}
+
+TEST_CASE("the middle of the picture weighs more in the mean than a pale background around it") {
+    const auto is_middle = [](uint32_t x, uint32_t y) { return x >= 40 && x < 120 && y >= 20 && y < 60; }; // a quarter
+    const auto two_tones = [&](float middle, float around) {
+        return picture([&](uint32_t x, uint32_t y) { return is_middle(x, y) ? middle : around; });
+    };
+    // By area the mean of the logarithms would lie three quarters of the way to the background's 2 stops.
+    const float dark_thing = stops_of(two_tones(0.18f, 0.72f), ToneMap::Agx);
+    CHECK(dark_thing > -1.3f);
+    CHECK(dark_thing < 0);
+    CHECK(stops_of(two_tones(0.18f, 0.045f), ToneMap::Agx) == doctest::Approx(-dark_thing).epsilon(0.05));
+}
+
+TEST_CASE("a thing that fills a tenth of the picture burns no more of itself than one that fills it") {
+    Image image{160, 80, 4, {}}; // bright: 4.7 % of the thing, 0.47 % of the picture
+    for (uint32_t i = 0; i < 160 * 80; ++i) {
+        const uint32_t x = i % 160;
+        const bool is_thing = x >= 72 && x < 88;
+        const float light = is_thing ? (x < 73 && i / 160 < 60 ? 200.0f : 0.18f) : 0.0f;
+        image.pixels.insert(image.pixels.end(), {light, light, light, is_thing ? 1.0f : 0.0f});
+    }
+    CHECK(tone_map(grey(200), ToneMap::Srgb, exposure_scale(stops_of(image, ToneMap::Srgb))).g < 1);
+}
+
 TEST_CASE("what has no weight does not count, and part of a pixel counts as a part") {
     Image image{160, 80, 4, {}};
     for (uint32_t i = 0; i < 160 * 80; ++i) {

@@ -69,34 +69,100 @@ TEST_CASE("an allowed folder may be read, one beside it that begins alike may no
     CHECK_THROWS_AS(FileAccess(f.file, {f.top / "missing"}), Error);
 }
 
-TEST_CASE("a file named with a path of another machine is found beside the file that names it") {
+TEST_CASE("a file named with a path of another machine is found beside the file that names it, or below it") {
     const Folders f;
     const FileAccess access(f.file, {});
     Messages messages;
-    CHECK(access.find(f.file, "C:\\models\\a.obj", messages) == f.file);
-    CHECK(access.find(f.file, "maps/elsewhere/a.obj", messages) == f.file);
     CHECK(access.find(f.file, "textures/t.png", messages) == f.scene / "textures/t.png");
     CHECK(!access.find(f.file, "nothing.png", messages));
     CHECK(!access.find(f.file, std::string(5000, 'x') + ".png", messages)); // longer than a name may be
     CHECK(messages.all().empty());
+    CHECK(access.find(f.file, "C:\\models\\a.obj", messages) == f.file);
+    CHECK(access.find(f.file, "maps/elsewhere/a.obj", messages) == f.file);
+    CHECK(access.find(f.file, "C:\\models\\textures\\t.png", messages) == f.scene / "textures/t.png");
+    CHECK(access.find(f.file, "D:/t.png", messages) == f.scene / "textures/t.png");
+    CHECK(access.find(f.file, "t.png", messages) == f.scene / "textures/t.png");
+    REQUIRE(messages.all().size() == 5);
+    CHECK(messages.all()[2].text.find("\"C:/models/textures\", which are not there") != std::string::npos);
+    CHECK(messages.all()[2].text.find("in \"textures\" are read") != std::string::npos);
+    CHECK(messages.all()[4].text.find("\"t.png\" is not there: " + (f.scene / "textures/t.png").string() +
+                                      " is read") != std::string::npos);
+    for (const Message& message : messages.all()) CHECK(message.is_warning);
 }
 
-TEST_CASE("a file outside is replaced by one of that name beside, with a warning, and refused where there is none") {
+TEST_CASE(
+    "of the files whose path ends like a name the one with the longest end is found, nearest to where it is named") {
     const Folders f;
+    for (const char* folder : {"a/wood", "b/wood", "b/stone", "c"}) fs::create_directories(f.scene / folder);
+    for (const char* file : {"a/wood/x.png", "b/wood/x.png", "b/stone/x.png", "c/y.png", "a/y.png", "y.png"}) {
+        test::write_text(f.scene / file, "");
+    }
+    const FileAccess access(f.file, {});
+    Messages messages;
+    CHECK(access.find(f.file, "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
+    CHECK(access.find(f.scene / "a" / "m.mtl", "C:/p/wood/x.png", messages) == f.scene / "a/wood/x.png");
+    CHECK(access.find(f.scene / "c" / "m.mtl", "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
+    CHECK(access.find(f.file, "C:/p/y.png", messages) == f.scene / "y.png"); // the others lie deeper
+    const std::size_t before = messages.all().size();
+    CHECK(!access.find(f.file, "C:/p/wood/x.png", messages)); // a's or b's
+    REQUIRE(messages.all().size() == before + 1);
+    CHECK(messages.all().back().text.find("2 files could be meant") != std::string::npos);
+}
+
+TEST_CASE("a name in another case is found where one file alone has it, and the message tells which") {
+    const Folders f;
+    for (const char* file : {"Wood.PNG", "one.png", "ONE.png", "deep name.Png"}) test::write_text(f.scene / file, "");
+    fs::create_directories(f.scene / "Maps");
+    test::write_text(f.scene / "Maps" / "Leaf.png", "");
+    const FileAccess access(f.file, {});
+    Messages messages;
+    CHECK(access.find(f.file, "wood.png", messages) == f.scene / "Wood.PNG");
+    CHECK(messages.all().back().text.find((f.scene / "Wood.PNG").string()) != std::string::npos);
+    CHECK(access.find(f.file, "DEEP NAME.PNG", messages) == f.scene / "deep name.Png");
+    CHECK(access.find(f.file, "maps\\leaf.png", messages) == f.scene / "Maps/Leaf.png");
+    CHECK(access.find(f.file, "C:\\MAPS\\LEAF.PNG", messages) == f.scene / "Maps/Leaf.png");
+    CHECK(access.find(f.file, "maps/Leaf.png", messages) == f.scene / "Maps/Leaf.png");
+    CHECK(access.find(f.file, "one.png", messages) == f.scene / "one.png");
+    CHECK(messages.all().size() == 5); // the last is exact
+    CHECK(!access.find(f.file, "One.png", messages));
+    CHECK(!access.find(f.file, "W\xc3\xb6od.png", messages));
+}
+
+TEST_CASE("a file that is looked for is never found outside, through links or in hidden folders") {
+    const Folders f;
+    fs::create_directories(f.scene / ".hidden");
+    test::write_text(f.scene / ".hidden" / "h.png", "");
+    test::write_text(f.other / "outside.png", "");
+    fs::create_directory_symlink(f.other, f.scene / "linked");
+    fs::create_symlink(f.other / "outside.png", f.scene / "Link.png");
+    Messages messages;
+    const FileAccess access(f.file, {});
+    CHECK(!access.find(f.file, "C:/h.png", messages));
+    CHECK(!access.find(f.file, "C:/outside.png", messages));
+    CHECK(!access.find(f.file, "link.png", messages));
+    CHECK(messages.all().empty());
+    const FileAccess allowed(f.file, {f.other});
+    CHECK(allowed.find(f.file, "C:/OUTSIDE.png", messages) == f.other / "outside.png");
+    CHECK(allowed.find(f.file, "link.png", messages) == f.other / "outside.png");
+}
+
+TEST_CASE("a file outside is replaced by one of that name below, with a warning, and refused where there is none") {
+    const Folders f;
+    test::write_text(f.other / "u.png", "");
     const FileAccess access(f.file, {});
     Messages messages;
     CHECK(access.find(f.file, "/no such home/artist/a.obj", messages) == f.file);
-    CHECK(!access.find(f.file, "/no such home/artist/t.png", messages)); // nothing that could be allowed
+    CHECK(!access.find(f.file, "/no such home/artist/u.png", messages)); // nothing that could be allowed
     CHECK(access.find(f.scene / "textures" / "b.mtl", (f.other / "t.png").string(), messages) ==
           f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 2);
     CHECK(messages.all()[0].text.find("\"/no such home/artist\", outside") != std::string::npos);
     const auto error =
-        test::thrown_error([&] { (void)access.find(f.file.string() + ":7", "../scene2/t.png", messages); });
+        test::thrown_error([&] { (void)access.find(f.file.string() + ":7", "../scene2/u.png", messages); });
     CHECK(test::says(error, "a.obj:7: refers to"));
     CHECK(test::says(error, "--allow-path " + f.other.string()));
 
-    fs::create_symlink(f.other / "t.png", f.scene / "t.png"); // what lies beside may lead outside, too
-    CHECK_THROWS_AS((void)access.find(f.file, "../scene2/t.png", messages), Error);
-    CHECK(!access.find(f.file, "/no such home/artist/t.png", messages));
+    fs::create_symlink(f.other / "u.png", f.scene / "u.png"); // what lies beside may lead outside, too
+    CHECK_THROWS_AS((void)access.find(f.file, "../scene2/u.png", messages), Error);
+    CHECK(!access.find(f.file, "/no such home/artist/u.png", messages));
 }

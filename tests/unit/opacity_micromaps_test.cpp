@@ -213,6 +213,9 @@ TEST_CASE("micromaps never say anything else than textures, whatever these are, 
                     tinted.colors.push_back({1, 1, 1, i % 5 == 0 ? 0.0f : 1.0f});
                 made.add(tinted, {.alpha_texture = turned, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 1});
                 made.add(tinted, {.base_color_texture = texture, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0});
+                Mesh even = mesh; // alpha equals the cutoff where the texture's is 1
+                even.colors.assign(mesh.positions.size(), {1, 1, 1, 0.3f});
+                made.add(even, {.base_color_texture = texture, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.3f});
                 Mesh far = mesh; // so far from 0 that coordinates are coarse
                 for (Vec2& uv : far.uv[0]) uv.x += 3000, uv.y -= 700;
                 made.add(far, {.base_color_texture = texture, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f});

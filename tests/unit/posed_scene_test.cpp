@@ -251,7 +251,7 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     CHECK(turned.positions[0] == Vec3{-1, 0, 0});
 }
 
-TEST_CASE("normals stay across their surface where a joint squeezes or mirrors it, and tangents along") {
+TEST_CASE("normals stay across their surface where a joint squeezes or mirrors it, tangents and bitangents along") {
     Scene scene = make_scene();
     Mesh& mesh = scene.meshes[0];
     mesh.normals.assign(3, normalize(Vec3{1, 1, 0}));
@@ -263,8 +263,14 @@ TEST_CASE("normals stay across their surface where a joint squeezes or mirrors i
     posed.set_time(1);
     CHECK(close(now.normals[0], normalize(Vec3{1, 2, 0})));
     CHECK(close({now.tangents[0].x, now.tangents[0].y, 0}, normalize(Vec3{2, -1, 0})));
+    CHECK(now.tangents[0].w == 1);
     posed.set_time(2);
     CHECK(close(now.normals[0], normalize(Vec3{-1, 2, 0})));
+    CHECK(close({now.tangents[0].x, now.tangents[0].y, 0}, normalize(Vec3{-2, -1, 0})));
+    // The bitangent lay along -z, where it stays: cross(normal, tangent) points the other way now.
+    CHECK(now.tangents[0].w == -1);
+    posed.set_time(0);
+    CHECK(now.tangents[0].w == 1);
 }
 
 TEST_CASE("joints that mirror turn the triangles over, so that their fronts stay") {

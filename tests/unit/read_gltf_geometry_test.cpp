@@ -195,7 +195,7 @@ TEST_CASE("a sparse accessor overrides its base, or zeros where it has none") {
         std::to_string(one_index) + ",\"componentType\":5121},\"values\":{\"bufferView\":" + std::to_string(values) +
         "}}");
     const std::string error =
-        test::gltf_error(builder.json(one_primitive("\"attributes\":{" + attribute("POSITION", outside) + "}")));
+        test::gltf_fault(builder.json(one_primitive("\"attributes\":{" + attribute("POSITION", outside) + "}")));
     CHECK(error == "model.gltf: /accessors/2/sparse/indices: entry 1 is 3; expected less than the accessor's count, 3");
 }
 
@@ -272,7 +272,7 @@ TEST_CASE("damaged or impossible compressed views are errors that name the view"
         GltfBuilder builder;
         builder.add_compressed_view(std::vector<unsigned char>(64, 0x55), stride, count, members);
         builder.add_accessor("\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3");
-        return test::gltf_error(builder.json(one_primitive("\"attributes\":{\"POSITION\":0}")));
+        return test::gltf_fault(builder.json(one_primitive("\"attributes\":{\"POSITION\":0}")));
     };
     const std::string place = "model.gltf: /bufferViews/0/extensions/EXT_meshopt_compression: ";
     CHECK(read(12, 3, ",\"mode\":\"ATTRIBUTES\"") == place + "the compressed data is damaged");

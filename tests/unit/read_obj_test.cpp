@@ -5,7 +5,6 @@
 #include "base/parallel_for.h"
 #include "formats/read_obj.h"
 #include "formats/triangulate_polygon.h"
-#include "image/srgb.h"
 #include "image/write_png.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
@@ -71,7 +70,7 @@ double area(const std::vector<Vec3>& p, const std::vector<uint32_t>& indices) {
 
 TEST_CASE("one mesh and one instance for each material, in the order of first use") {
     const Loaded l = load_text("mtllib a.mtl\n" + kTriangle +
-                                   "usemtl b\nf 1 2 3\ng other\nusemtl a\nf 3 2 1\nusemtl b\nf 1 3 2\nusemtl unused\n",
+                                   "usemtl b\nf 1 2 3\ns 1\nusemtl a\nf 3 2 1\nusemtl b\nf 1 3 2\nusemtl unused\n",
                                "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\nnewmtl unused\n");
     REQUIRE(l.scene.meshes.size() == 2);
     REQUIRE(l.scene.instances.size() == 2);
@@ -171,12 +170,6 @@ TEST_CASE("lines, points, curves and garbage are left out, each kind with one wa
     const Loaded l = load_text(kTriangle + "l 1 2\np 1\ncstype bezier\ncurv 0 1 1 2\nwhat is this\nf 1 2\nf 1 2 3\n");
     CHECK(l.scene.meshes[0].triangle_count() == 1);
     CHECK(l.messages.all().size() == 4);
-}
-
-TEST_CASE("vertex colours are read as sRGB, and the material is white") {
-    const Loaded l = load_text("v 0 0 0 1 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
-    CHECK(l.scene.meshes[0].colors[0] == Vec4{1, srgb_decode(0.5f), 0, 1});
-    CHECK(l.scene.materials[0].base_color == grey(1));
 }
 
 TEST_CASE("polygons of any shape are cut into triangles that cover them once") {
@@ -437,7 +430,7 @@ TEST_CASE("mtl: several files, read beside the geometry or behind it, say all th
         REQUIRE(all.size() >= 2);
         CHECK(all[0].text.find("of points or lines") != std::string::npos);
         CHECK(all[1].text.find("no material file gone.mtl") != std::string::npos);
-        CHECK(all[1].is_missing);
+        CHECK(all[1].is_left_out);
 
         Messages said;
         const fs::path bad =

@@ -101,14 +101,14 @@ TEST_CASE("ply: ascii and binary of both byte orders, whatever stands where, giv
     check_odd(load(odd_binary(true)));
 }
 
-TEST_CASE("ply: a header with CRLF line ends, and float colours, which are linear") {
+TEST_CASE("ply: a header with CRLF line ends, and float colours, which are sRGB as those of bytes are") {
     std::string text = ascii("element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                              "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n"
                              "element face 1\n" +
                                  kFaces,
                              "0 0 0 1 0.5 0 0.25\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2\n");
     for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 2)) text.replace(at, 1, "\r\n");
-    CHECK(load(text).meshes[0].colors[0] == Vec4{1, 0.5f, 0, 0.25f});
+    CHECK(load(text).meshes[0].colors[0] == Vec4{1, srgb_decode(0.5f), 0, 0.25f});
 }
 
 TEST_CASE("ply: triangle strips turn every other triangle round and begin anew after -1") {

@@ -128,6 +128,45 @@ TEST_CASE("a solid thing is seen from outside and above, whole, at any shape of 
     }
 }
 
+TEST_CASE("a square that hides its back is seen from its front, wherever that points") {
+    for (const Vec3 front :
+         {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
+        CAPTURE(front.x);
+        CAPTURE(front.y);
+        CAPTURE(front.z);
+        Scene scene;
+        const Vec3 u = {front.y, front.z, front.x}, v = cross(front, u);
+        Mesh mesh;
+        mesh.positions = {-u - v, u - v, u + v, v - u};
+        mesh.indices = {0, 1, 2, 0, 2, 3};
+        scene.meshes.push_back(std::move(mesh));
+        scene.materials.emplace_back().double_sided = false;
+        scene.instances.push_back({.name = "square", .mesh = 0, .material = 0, .world_from_local = {}});
+        Messages messages;
+        const Camera camera = make_default_camera(scene, 1, messages);
+        check_shows_all(scene, camera, 1);
+        CHECK(dot(normalize(eye_of(camera)), front) > 0.25f); // not at a grazing angle
+        const LookRay ray = {eye_of(camera), forward_of(camera)};
+        CHECK(cast_rays(scene, {&ray, 1}, Backs::Shown)[0].is_hit());
+        scene.materials[0].double_sided = true; // now the front of glTF's models counts
+        CHECK(forward_of(make_default_camera(scene, 1, messages)).z < -0.6f);
+    }
+}
+
+TEST_CASE("walls of glass make no room, and what is hollow but solid from outside is none") {
+    Scene vase; // outside and inside of a hollow block, as modelled with a thickness
+    add_box(vase, {-1, 0, -1}, {1, 3, 1}, kAll, false);
+    add_box(vase, {-0.9f, 0.1f, -0.9f}, {0.9f, 2.9f, 0.9f}, kAll, true);
+    vase.materials[0].kind = MaterialKind::Dielectric;
+    CHECK(look_around(vase).kind == SurroundingsKind::Object);
+    Scene shoe; // long, and open at the top
+    add_box(shoe, {-2, 0, -0.6f}, {2, 1, 0.6f}, kWithoutTop, false);
+    add_box(shoe, {-1.9f, 0.1f, -0.5f}, {1.9f, 1, 0.5f}, kWithoutTop, true);
+    CHECK(look_around(shoe).kind == SurroundingsKind::Object);
+    Messages messages;
+    CHECK(!is_within(bounds_of(shoe), eye_of(make_default_camera(shoe, 1.5f, messages))));
+}
+
 TEST_CASE("a closed room, and a long court open at the top, is seen from inside along its length") {
     for (const auto& sides : {kAll, kWithoutTop}) {
         for (const bool along_x : {true, false}) {
@@ -166,7 +205,7 @@ TEST_CASE("a scene without light gets a sky with a notice, one with any light ge
     Scene scene;
     add_box(scene, {}, {1, 1, 1}, kAll, false);
     Messages messages;
-    add_default_light(scene, messages);
+    CHECK(add_default_light(scene, SceneUse::Picture, messages) == DefaultLight::Sky);
     REQUIRE(scene.environment);
     const Image& sky = scene.environment->image;
     CHECK(sky.width == 2 * sky.height);
@@ -189,7 +228,7 @@ TEST_CASE("a scene without light gets a sky with a notice, one with any light ge
         if (kind == 2) lit.environment.emplace().scale = grey(0);
         const std::size_t lights = lit.lights.size();
         Messages silent;
-        add_default_light(lit, silent);
+        add_default_light(lit, SceneUse::Measurement, silent);
         CHECK(silent.all().empty());
         CHECK(lit.lights.size() == lights);
     }
@@ -204,7 +243,7 @@ TEST_CASE("what is unlit and a light of strength 0 light nothing; a scene that i
         scene.materials.emplace_back().kind = MaterialKind::Unlit;
         change(scene);
         Messages messages;
-        add_default_light(scene, messages);
+        add_default_light(scene, SceneUse::Picture, messages);
         CHECK(messages.all().size() == (scene.environment ? 1 : 0)); // said where it is done
         return scene.environment.has_value();
     };
@@ -219,7 +258,7 @@ TEST_CASE("a closed room without light gets lamps inside it") {
     Scene scene;
     add_box(scene, {0, 0, 0}, {20, 6, 8}, kAll, true);
     Messages messages;
-    add_default_light(scene, messages);
+    add_default_light(scene, SceneUse::Picture, messages);
     CHECK(!scene.environment);
     REQUIRE(!scene.lights.empty());
     for (const Light& light : scene.lights) CHECK(is_within(bounds_of(scene), light.position));

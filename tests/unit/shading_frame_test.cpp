@@ -26,10 +26,9 @@ void check_orthonormal(const Frame& frame) {
 } // namespace
 
 TEST_CASE("shading frame: on a wall seen upright, x of a normal map is right and y is up") {
-    // A wall in the plane z = 0, front towards +z; u to the right, v down from the top of the image (glTF).
-    const Vec3 right = {2, 0, 0}, up = {0, 3, 0}, front = {0, 0, 1};
-    const Vec4 tangent = tangent_from_uv(right, up, {1, 0}, {0, -1}, front);
-    const Frame frame = frame_with_tangent(front, tangent);
+    // The wall lies in the plane z = 0, with its front towards +z; u grows to the right, v down (glTF).
+    const Vec3 front = {0, 0, 1};
+    const Frame frame = frame_with_tangent(front, {2, 0, 0, 1});
     CHECK(is_near(frame.tangent, {1, 0, 0}));
     CHECK(is_near(frame.bitangent, {0, 1, 0}));
     CHECK(is_near(mapped_normal(frame, {0.5f, 0.5f, 1}, 1), front));
@@ -38,44 +37,45 @@ TEST_CASE("shading frame: on a wall seen upright, x of a normal map is right and
     CHECK(is_near(mapped_normal(frame, {1, 0.5f, 1}, 0.5f), normalize(Vec3{0.5f, 0, 1})));
     CHECK(is_near(mapped_normal(frame, {1, 0, 0.5f}, 0), front)); // no direction at all: unbent
 
-    // The same image mirrored left to right: u runs left, y is still up.
-    const Frame mirrored = frame_with_tangent(front, tangent_from_uv(right, up, {-1, 0}, {0, -1}, front));
+    // With the same image mirrored left to right u runs left, and y is still up.
+    const Frame mirrored = frame_with_tangent(front, {-1, 0, 0, -1});
     CHECK(is_near(mirrored.tangent, {-1, 0, 0}));
     CHECK(is_near(mirrored.bitangent, {0, 1, 0}));
 }
 
-TEST_CASE("shading frame: the tangent follows the texture on any triangle") {
+TEST_CASE("shading frame: a map at transformed coordinates has the frame of a mesh with these coordinates") {
     Random random(1);
-    for (int i = 0; i < 2000; ++i) {
-        const Vec3 ab = random.direction(), ac = random.direction();
-        if (length(cross(ab, ac)) < 0.1f) continue;
-        const Vec2 uv_ab = {random.within(-1, 1), random.within(-1, 1)},
-                   uv_ac = {random.within(-1, 1), random.within(-1, 1)};
-        const float det = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
+    const Vec3 front = {0, 0, 1};
+    const float any = 0.3f;
+    CHECK(frame_of_transformed_map(frame_with_tangent(front, {any, any, 0, -1}), {2, 0}, {0, 0.5f}).tangent ==
+          frame_with_tangent(front, {any, any, 0, -1}).tangent); // a scale: to the bit
+    for (int i = 0; i < 500; ++i) {
+        const Vec2 u_by = {random.within(-1, 1), random.within(-1, 1)},
+                   v_by = {random.within(-1, 1), random.within(-1, 1)};
+        const float det = u_by.x * v_by.y - u_by.y * v_by.x;
         if (std::abs(det) < 0.05f) continue;
-        const Vec3 normal = normalize(cross(ab, ac));
-        const Vec4 tangent = tangent_from_uv(ab, ac, uv_ab, uv_ac, normal);
-        // Along the tangent v stands still and u grows: solve p = s ab + t ac for the step.
-        const Vec3 along = {tangent.x, tangent.y, tangent.z};
-        const Vec3 n = cross(ab, ac);
-        const float s = dot(cross(along, ac), n) / dot(n, n), t = dot(cross(ab, along), n) / dot(n, n);
-        CHECK(s * uv_ab.x + t * uv_ac.x > 0);
-        CHECK(std::abs(s * uv_ab.y + t * uv_ac.y) < 1e-4f);
-        const Frame frame = frame_with_tangent(normal, tangent);
-        check_orthonormal(frame);
-        const float s_y = dot(cross(frame.bitangent, ac), n) / dot(n, n);
-        const float t_y = dot(cross(ab, frame.bitangent), n) / dot(n, n);
-        CHECK(s_y * uv_ab.y + t_y * uv_ac.y < 0); // y is against growing v
+        for (const float w : {1.0f, -1.0f}) {
+            // u grows by x, v by -w y: at w = 1 the image stands upright on the wall.
+            const Frame frame = frame_of_transformed_map(frame_with_tangent(front, {1, 0, 0, w}), u_by, v_by);
+            check_orthonormal(frame);
+            CHECK(frame.normal == front);
+            const auto coordinates = [&](Vec3 p) {
+                const Vec2 uv = {p.x, -w * p.y};
+                return Vec2{u_by.x * uv.x + u_by.y * uv.y, v_by.x * uv.x + v_by.y * uv.y};
+            };
+            CHECK(coordinates(frame.tangent).x > 0);
+            CHECK(std::abs(coordinates(frame.tangent).y) < 1e-5f);
+            CHECK(coordinates(frame.bitangent).y < 0); // y is against growing v
+        }
+    }
+    for (const Vec2 v_by : {Vec2{2, 4}, {0, 0}}) { // no inverse: as it was
+        check_orthonormal(frame_of_transformed_map(frame_with_tangent(front, {1, 0, 0, 1}), {1, 2}, v_by));
     }
 }
 
-TEST_CASE("shading frame: coordinates, tangents and normals without direction fall back to a valid frame") {
+TEST_CASE("shading frame: tangents and normals without direction fall back to a valid frame") {
     const Vec3 normal = {0, 0.6f, 0.8f};
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (const Vec2 uv_ac : {Vec2{0, 0}, {2, 2}, {nan, 0}, {1e38f, -1e38f}}) {
-        check_orthonormal(
-            frame_with_tangent(normal, tangent_from_uv({1, 0, 0}, {0, 0.8f, -0.6f}, {1, 1}, uv_ac, normal)));
-    }
     for (const Vec4 tangent :
          {Vec4{0, 0, 0, 1}, {0, 0.6f, 0.8f, -1}, {0, -6, -8, 1}, {nan, 1, 1, 1}, {1e-30f, 0, 0, 1}}) {
         check_orthonormal(frame_with_tangent(normal, tangent));

@@ -37,6 +37,7 @@ constexpr const char* kGood[] = {
     R"({"type":"unkey","n":22,"index":1})",
     R"({"type":"follow","n":23})",
     R"({"type":"rate","hz":59.94})",
+    R"({"type":"shape","width":65535,"height":1})",
 };
 
 } // namespace
@@ -92,6 +93,9 @@ TEST_CASE("what is not exactly a message is none") {
              R"({"type":"pick","n":1,"x":1.01,"y":0,"use":"show"})",
              R"({"type":"pick","n":1,"x":0,"y":0,"use":"throw"})",
              R"({"type":"move","n":7,"right":-1,"up":0.5,"forward":1,"ms":251,"pace":"fast"})",
+             R"({"type":"shape","width":0,"height":1})",
+             R"({"type":"shape","width":65536,"height":1})",
+             R"({"type":"shape","width":1.5,"height":1})",
              R"({"type":"set","n":1,"name":"exposure","value":[1]})",
              R"({"type":"set","n":1,"name":"exposure","value":null})",
              R"({"type":"set","n":1,"name":"a name that is longer than any name","value":1})",

@@ -430,26 +430,3 @@ TEST_CASE("what waits for a client that does not read stays small") {
     }
     CHECK(texts <= 10);
 }
-
-TEST_CASE(
-    "commands that move the camera raise the flag until they are taken, others do not, and a closed inbox takes none") {
-    std::atomic<bool> flag{false};
-    Inbox inbox;
-    inbox.raise(flag);
-    Steer set;
-    set.message.kind = MessageKind::Set;
-    CHECK(inbox.put(set));
-    CHECK_FALSE(flag);
-    Steer orbit;
-    orbit.message.kind = MessageKind::Orbit;
-    CHECK(inbox.put(orbit));
-    CHECK(flag);
-    CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 2);
-    CHECK_FALSE(flag);
-    bool replied = false;
-    CHECK(inbox.put(Save{"png", [&](std::vector<std::byte>) { replied = true; }}));
-    inbox.close();
-    CHECK_FALSE(inbox.put(orbit));
-    CHECK(inbox.take(std::chrono::milliseconds(0)).empty());
-    CHECK_FALSE(replied);
-}

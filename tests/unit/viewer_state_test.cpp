@@ -5,6 +5,7 @@
 
 #include <simdjson.h>
 
+#include "apps/viewer/file_name.h"
 #include "apps/viewer/frame_header.h"
 #include "apps/viewer/layer_colors.h"
 #include "apps/viewer/packer.h"
@@ -48,27 +49,26 @@ TEST_CASE("every setting takes each of its choices or its bounds, gives it back,
 
 TEST_CASE(
     "what gathers is broken off for another view or another light, and for nothing that the same samples can show") {
-    const auto breaks_off = [](const char* name) {
-        ClientMessage message;
-        message.kind = MessageKind::Set;
-        message.name = name;
-        return begins_anew(message);
-    };
-    std::size_t count = 0;
+    std::string names;
     for (const ViewSetting& setting : view_settings()) {
         CAPTURE(setting.name);
         CHECK(std::string(setting.hint) != "");
-        count += breaks_off(setting.name);
+        const ViewState before;
+        ViewState after;
+        if (setting.kind == ViewSetting::Kind::Choice) {
+            for (const std::string& choice : setting.choices) set_view_setting(after, setting.name, choice);
+        } else {
+            set_view_setting(after, setting.name, setting.low);
+        }
+        if (begins_anew(before, after)) names += std::string(setting.name) + ' ';
+        CHECK_FALSE(begins_anew(after, after));
+        const std::string name = setting.name;
+        CHECK(is_shown_otherwise(before, after) == (name == "exposure" || name == "tone_map"));
     }
-    CHECK(count == 10);
-    for (const char* name : {"exposure", "exposed", "tone_map", "spp", "denoiser", "restir", "resolution_scale", "x"}) {
-        CHECK_FALSE(breaks_off(name));
-    }
-    ClientMessage message;
-    message.kind = MessageKind::Pick;
-    CHECK_FALSE(begins_anew(message));
-    message.kind = MessageKind::Orbit;
-    CHECK(begins_anew(message));
+    CHECK(names == "layer integrator max_depth mode fov focus structure walk rta ");
+    ViewState round; // the lens of this view is a pinhole
+    CHECK(set_view_setting(round, "aperture", 0.1) == "");
+    CHECK(begins_anew({}, round));
 }
 
 TEST_CASE("an exposure that is fixed stays where it was found, and one that is found begins without more or less") {
@@ -116,7 +116,8 @@ TEST_CASE("texts to the page are JSON") {
     scene.instances.push_back({.name = "<b>", .mesh = 0, .material = 0});
     ViewerStart start;
     start.scene = &scene;
-    start.record.scene.scene = "scene\n.gltf";
+    start.record.scene.scene = "/home/a user/scene\n.gltf";
+    start.about = {{"made up", "a \"light\""}};
     ShownFrame frame;
     frame.hash = "0123";
     frame.stages = {{"render", 1.5}};
@@ -132,7 +133,19 @@ TEST_CASE("texts to the page are JSON") {
         simdjson::dom::parser parser;
         std::string_view type;
         CHECK_MESSAGE(parser.parse(text)["type"].get_string().get(type) == simdjson::SUCCESS, text);
+        CHECK_MESSAGE(text.find("a user") == std::string::npos, text); // nobody is told where the file lies
     }
+}
+
+TEST_CASE("clients are told names of files, never where they lie") {
+    CHECK(file_name("/a/b c/d.gltf") == "d.gltf");
+    CHECK(file_name("d.gltf") == "d.gltf");
+    CHECK(file_name("../d.gltf") == "d.gltf");
+    CHECK(file_name("cornell-box") == "cornell-box");
+    CHECK(file_name("a/") == "a/");
+    CHECK(without_folder("/a/b/d.gltf: no such texture: /a/b/e.png", "/a/b/d.gltf") ==
+          "d.gltf: no such texture: e.png");
+    CHECK(without_folder("d.gltf: /x", "d.gltf") == "d.gltf: /x");
 }
 
 TEST_CASE("layers have the colours that they are described by") {

@@ -161,3 +161,37 @@ TEST_CASE("a path of the start leads the camera, and home is that path") {
     view.go_home(1.0, lens);
     CHECK(view.camera(lens) == before);
 }
+
+TEST_CASE("a view that is made up is made up again for another shape of the window, until somebody steps") {
+    const Scene scene;
+    StartCamera start;
+    start.framed = [](float aspect) {
+        CameraSource source;
+        source.target = Vec3{0, 0, 0};
+        source.camera.world_from_camera =
+            look_at({0, 0, 4 / aspect}, *source.target, {0, 1, 0}); // narrow: further away
+        return source;
+    };
+    start.camera = start.framed(2).camera;
+    start.pose = {{0, 0, 2}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0}};
+    start.at = [&](double) { return CameraSource{.camera = start.camera}; };
+    ViewCamera camera(start, scene);
+    Camera lens = start.camera;
+    const auto away = [&] { return camera.camera(lens).world_from_camera.translation.z; };
+    CHECK(away() == 2);
+    camera.fit(0.5f, lens);
+    CHECK(away() == 8);
+    CHECK(camera.is_said_by_pose()); // the flags give the same picture
+    camera.go_to(0.5, lens);         // time leaves it alone
+    CHECK(away() == 8);
+    ClientMessage zoom;
+    zoom.kind = MessageKind::Zoom;
+    zoom.steps = 1;
+    camera.step(zoom, lens, 1);
+    const float own = away();
+    CHECK(own < 8);
+    camera.fit(1, lens);
+    CHECK(away() == own);
+    camera.go_home(std::nullopt, lens);
+    CHECK(away() == 4);
+}

@@ -4,7 +4,13 @@
 /** @typedef {{kind: number, isFinal: boolean, frame: number, input: number, samples: number, width: number,
  *   height: number, fullWidth: number, fullHeight: number, offset: number, total: number}} Header */
 
+/** "open"; "trying": the connection is gone and is tried again; "lost": no more, until somebody asks for it; "ended": the
+ * viewer said that it ends; "refused": the viewer said why it takes this page no more.
+ * @typedef {"open" | "trying" | "lost" | "ended" | "refused"} LinkState */
+
 const kHeaderBytes = 32;
+const kSilentTries = 3, kMostTries = 12; // about 2 s, and half a minute
+const kGoingAway = 1001; // the code with which a viewer ends
 
 /** @param {ArrayBuffer} message @returns {Header | null} */
 export function readHeader(message) {
@@ -31,13 +37,12 @@ function pageKey() {
 
 export class Link {
   /** @param {{onText: (message: any) => void, onPicture: (header: Header, picture: ImageBitmap) => void,
-   *   onState: (state: "open" | "lost", reason: string) => void}} events */
+   *   onState: (state: LinkState, reason: string) => void}} events */
   constructor(events) {
     this.events = events;
     /** @type {WebSocket | null} */
     this.socket = null;
     this.tries = 0;
-    this.reason = ""; // why the connection went, as far as it was said
     this.newest = 0; // number of the newest message with a picture
     /** @type {{frame: number, parts: Uint8Array[], bytes: number} | null} */
     this.pieces = null;
@@ -53,23 +58,32 @@ export class Link {
     this.socket = socket;
     socket.onopen = () => {
       this.tries = 0;
-      this.reason = "";
       this.pieces = null;
       this.send({ type: "hello", key: pageKey() });
       this.events.onState("open", "");
     };
     socket.onmessage = (event) => this.receive(event.data);
-    socket.onclose = (event) => this.lost(event.reason);
+    socket.onclose = (event) => this.lost(event.code, event.reason);
   }
 
-  /** @param {string} reason */
-  lost(reason) {
+  /** What drops on the way is tried again, without a word at first. What the viewer said is not: it will not take it back.
+   * @param {number} code @param {string} reason */
+  lost(code, reason) {
     this.socket = null;
     this.sentAt.clear();
+    if (code === kGoingAway && reason) return this.events.onState("ended", reason);
+    if (reason) return this.events.onState("refused", reason);
     this.tries += 1;
-    this.reason = reason || this.reason;
-    this.events.onState("lost", this.reason);
+    if (this.tries > kMostTries) return this.events.onState("lost", "");
+    if (this.tries > kSilentTries) this.events.onState("trying", "");
     setTimeout(() => this.open(), Math.min(3000, 200 * 1.6 ** this.tries));
+  }
+
+  /** Somebody asks for it. */
+  tryAgain() {
+    if (this.socket) return;
+    this.tries = kSilentTries;
+    this.open();
   }
 
   /** @param {object} message */

@@ -1,9 +1,12 @@
 // The page of pertev view: draws the pictures that come, sends what keys and mouse ask for, shows the panel.
 
+import { showGone } from "./gone.js";
+import { makeGroup, remember, remembered } from "./groups.js";
 import { Controls, kKeys } from "./keys.js";
 import { Link } from "./link.js";
+import { People } from "./people.js";
 import { Settings, element, make, showRows } from "./panel.js";
-import { watchRate } from "./screen.js";
+import { watchRate, watchShape, windowShape } from "./screen.js";
 import { Recorder, TimeLine } from "./time.js";
 
 // The key is in a cookie now: it need not stand in the address, where others may read it.
@@ -18,13 +21,13 @@ let picture = null;
 let fullWidth = 16, fullHeight = 9;
 /** @type {any} */
 let state = null;
-/** @type {{you: number, steers: number, people: {id: number, asks: boolean}[]}} */
-let people = { you: 0, steers: 0, people: [] };
+let sceneName = "";
 /** @type {{x: number, y: number} | null} */
 let mark = null;
 const shown = { times: /** @type {number[]} */ ([]), latency: 0, lastInput: 0, final: false, samples: 0 };
 
-const link = new Link({ onText: receive, onPicture: receivePicture, onState: showLink });
+const link = new Link({ onText: receive, onPicture: receivePicture, onState: (now, reason) => showGone(now, reason, sceneName) });
+const people = new People(link);
 const settings = new Settings(element("settings"), set);
 const timeLine = new TimeLine(link);
 const recorder = new Recorder(link);
@@ -88,16 +91,19 @@ function pictureRate() {
 function receive(message) {
   switch (message.type) {
     case "welcome":
+      sceneName = message.scene;
       element("scene").textContent = message.scene;
       document.title = `${message.scene} – Pertev`;
       settings.build(message.settings);
       buildButtons(message.cameras);
+      showRows(element("about"), message.about, (name) => makeGroup(name, `about-${name}`, false));
       if (state) receive(state);
       break;
     case "people":
-      people = message;
-      showPeople();
+      people.show(message);
+      for (const part of [settings, timeLine, recorder]) part.allow(people.steers());
       tellRate();
+      tellShape();
       break;
     case "state":
       state = message;
@@ -125,7 +131,7 @@ function receive(message) {
 /** Of its group; rows of one group stay as they are.
  * @param {string[]} row */
 function order(row) {
-  return ["Now", "Frames", "Rays", "Stages"].indexOf(row[0]);
+  return ["Now", "Scene", "Frames", "Rays", "Stages"].indexOf(row[0]);
 }
 
 function showReadings() {
@@ -138,35 +144,13 @@ function showReadings() {
   const rows = [...state.rows];
   rows.push(...own);
   rows.sort((a, b) => order(a) - order(b));
-  showRows(element("readings"), rows);
+  showRows(element("readings"), rows, (name) => makeGroup(name, `numbers-${name}`, name === "Now"));
   const words = /** @type {Record<string, string>} */ ({ moving: "moving", gathering: "gathering samples", done: "done" });
   element("phase").textContent = `${words[state.phase] ?? state.phase} · ${state.samples} of ${state.spp}`;
   element("done").style.width = `${Math.min(100, (100 * state.samples) / Math.max(state.spp, 1))}%`;
   document.body.dataset.phase = state.phase;
   document.body.dataset.hash = state.hash;
   document.body.dataset.flags = state.flags;
-}
-
-function showPeople() {
-  const place = element("people"), steers = people.steers === people.you;
-  settings.allow(steers);
-  timeLine.allow(steers);
-  recorder.allow(steers);
-  document.body.dataset.steers = String(steers);
-  place.hidden = people.people.length < 2 && steers;
-  place.replaceChildren(make("h2", "Who is here"));
-  for (const person of people.people) {
-    const row = make("div", "", "row");
-    row.append(make("b", `viewer ${person.id}${person.id === people.you ? " (you)" : ""}`));
-    if (person.id === people.steers) {
-      row.append(make("span", "steers", "value"));
-    } else if (steers) {
-      row.append(button(person.asks ? "asks: hand over" : "hand over", () => link.send({ type: "hand", to: person.id })));
-    } else if (person.id === people.you) {
-      row.append(person.asks ? make("span", "asked", "value") : button("ask to steer", () => link.send({ type: "ask" })));
-    }
-    place.append(row);
-  }
 }
 
 /** @param {string} text @param {() => void} onClick */
@@ -206,7 +190,12 @@ let screenRate = 0; // pictures a second; 0: not known yet
 
 /** The viewer follows the screen of who steers. */
 function tellRate() {
-  if (screenRate > 0 && people.steers === people.you) link.send({ type: "rate", hz: Math.min(Math.max(screenRate, 1), 1000) });
+  if (screenRate > 0 && people.steers()) link.send({ type: "rate", hz: Math.min(Math.max(screenRate, 1), 1000) });
+}
+
+/** So does the picture's shape, which is that of the window. */
+function tellShape() {
+  if (people.steers()) link.send({ type: "shape", ...windowShape() });
 }
 
 let noticeTimer = 0;
@@ -217,17 +206,7 @@ function notify(text, kind = "note") {
   place.className = kind;
   place.hidden = false;
   clearTimeout(noticeTimer);
-  noticeTimer = setTimeout(() => { place.hidden = true; }, kind === "error" ? 8000 : 2500);
-}
-
-/** @param {"open" | "lost"} now @param {string} reason */
-function showLink(now, reason) {
-  const gone = element("gone");
-  gone.hidden = now === "open";
-  if (now === "open") return;
-  element("gone-text").textContent = reason
-    ? `It said: ${reason}. This page comes back by itself when the same viewer is there again.`
-    : "It has ended, or cannot be reached. This page comes back by itself when the same viewer is there again; a new one prints a new address.";
+  noticeTimer = setTimeout(() => { place.hidden = true; }, kind === "error" ? 8000 : Math.max(2500, 60 * text.length));
 }
 
 async function copyFlags() {
@@ -252,9 +231,16 @@ function save(format) {
 
 /** @param {string} name @param {string | number} value */
 function set(name, value) {
-  if (people.steers !== people.you) return notify("somebody else steers");
+  if (!people.steers()) return void link.sendInput({ type: "set", name, value }); // who steers sees the wish
   if (state) state.values[name] = value; // so that a key pressed twice counts twice before the viewer answers
   settings.wish(name, value, link.sendInput({ type: "set", name, value }));
+}
+
+/** @param {boolean} open */
+function showPanel(open) {
+  element("panel").hidden = !open;
+  element("panel-open").hidden = open;
+  remember("panel", open);
 }
 
 function toggleHelp() {
@@ -283,7 +269,7 @@ const actions = {
   BracketRight: () => state && set("exposure", state.values.exposure + 0.25),
   KeyC: () => void copyFlags(),
   KeyH: toggleHelp,
-  Tab: () => { element("panel").hidden = !element("panel").hidden; },
+  Tab: () => showPanel(element("panel").hidden),
   F12: () => { // some browsers take one download at a time
     save("png");
     setTimeout(() => save("exr"), 300);
@@ -294,6 +280,11 @@ for (let depth = 0; depth <= 9; ++depth) actions[`Digit${depth}`] = () => set("m
 const controls = new Controls(canvas, link, place, actions);
 buildHelp();
 addEventListener("resize", draw);
+watchShape(tellShape);
+showPanel(remembered("panel", innerWidth > 640)); // a phone shows the picture first
+element("panel-open").addEventListener("click", () => showPanel(true));
+element("panel-close").addEventListener("click", () => showPanel(false));
+element("gone-again").addEventListener("click", () => link.tryAgain());
 setInterval(showReadings, 500);
 watchRate((rate) => {
   screenRate = rate;

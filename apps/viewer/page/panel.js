@@ -1,6 +1,8 @@
 // The panel: rows of numbers and settings as the viewer describes them. Nothing here knows a single setting: a new one is
 // a row of the program's own table (apps/viewer/view_state.cpp).
 
+import { makeGroup } from "./groups.js";
+
 /** @typedef {{name: string, label: string, group: string, hint: string, kind: "choice" | "number" | "whole", choices: string[],
  *   low: number, high: number, step: number}} Setting */
 
@@ -20,19 +22,23 @@ export function make(tag, text, name = "") {
 }
 
 /** Rows of [group, label, value] under headings. Elements stay while the rows are the same, so that text can be marked.
- * @param {HTMLElement} place @param {[string, string, string][]} rows */
-export function showRows(place, rows) {
+ * @param {HTMLElement} place @param {[string, string, string][]} rows
+ * @param {(name: string) => HTMLElement} [groupFor] makes what holds a group's rows; without it there are headings */
+export function showRows(place, rows, groupFor) {
   const shape = rows.map((row) => row[0] + "\n" + row[1]).join("\n\n");
   if (place.dataset.shape !== shape) {
     place.dataset.shape = shape;
     place.replaceChildren();
-    let group = "";
+    let group = "", holder = place;
     for (const [name, label] of rows) {
-      if (name !== group) place.append(make("h2", name));
+      if (name !== group) {
+        if (groupFor) place.append((holder = groupFor(name)));
+        else place.append(make("h2", name));
+      }
       group = name;
       const row = make("div", "", "row reading");
-      row.append(make("span", label), make("span", "", label === "film hash" ? "value hash" : "value"));
-      place.append(row);
+      row.append(make("span", label), make("span", "", kMarked[label] ?? "value"));
+      holder.append(row);
     }
   }
   const values = place.querySelectorAll(".value");
@@ -40,6 +46,8 @@ export function showRows(place, rows) {
     if (values[i].textContent !== row[2]) values[i].textContent = row[2];
   });
 }
+
+const kMarked = /** @type {Record<string, string>} */ ({ "film hash": "value hash", "flags that make it": "value hash long" });
 
 /** Something that was asked for: until a state tells of it, older ones that are still on their way do not count. */
 export class Asked {
@@ -62,6 +70,7 @@ export class Asked {
 }
 
 const kPatience = 4000; // milliseconds
+const kOpenSettings = ["Picture", "Light"]; // at first
 
 export class Settings {
   /** @param {HTMLElement} place @param {(name: string, value: string | number) => void} onChange */
@@ -78,9 +87,12 @@ export class Settings {
   build(settings) {
     this.place.replaceChildren();
     this.fields.clear();
-    let group = "";
+    let group = "", holder = this.place;
     for (const setting of settings) {
-      if (setting.group !== group) this.place.append(make("h2", setting.group));
+      if (setting.group !== group) {
+        holder = makeGroup(setting.group, `settings-${setting.group}`, kOpenSettings.includes(setting.group));
+        this.place.append(holder);
+      }
       group = setting.group;
       const field = setting.kind === "choice" ? choiceField(setting) : numberField(setting);
       field.id = `setting-${setting.name}`;
@@ -91,7 +103,7 @@ export class Settings {
       const row = make("label", "", "row");
       row.title = setting.hint;
       row.append(make("span", setting.label), field);
-      this.place.append(row);
+      holder.append(row);
       this.fields.set(setting.name, field);
     }
   }

@@ -1,4 +1,5 @@
-// How often the screen shows a new picture: the browser calls back once for each.
+// What the viewer is to know of the screen: how often it shows a new picture, as the browser calls back once for each, and
+// the shape of the window.
 
 const kPictures = 60; // that a rate is told from
 
@@ -22,4 +23,21 @@ export function watchRate(tell) {
     tell(rate);
   };
   requestAnimationFrame(step);
+}
+
+const kSettles = 250; // milliseconds without a change, after which a window has its shape: each shape is a new picture
+
+/** Pixels of the screen that the window covers. */
+export function windowShape() {
+  const side = (/** @type {number} */ css) => Math.min(Math.max(Math.round(css * devicePixelRatio), 1), 65535);
+  return { width: side(innerWidth), height: side(innerHeight) };
+}
+
+/** @param {() => void} tell called when the window has got another shape */
+export function watchShape(tell) {
+  let timer = 0;
+  addEventListener("resize", () => {
+    clearTimeout(timer);
+    timer = setTimeout(tell, kSettles);
+  });
 }

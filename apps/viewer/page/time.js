@@ -1,6 +1,7 @@
 // The time line of a scene that moves, and the recorder of the camera's path. Both show what the viewer says and send
 // what is asked for; time and keys are the viewer's, so that all pages see the same.
 
+import { makeGroup } from "./groups.js";
 import { Asked, element, make } from "./panel.js";
 
 /** @typedef {import("./link.js").Link} Link */
@@ -62,7 +63,9 @@ export class TimeLine {
     seconds.append(make("span", "Seconds"), this.text);
     speed.append(make("span", "Speed"), this.speed);
     loops.append(make("span", "Begins anew at its end"), this.loops);
-    element("time").replaceChildren(make("h2", "Time"), line, seconds, speed, loops);
+    const group = makeGroup("Time", "time", true);
+    group.append(line, seconds, speed, loops);
+    element("time").replaceChildren(group);
     requestAnimationFrame(() => this.step());
   }
 
@@ -150,7 +153,9 @@ export class Recorder {
     const row = make("div", "", "row"), buttons = make("div", "", "pair");
     row.append(this.time, this.add);
     buttons.append(this.play, this.download);
-    element("recorder").replaceChildren(make("h2", "Path of the camera"), this.list, row, buttons);
+    const group = makeGroup("Path of the camera", "recorder", false);
+    group.append(this.list, row, buttons);
+    element("recorder").replaceChildren(group);
     this.allow(true);
   }
 

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/gltf/leave_out.h"
+#include "formats/gltf/mend_keys.h"
 #include "formats/parse_number.h"
 #include "scene/validate_nodes.h"
 
@@ -160,7 +162,7 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
         const JsonValue pointer = extension->at("pointer");
         std::optional<Target> found = pointed_at(document, pointer, scene);
         if (!found) {
-            messages.warn(
+            messages.leave_out(
                 fmt::format("{}: \"{}\" is not animated; expected a node's translation, rotation, scale or "
                             "weights, a camera's /perspective/yfov or /orthographic/ymag, or a light's color, "
                             "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle",
@@ -170,7 +172,7 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
     }
     const std::optional<JsonValue> node = target.find("node");
     if (!node) { // the format leaves such to extensions
-        messages.note(fmt::format("{}: the channel names no node and is left out", target.place()));
+        messages.leave_out(fmt::format("{}: the channel names no node and is left out", target.place()));
         return std::nullopt;
     }
     const uint32_t index = document.index_into("nodes", *node);
@@ -219,58 +221,88 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
     return channel;
 }
 
+/// None, after a warning, where the member is no array.
+std::vector<JsonValue> elements_or_none(const JsonValue& object, std::string_view key, Messages& messages) {
+    std::vector<JsonValue> elements;
+    read_or_leave_out(fmt::format("{}/{}", object.pointer(), key), messages,
+                      [&] { elements = object.elements_of(key); });
+    return elements;
+}
+
+std::vector<JsonValue> animations_of(const Document& document, Messages& messages) {
+    return elements_or_none(document.root(), "animations", messages);
+}
+
 } // namespace
 
-std::set<uint32_t> nodes_with_animated_weights(const Document& document) {
+std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips) {
     std::set<uint32_t> nodes;
-    for (const JsonValue& animation : document.root().elements_of("animations")) {
-        for (const JsonValue& channel : animation.elements_of("channels")) {
-            const JsonValue target = channel.at("target");
-            if (const auto extension = target.extension("KHR_animation_pointer")) {
-                const std::string pointer = extension->string_or("pointer", "");
-                if (const auto node = node_of_pointer(document, pointer, "weights")) nodes.insert(*node);
-            } else if (const auto node = target.find("node"); node && target.string_or("path", "") == "weights") {
-                nodes.insert(document.index_into("nodes", *node));
-            }
+    const auto look_at = [&](const JsonValue& channel) {
+        const JsonValue target = channel.at("target");
+        if (const auto extension = target.extension("KHR_animation_pointer")) {
+            const std::string pointer = extension->string_or("pointer", "");
+            if (const auto node = node_of_pointer(document, pointer, "weights")) nodes.insert(*node);
+        } else if (const auto node = target.find("node"); node && target.string_or("path", "") == "weights") {
+            nodes.insert(document.index_into("nodes", *node));
+        }
+    };
+    Messages unsaid; // read_animations tells what cannot be read
+    auto clip = clips.begin();
+    for (const JsonValue& animation : animations_of(document, unsaid)) {
+        if (!(clip++)->plays) continue;
+        for (const JsonValue& channel : elements_or_none(animation, "channels", unsaid)) {
+            read_or_leave_out(channel, unsaid, [&] { look_at(channel); });
         }
     }
     return nodes;
 }
 
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages) {
-    for (const JsonValue& source : document.root().elements_of("animations")) {
+void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& said) {
+    auto clip = scene.clips.begin();
+    Messages none; // what is wrong with the list was said when clips were chosen
+    for (const JsonValue& source : animations_of(document, none)) {
+        Messages unsaid; // of a clip that does not play
+        Messages& messages = clip->plays ? said : unsaid;
         Animation animation;
-        animation.name = source.string_or("name", "");
+        animation.name = clip->name;
         animation.origin = source.pointer();
         buffers.charge(animation.name.size() + animation.origin.size(), source);
-        const std::vector<JsonValue> samplers = source.elements_of("samplers");
+        const std::vector<JsonValue> samplers = elements_or_none(source, "samplers", messages);
         std::set<std::pair<uint32_t, AnimatedPart>> taken;
-        for (const JsonValue& entry : source.elements_of("channels")) {
+        const auto read_channel = [&](const JsonValue& entry) {
             const JsonValue place = entry.at("target");
             const std::optional<Target> target = read_target(document, place, scene, messages);
-            if (!target || target->indices.empty()) continue;
+            if (!target || target->indices.empty()) return;
             AnimationChannel channel = read_keys(document, buffers, entry.at("sampler"), samplers, *target, scene);
-            if (!taken.emplace(target->indices[0], target->part).second) {
-                if (!target->factor) {
-                    throw place.error("an earlier channel of the animation has this node and path; expected one");
-                }
-                messages.warn(fmt::format("{}: colour and intensity of one light are animated together, of which the "
-                                          "first alone is played",
-                                          place.place()));
-                continue;
-            }
             channel.target = target->indices[0];
+            if (const std::string mended = mend_keys(channel, channel.values.size() / channel.times.size());
+                !mended.empty()) {
+                messages.warn(fmt::format("{}: {}", entry.place(), mended));
+            }
             if (const std::string fault = fault_of(channel, scene); !fault.empty()) {
-                messages.warn(fmt::format("{}: {}; the channel is left out", entry.place(), fault));
-                continue;
+                messages.leave_out(fmt::format("{}: {}; the channel is left out", entry.place(), fault));
+                return;
+            }
+            if (!taken.emplace(target->indices[0], target->part).second) {
+                messages.leave_out(fmt::format("{}: {}; the channel is left out", place.place(),
+                                               target->factor
+                                                   ? "colour and intensity of one light are animated together, "
+                                                     "of which the first alone is played"
+                                                   : "an earlier channel of the animation has this node and "
+                                                     "path, and is played"));
+                return;
             }
             buffers.charge(channel.values.size() * target->indices.size() * sizeof(float), entry);
             for (const uint32_t index : target->indices) {
                 channel.target = index;
                 animation.channels.push_back(channel);
             }
+        };
+        for (const JsonValue& entry : elements_or_none(source, "channels", messages)) {
+            read_or_leave_out(entry, messages, [&] { read_channel(entry); });
         }
-        scene.animations.push_back(std::move(animation));
+        clip->end_s = animation.end_s();
+        if ((clip++)->plays) scene.animations.push_back(std::move(animation));
     }
 }
 

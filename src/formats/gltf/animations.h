@@ -5,20 +5,22 @@
 
 #include <cstdint>
 #include <set>
+#include <span>
 
 #include "formats/gltf/accessor.h"
 #include "scene/scene.h"
 
 namespace pertev::gltf {
 
-/// Nodes whose morph weights a channel changes. Looks at no more than that of the animations.
-std::set<uint32_t> nodes_with_animated_weights(const Document& document);
+/// Nodes whose morph weights a channel of a clip that plays changes. Looks at no more than that of the animations.
+std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips);
 
-/// Fills scene.animations; nodes, cameras and lights are there. Throws Error(BadInput) for what is no animation by the
-/// format (an index out of range, an accessor of the wrong type or out of its data, an unknown path or interpolation, a
-/// node or mesh that cannot be animated so, as many values as the interpolation does not take). A channel with numbers
-/// that mean nothing (times that do not rise, a quaternion of 0, a number that is not finite) is left out with a
-/// warning, and so is one that points at another property: a still picture does not need it.
+/// Fills scene.animations with the clips that play, and says in scene.clips when each clip ends; nodes, cameras, lights
+/// and clips are there. Nothing is said of channels of clips that do not play. A channel that cannot be read is left
+/// out with a warning: a still picture does not need it. It may be none by the format (an index out of range, an
+/// unknown path or interpolation, a node that cannot be animated so), hold numbers that mean nothing (a quaternion of
+/// 0, a number that is not finite), or change what an earlier one of its animation changes. Keys are mended
+/// (mend_keys).
 void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages);
 
 } // namespace pertev::gltf

@@ -4,6 +4,7 @@
 #include <meshoptimizer.h>
 
 #include "base/limits.h"
+#include "base/message_text.h"
 #include "base/read_file.h"
 #include "formats/gltf/uri.h"
 
@@ -15,26 +16,39 @@ constexpr uint64_t kMaxCodecRatio = 64;
 
 } // namespace
 
-Buffers::Buffers(const Document& document, const FileAccess& access)
+Buffers::Buffers(const Document& document, const FileAccess& access, Messages& messages)
     : document_(document), decompressed_(document.table("bufferViews").size()), file_bytes_(document.file_bytes()) {
     const std::vector<JsonValue>& buffers = document.table("buffers");
-    for (std::size_t i = 0; i < buffers.size(); ++i) {
-        const uint64_t length = buffers[i].at("byteLength").to_unsigned();
-        std::optional<std::span<const std::byte>> bytes;
+    buffers_.resize(buffers.size());
+    faults_.resize(buffers.size());
+    const auto read = [&](std::size_t i) {
         if (const std::optional<JsonValue> uri = buffers[i].find("uri")) {
-            bytes = read_uri(*uri, access);
+            buffers_[i] = read_uri(*uri, access, messages);
         } else if (i == 0) {
-            bytes = document.binary_chunk();
+            buffers_[i] = document.binary_chunk();
         }
-        if (bytes && bytes->size() < length) {
-            throw buffers[i].error(fmt::format("byteLength is {}, but there are only {} bytes", length, bytes->size()));
+        const std::optional<JsonValue> length = buffers[i].find("byteLength");
+        if (!buffers_[i] || !length) return;
+        const uint64_t bytes = length->to_unsigned();
+        if (buffers_[i]->size() < bytes) {
+            messages.warn(fmt::format("{}: byteLength is {}, but there are only {} bytes", buffers[i].place(), bytes,
+                                      buffers_[i]->size()));
+        } else {
+            buffers_[i] = buffers_[i]->first(bytes);
         }
-        if (bytes) bytes = bytes->first(length);
-        buffers_.push_back(bytes);
+    };
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        try {
+            read(i);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            buffers_[i].reset();
+            faults_[i] = error;
+        }
     }
 }
 
-std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAccess& access) {
+std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAccess& access, Messages& messages) {
     const auto own = [&](std::vector<std::byte> bytes) -> std::span<const std::byte> {
         file_bytes_ += bytes.size();
         return owned_.emplace_back(std::move(bytes));
@@ -46,21 +60,27 @@ std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAcc
             throw uri.error("the data URI cannot be decoded; expected data:application/octet-stream;base64,...");
         return own(*std::move(bytes));
     }
-    const std::optional<std::string> reference = decode_path_uri(text);
-    if (!reference) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", text));
+    const std::optional<std::string> name = file_name_of_uri(text, document_.path());
+    if (!name) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", shortened(text)));
+    std::optional<std::filesystem::path> path;
     try {
-        const std::filesystem::path path = access.resolve(document_.path(), *reference);
-        const auto [entry, is_new] = by_path_.try_emplace(path);
-        if (is_new) entry->second = own(read_file(path));
-        return entry->second;
+        path = access.find(document_.path(), *name, messages);
+        if (path) {
+            const auto [entry, is_new] = by_path_.try_emplace(*path);
+            if (is_new) entry->second = own(read_file(*path));
+            return entry->second;
+        }
     } catch (const Error& error) {
         throw uri.error(error);
     }
+    throw uri.error(fmt::format("there is no file {}", shortened(*name)));
 }
 
 std::span<const std::byte> Buffers::slice(const JsonValue& place) const {
     const JsonValue reference = place.at("buffer");
-    const std::optional<std::span<const std::byte>>& buffer = buffers_[document_.index_into("buffers", reference)];
+    const uint32_t index = document_.index_into("buffers", reference);
+    if (faults_[index]) throw Error(*faults_[index]);
+    const std::optional<std::span<const std::byte>>& buffer = buffers_[index];
     if (!buffer) throw reference.error("this buffer has no data: neither a uri nor the binary chunk of a .glb");
     const uint64_t offset = place.unsigned_or("byteOffset", 0), length = place.at("byteLength").to_unsigned();
     if (offset > buffer->size() || length > buffer->size() - offset) {

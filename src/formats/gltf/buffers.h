@@ -25,9 +25,9 @@ struct BufferView {
 
 class Buffers {
 public:
-    /// Reads all buffers. Throws Error(BadInput) for one that is missing, too short or badly encoded. A buffer without
-    /// data (a placeholder) is an error only once something uses it.
-    Buffers(const Document& document, const FileAccess& access);
+    /// Reads all buffers. One that is missing or badly encoded is an error only once something uses it, and so is what
+    /// one that is too short lacks.
+    Buffers(const Document& document, const FileAccess& access, Messages& messages);
 
     /// The view that `reference` numbers. Throws Error(BadInput) when it leaves its buffer or cannot be decompressed.
     BufferView view(const JsonValue& reference);
@@ -39,14 +39,15 @@ public:
     uint64_t file_bytes() const { return file_bytes_; }
 
 private:
-    std::span<const std::byte> read_uri(const JsonValue& uri, const FileAccess& access);
+    std::span<const std::byte> read_uri(const JsonValue& uri, const FileAccess& access, Messages& messages);
     std::span<const std::byte> slice(const JsonValue& place) const;
     std::vector<std::byte> decompress(const JsonValue& compressed);
 
     const Document& document_;
     std::vector<std::vector<std::byte>> owned_;
     std::map<std::filesystem::path, std::span<const std::byte>> by_path_; // a file is read once
-    std::vector<std::optional<std::span<const std::byte>>> buffers_;      // nothing: a placeholder
+    std::vector<std::optional<std::span<const std::byte>>> buffers_;      // nothing: a placeholder, or why not is...
+    std::vector<std::optional<Error>> faults_;                            // ...here
     std::vector<std::optional<std::vector<std::byte>>> decompressed_;     // by view
     uint64_t file_bytes_ = 0, charged_bytes_ = 0;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "base/limits.h"
+
 namespace pertev::gltf {
 namespace {
 
@@ -31,6 +33,9 @@ Camera read_camera(const JsonValue& source) {
         const float half_height = abs(orthographic.at("ymag").to_float());
         if (!(half_width > 0 && half_height > 0))
             throw orthographic.error("xmag or ymag is 0; expected another number");
+        if (half_width > kMaxCoordinate || half_height > kMaxCoordinate) {
+            throw orthographic.error("xmag or ymag is above 2^40; expected a number of metres");
+        }
         camera.ortho_height = 2 * half_height;
         camera.aspect = half_width / half_height;
     } else {

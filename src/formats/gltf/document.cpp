@@ -5,24 +5,19 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/message_text.h"
+#include "formats/gltf/extensions.h"
 #include "formats/gltf/find_json_fault.h"
+#include "formats/gltf/leave_out.h"
 
 namespace pertev::gltf {
 namespace {
-
-constexpr std::array<std::string_view, 9> kSupportedExtensions = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_animation_pointer",
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",           "KHR_texture_transform"};
-
-// Of these only the cases that materials.cpp names; it warns of the others. A file that requires one is refused.
-constexpr std::array<std::string_view, 3> kSupportedInPart = {"KHR_materials_specular", "KHR_materials_transmission",
-                                                              "KHR_materials_volume"};
 
 constexpr std::array<std::string_view, 12> kTables = {"accessors", "bufferViews", "buffers", "cameras",
                                                       "images",    "materials",   "meshes",  "nodes",
@@ -39,10 +34,6 @@ uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
     return value;
 }
 
-bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 } // namespace
 
 Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
@@ -51,49 +42,69 @@ Document::Document(const std::filesystem::path& path, std::vector<std::byte> byt
         throw Error(ErrorCode::BadInput, fmt::format("{}: the file is empty; expected a glTF 2.0 document", file_));
     }
     if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
-        split_glb();
+        split_glb(messages);
     } else if (lower_case_extension(path) == ".glb") {
         throw Error(ErrorCode::BadInput,
                     fmt::format("{}: byte 0: expected the letters glTF, with which a GLB file starts", file_));
     }
     parse(json_chunk_);
-    check_version();
-    for (const std::string_view name : kTables) tables_.emplace(name, root().elements_of(name));
-    const std::optional<JsonValue> lights = root().extension("KHR_lights_punctual");
-    tables_.emplace("lights", lights ? lights->elements_of("lights") : std::vector<JsonValue>());
+    check_version(messages);
+    for (const std::string_view name : kTables) read_table(name, root(), messages);
+    std::optional<JsonValue> lights;
+    read_or_leave_out("/extensions", messages, [&] { lights = root().extension("KHR_lights_punctual"); });
+    if (lights) read_table("lights", *lights, messages);
     check_extensions(messages);
 }
 
-void Document::split_glb() {
+void Document::read_table(std::string_view name, const JsonValue& holder, Messages& messages) {
+    std::vector<JsonValue>& table = tables_[std::string(name)];
+    const std::optional<JsonValue> member = holder.find(name);
+    if (member) read_or_leave_out(*member, messages, [&] { table = member->elements(); });
+}
+
+/// Where the container ends: the header's length, where the file has it.
+std::size_t Document::glb_end(Messages& messages) const {
+    const uint32_t length = read_u32(bytes_, 8);
+    if (length >= kHeaderBytes && length <= bytes_.size()) return length;
+    messages.warn(fmt::format("{}: byte 8: the header says {} bytes, but the file has {}; these are read", file_,
+                              length, bytes_.size()));
+    return bytes_.size();
+}
+
+void Document::split_glb(Messages& messages) {
     const auto fail = [&](std::size_t at, const std::string& what) {
         return Error(ErrorCode::BadInput, fmt::format("{}: byte {}: {}", file_, at, what));
     };
     if (bytes_.size() < kHeaderBytes) throw fail(bytes_.size(), "the file ends within the GLB header of 12 bytes");
-    const uint32_t version = read_u32(bytes_, 4), length = read_u32(bytes_, 8);
+    const uint32_t version = read_u32(bytes_, 4);
     if (version != 2) throw fail(4, fmt::format("GLB container version {}; expected 2", version));
-    if (length > bytes_.size() || length < kHeaderBytes) {
-        throw fail(8, fmt::format("the header says {} bytes, but the file has {}; it is cut off or damaged", length,
-                                  bytes_.size()));
-    }
-    const std::span<const std::byte> glb(bytes_.data(), length);
+    const std::size_t end = glb_end(messages);
+    const std::span<const std::byte> glb(bytes_);
     bool has_json = false;
-    for (std::size_t at = kHeaderBytes; at < glb.size();) {
-        if (glb.size() - at < kChunkHeaderBytes) throw fail(at, "the file ends within a chunk's header of 8 bytes");
+    for (std::size_t at = kHeaderBytes; bytes_.size() - at >= kChunkHeaderBytes;) {
         const uint32_t size = read_u32(glb, at), type = read_u32(glb, at + 4);
+        // What follows the end is none of it, but for the binary chunk where the header counts the JSON alone.
+        if (at >= end && (type != kBinaryChunk || binary_chunk_)) break;
         const std::size_t begin = at + kChunkHeaderBytes, available = glb.size() - begin;
-        if (size > available) {
-            throw fail(at, fmt::format("the chunk says {} bytes, but {} are left; the file is cut off or damaged", size,
-                                       available));
-        }
         if (!has_json && type != kJsonChunk) throw fail(at, "the first chunk of a GLB file must be JSON");
+        if (size > available) {
+            messages.leave_out(fmt::format("{}: byte {}: the chunk says {} bytes, but {} are left; the file is cut off "
+                                           "or damaged, and what is missing is left out",
+                                           file_, at, size, available));
+        }
+        const std::span<const std::byte> chunk = glb.subspan(begin, std::min<std::size_t>(size, available));
         if (!has_json)
-            json_chunk_ = glb.subspan(begin, size);
+            json_chunk_ = chunk;
         else if (type == kBinaryChunk && !binary_chunk_)
-            binary_chunk_ = glb.subspan(begin, size);
+            binary_chunk_ = chunk;
         has_json = true;
-        at = begin + size;
+        at = begin + chunk.size();
     }
     if (!has_json) throw fail(kHeaderBytes, "there is no JSON chunk");
+    // Spaces fill the chunk up; some exporters write zero bytes.
+    while (!json_chunk_.empty() && json_chunk_.back() == std::byte{}) {
+        json_chunk_ = json_chunk_.first(json_chunk_.size() - 1);
+    }
 }
 
 void Document::parse(std::span<const std::byte> json) {
@@ -122,8 +133,8 @@ Error Document::bad_json(std::string_view text, simdjson::error_code failure) co
     return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what));
 }
 
-void Document::check_version() const {
-    const auto parts = [](const JsonValue& value) {
+void Document::check_version(Messages& messages) const {
+    const auto parts = [&](const JsonValue& value) {
         const std::string_view text = value.to_string();
         std::array<unsigned, 2> numbers = {0, 0}; // major, minor
         const char *begin = text.data(), *end = begin + text.size();
@@ -133,40 +144,55 @@ void Document::check_version() const {
             const auto minor = std::from_chars(major.ptr + 1, end, numbers[1]);
             good = minor.ec == std::errc() && minor.ptr == end;
         }
-        if (!good) throw value.error(fmt::format("\"{}\" is not a version; expected \"2.0\"", text));
+        if (!good) {
+            messages.warn(
+                fmt::format("{}: \"{}\" is not a version; it is read as \"2.0\"", value.place(), shortened(text)));
+            numbers = {2, 0};
+        }
         return numbers;
     };
-    const JsonValue asset = root().at("asset"), version = asset.at("version");
-    if (parts(version)[0] != 2) {
-        throw version.error(fmt::format("glTF {}; this reader knows 2.0", version.to_string()));
+    const std::optional<JsonValue> asset = root().find("asset");
+    const std::optional<JsonValue> version = asset ? asset->find("version") : std::nullopt;
+    if (!version) {
+        messages.warn(
+            fmt::format("{}: \"asset\" with a \"version\" is missing; it is read as glTF 2.0", root().place()));
+        return;
     }
-    const std::optional<JsonValue> least = asset.find("minVersion");
+    if (parts(*version)[0] != 2) {
+        throw version->error(fmt::format("glTF {}; this reader knows 2.0", version->to_string()));
+    }
+    const std::optional<JsonValue> least = asset->find("minVersion");
     if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
-        throw least->error(fmt::format("the file needs glTF {}; this reader knows 2.0", least->to_string()));
+        messages.leave_out(fmt::format("{}: the file needs glTF {}; what 2.0 does not have is left out", least->place(),
+                                       least->to_string()));
     }
 }
 
 void Document::check_extensions(Messages& messages) const {
-    for (const JsonValue& name : root().elements_of("extensionsRequired")) {
-        if (is_one_of(kSupportedExtensions, name.to_string())) continue;
-        throw name.error(fmt::format("the file requires the extension {}, which is not supported; export it without "
-                                     "that extension",
-                                     name.to_string()));
-    }
-    std::string left_out;
-    for (const JsonValue& name : root().elements_of("extensionsUsed")) {
-        const std::string_view extension = name.to_string();
-        if (is_one_of(kSupportedExtensions, extension) || is_one_of(kSupportedInPart, extension)) continue;
-        left_out += fmt::format("{}{}", left_out.empty() ? "" : ", ", extension);
-    }
-    if (left_out.empty()) return;
-    messages.warn(fmt::format("{}: extensions that are not supported are left out: {}", file_, left_out));
+    std::set<std::string, std::less<>> told;
+    const auto check = [&](std::string_view list, const char* verb) {
+        const std::optional<JsonValue> names = root().find(list);
+        if (!names) return;
+        std::vector<JsonValue> elements;
+        read_or_leave_out(*names, messages, [&] { elements = names->elements(); });
+        for (const JsonValue& name : elements) {
+            read_or_leave_out(name, messages, [&] {
+                const std::string_view extension = name.to_string();
+                if (is_known_extension(extension) || !told.emplace(extension).second) return;
+                messages.leave_out(
+                    fmt::format("{}: the file {} the extension {}, which is not supported: it is left out",
+                                name.place(), verb, shortened(extension)));
+            });
+        }
+    };
+    check("extensionsRequired", "requires");
+    check("extensionsUsed", "uses");
 }
 
 const std::vector<JsonValue>& Document::table(std::string_view name) const {
+    static const std::vector<JsonValue> none;
     const auto found = tables_.find(name);
-    PERTEV_CHECK(found != tables_.end());
-    return found->second;
+    return found == tables_.end() ? none : found->second;
 }
 
 uint32_t Document::index_into(std::string_view name, const JsonValue& reference) const {

@@ -23,8 +23,8 @@ namespace pertev::gltf {
 
 class Document {
 public:
-    /// Parses the file. Throws Error(BadInput) when it is not glTF 2 or requires an extension that is not supported;
-    /// warns of each extension that the file uses without requiring it and that is not supported.
+    /// Parses the file. Throws Error(BadInput) when it is no JSON or of another glTF than 2. Warns of each extension
+    /// that the file requires or uses and that is left out.
     Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages);
     Document(const Document&) = delete; // its values point into it
     Document& operator=(const Document&) = delete;
@@ -45,10 +45,12 @@ public:
     }
 
 private:
-    void split_glb();
+    void split_glb(Messages& messages);
+    void read_table(std::string_view name, const JsonValue& holder, Messages& messages);
+    std::size_t glb_end(Messages& messages) const;
     void parse(std::span<const std::byte> json);
     Error bad_json(std::string_view text, simdjson::error_code failure) const;
-    void check_version() const;
+    void check_version(Messages& messages) const;
     void check_extensions(Messages& messages) const;
 
     std::filesystem::path path_;

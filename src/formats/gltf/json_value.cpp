@@ -1,5 +1,6 @@
 #include "formats/gltf/json_value.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -62,10 +63,11 @@ JsonValue JsonValue::child(std::string_view key, simdjson::dom::element element)
 }
 
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {
+    if (element_.is_null()) return std::nullopt;
     simdjson::dom::object object;
     if (element_.get(object)) throw error(fmt::format("{}; expected an object", type_name(element_)));
     simdjson::dom::element element;
-    if (object.at_key(key).get(element)) return std::nullopt;
+    if (object.at_key(key).get(element) || element.is_null()) return std::nullopt;
     return child(key, element);
 }
 
@@ -111,10 +113,8 @@ uint64_t JsonValue::to_unsigned() const {
 float JsonValue::to_float() const {
     double number = 0;
     if (element_.get(number)) throw error(fmt::format("{}; expected a number", type_name(element_)));
-    if (!(std::fabs(number) <= static_cast<double>(std::numeric_limits<float>::max()))) {
-        throw error(fmt::format("{}; expected a number that a 32-bit float can hold", number));
-    }
-    return static_cast<float>(number);
+    constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
+    return static_cast<float>(std::clamp(number, -largest, largest));
 }
 
 double JsonValue::to_double() const {

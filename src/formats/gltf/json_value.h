@@ -1,7 +1,8 @@
 #pragma once
 
 // One value of a JSON document together with where it stands, so that every error can name its file and JSON pointer.
-// All readings are checked: a value of another type, out of range or not finite is an Error(BadInput).
+// All readings are checked: a value of another type or out of range is an Error(BadInput). A member that is null counts
+// as one that is not there, and a null where an object is expected as one without members.
 //
 // A JsonValue is a view: the document that it comes from must outlive it.
 
@@ -33,7 +34,7 @@ public:
     /// `cause` with this place before it.
     Error error(const Error& cause) const;
 
-    /// Member of an object; nothing when it has none of that name.
+    /// Member of an object; nothing when it has none of that name, or null.
     std::optional<JsonValue> find(std::string_view key) const;
     JsonValue at(std::string_view key) const;
     /// /extensions/NAME of an object.
@@ -45,7 +46,7 @@ public:
 
     /// A whole number in [0, 2^53], also when written as 3.0.
     uint64_t to_unsigned() const;
-    /// A number that a float can hold.
+    /// A number; one beyond the largest float, as some exporters write for "no limit", becomes the largest float.
     float to_float() const;
     /// The same number, not rounded to a float.
     double to_double() const;

@@ -1,5 +1,7 @@
 #include "formats/gltf/light.h"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "math/portable_math.h"
@@ -7,20 +9,28 @@
 namespace pertev::gltf {
 namespace {
 
+constexpr float kNarrowestCone = 0x1p-10f; // radians
+
 void set_cone(float inner, float outer, Light& light) {
     light.cos_inner = cos(inner);
     light.cos_outer = min(cos(outer), light.cos_inner - kSharpestEdge);
 }
 
+/// Angles out of range are brought into it: the lamp is there with the cone that comes nearest.
 void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
-    const float inner = spot.float_or("innerConeAngle", 0), outer = spot.float_or("outerConeAngle", kPi / 4);
-    if (!(inner >= 0 && inner <= outer && outer > 0 && outer <= kPi / 2)) {
-        throw spot.error(fmt::format("cone angles {} and {}; expected 0 <= inner < outer <= pi / 2", inner, outer));
-    }
-    if (inner == outer) {
+    constexpr float widest = kPi / 2;
+    const float asked_inner = spot.float_or("innerConeAngle", 0),
+                asked_outer = spot.float_or("outerConeAngle", kPi / 4);
+    const float outer = asked_outer > 0 ? min(asked_outer, widest) : kNarrowestCone;
+    const float inner = clamp(asked_inner, 0.0f, outer);
+    if (asked_inner == asked_outer && inner == asked_inner && outer == asked_outer) {
         messages.warn(
             fmt::format("{}: inner and outer cone angle are both {}; expected inner < outer, the edge is sharp",
                         spot.place(), inner));
+    } else if (inner != asked_inner || outer != asked_outer) {
+        messages.warn(
+            fmt::format("{}: cone angles {} and {}; expected 0 <= inner < outer <= pi / 2, {} and {} are taken",
+                        spot.place(), asked_inner, asked_outer, inner, outer));
     }
     set_cone(inner, outer, light);
 }
@@ -49,7 +59,10 @@ Light read_light(const JsonValue& source, Messages& messages) {
     if (const std::optional<JsonValue> intensity = source.find("intensity")) check_not_negative(*intensity);
     for (const JsonValue& channel : source.elements_of("color")) check_not_negative(channel);
     const std::array<float, 3> color = source.floats_or<3>("color", {1, 1, 1});
-    light.intensity = source.float_or("intensity", 1) * Rgb{color[0], color[1], color[2]};
+    constexpr float largest = std::numeric_limits<float>::max();
+    const float intensity = source.float_or("intensity", 1);
+    light.intensity = {min(intensity * color[0], largest), min(intensity * color[1], largest),
+                       min(intensity * color[2], largest)};
     light.range = source.float_or("range", 0);
     if (light.range < 0) throw source.at("range").error("expected a number above 0");
     if (light.kind != LightKind::Spot) return light;

@@ -1,6 +1,10 @@
 #include "formats/gltf/materials.h"
 
+#include <limits>
+
 #include <fmt/format.h>
+
+#include "formats/gltf/leave_out.h"
 
 namespace pertev::gltf {
 namespace {
@@ -22,9 +26,17 @@ uint32_t Materials::material_of(const JsonValue& primitive) {
     const std::optional<JsonValue> reference = primitive.find("material");
     if (reference && textures_ != nullptr) {
         const uint32_t index = document_.index_into("materials", *reference);
-        if (!by_index_[index]) by_index_[index] = add(read(document_.table("materials")[index]));
+        if (!by_index_[index]) {
+            const std::size_t pending = pending_.size();
+            by_index_[index] = add(read(document_.table("materials")[index]));
+            if (pending_.size() > pending) pending_.back().material = *by_index_[index];
+        }
         return *by_index_[index];
     }
+    return default_material();
+}
+
+uint32_t Materials::default_material() {
     if (!default_) {
         default_ = add(textures_ == nullptr ? Material() : make_default_material());
     }
@@ -38,33 +50,79 @@ uint32_t Materials::add(Material material) {
 
 Material Materials::read(const JsonValue& source) {
     Material material = make_default_material();
-    material.name = source.string_or("name", "");
     material.origin = source.pointer();
+    const std::string what = fmt::format("this property of {}", source.pointer());
+    const auto attempt = [&](const auto& part) { read_or_leave_out(what, messages_, part); };
+    attempt([&] { material.name = source.string_or("name", ""); });
     if (const std::optional<JsonValue> pbr = source.find("pbrMetallicRoughness")) {
-        read_metallic_roughness(*pbr, material);
+        read_or_leave_out(*pbr, messages_, [&] { read_metallic_roughness(*pbr, material); });
     }
-    read_alpha(source, material);
-    material.ior = read_ior(source);
-    read_specular(source, material);
-    read_transmission(source, material);
-    if (source.extension("KHR_materials_unlit")) material.kind = MaterialKind::Unlit;
-
-    float strength = 1;
-    if (const std::optional<JsonValue> extension = source.extension("KHR_materials_emissive_strength")) {
-        strength = extension->float_or("emissiveStrength", 1);
-        if (strength < 0) throw extension->at("emissiveStrength").error("expected a number of at least 0");
-    }
-    const std::array<float, 3> emission = source.floats_or<3>("emissiveFactor", {0, 0, 0});
-    material.emission = strength * Rgb{emission[0], emission[1], emission[2]};
-    material.emission_texture = read_texture(source, "emissiveTexture", true);
-    material.double_sided = material.two_sided_emission = source.bool_or("doubleSided", false);
-
-    material.normal_texture = read_texture(source, "normalTexture", false);
-    if (const std::optional<JsonValue> normal = source.find("normalTexture")) {
-        material.normal_scale = normal->float_or("scale", 1);
-    }
+    attempt([&] { read_alpha(source, material); });
+    attempt([&] { material.ior = read_ior(source); });
+    attempt([&] { read_specular(source, material); });
+    attempt([&] { read_transmission(source, material); });
+    attempt([&] { read_specular_glossiness(source, material); });
+    attempt([&] {
+        if (source.extension("KHR_materials_unlit")) material.kind = MaterialKind::Unlit;
+    });
+    attempt([&] { read_emission(source, material); });
+    attempt([&] { material.double_sided = material.two_sided_emission = source.bool_or("doubleSided", false); });
+    attempt([&] {
+        material.normal_texture = read_texture(source, "normalTexture", false);
+        if (const std::optional<JsonValue> normal = source.find("normalTexture")) {
+            material.normal_scale = normal->float_or("scale", 1);
+        }
+    });
     return material;
 }
+
+void Materials::read_emission(const JsonValue& source, Material& material) {
+    const std::array<float, 3> emission = source.floats_or<3>("emissiveFactor", {0, 0, 0});
+    material.emission = Rgb{emission[0], emission[1], emission[2]};
+    material.emission_texture = read_texture(source, "emissiveTexture", true);
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_emissive_strength");
+    if (!extension) return;
+    const float strength = extension->float_or("emissiveStrength", 1);
+    if (strength < 0) throw extension->at("emissiveStrength").error("expected a number of at least 0");
+    const Rgb e = strength * material.emission;
+    constexpr float largest = std::numeric_limits<float>::max();
+    material.emission = Rgb{min(e.r, largest), min(e.g, largest), min(e.b, largest)};
+}
+
+void Materials::read_specular_glossiness(const JsonValue& source, Material& material) {
+    const std::optional<JsonValue> extension = source.extension("KHR_materials_pbrSpecularGlossiness");
+    if (!extension) return;
+    const std::array<float, 4> diffuse = extension->floats_or<4>("diffuseFactor", {1, 1, 1, 1});
+    const std::array<float, 3> specular = extension->floats_or<3>("specularFactor", {1, 1, 1});
+    const SpecularGlossiness factors = {{diffuse[0], diffuse[1], diffuse[2]},
+                                        {specular[0], specular[1], specular[2]},
+                                        clamp(extension->float_or("glossinessFactor", 1), 0.0f, 1.0f)};
+    bool is_exact = false;
+    const MetallicRoughness converted = metallic_roughness_of(factors, is_exact);
+    material.base_color = converted.base_color;
+    material.alpha = diffuse[3];
+    material.metallic = converted.metallic;
+    material.roughness = converted.roughness;
+    material.ior = converted.ior;
+    material.metallic_texture = material.roughness_texture = {};
+    // Without any reflection at the surface it is Lambert's law.
+    material.kind = converted.ior == 1 ? MaterialKind::Diffuse : MaterialKind::MetallicRoughness;
+    material.base_color_texture = read_texture(*extension, "diffuseTexture", true);
+    const TextureRef both = read_texture(*extension, "specularGlossinessTexture", false);
+    if (both.has_image() || (!is_exact && material.base_color_texture.has_image())) {
+        material.roughness_texture = both;
+        pending_.push_back({.material = 0, .factors = factors, .place = extension->place()});
+        is_exact = false;
+    }
+    if (is_exact) return;
+    messages_.leave_out(
+        fmt::format("{}: the material is converted to metal and roughness: what of its specular colour "
+                    "such a surface does not have, as coloured reflections of what is no metal, is left "
+                    "out",
+                    extension->place()));
+}
+
+void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, messages_); }
 
 void Materials::read_metallic_roughness(const JsonValue& pbr, Material& material) {
     const std::array<float, 4> color = pbr.floats_or<4>("baseColorFactor", {1, 1, 1, 1});
@@ -99,9 +157,9 @@ void Materials::read_specular(const JsonValue& material, Material& result) const
         result.kind = MaterialKind::Diffuse;
         return;
     }
-    messages_.warn(fmt::format("{}: KHR_materials_specular is left out, but for a specularFactor of 0 with a "
-                               "metallicFactor of 0",
-                               document_.file()));
+    messages_.leave_out(fmt::format("{}: KHR_materials_specular is left out, but for a specularFactor of 0 with a "
+                                    "metallicFactor of 0",
+                                    extension->place()));
 }
 
 void Materials::read_transmission(const JsonValue& material, Material& result) const {
@@ -111,16 +169,17 @@ void Materials::read_transmission(const JsonValue& material, Material& result) c
     const std::optional<JsonValue> volume = material.extension("KHR_materials_volume");
     const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
     if (factor != 1 || transmission->find("transmissionTexture") || !is_solid || result.metallic != 0) {
-        messages_.warn(fmt::format("{}: KHR_materials_transmission is left out, and the material opaque, but for solid "
-                                   "glass: a transmissionFactor of 1 without texture, a thicknessFactor above 0 and a "
-                                   "metallicFactor of 0",
-                                   document_.file()));
+        messages_.leave_out(
+            fmt::format("{}: KHR_materials_transmission is left out, and the material opaque, but for solid "
+                        "glass: a transmissionFactor of 1 without texture, a thicknessFactor above 0 and a "
+                        "metallicFactor of 0",
+                        transmission->place()));
         return;
     }
     result.kind = MaterialKind::Dielectric;
     if (volume->find("attenuationDistance")) {
-        messages_.warn(fmt::format("{}: glass does not absorb: the attenuation of KHR_materials_volume is left out",
-                                   document_.file()));
+        messages_.leave_out(fmt::format(
+            "{}: glass does not absorb: the attenuation of KHR_materials_volume is left out", volume->place()));
     }
 }
 
@@ -136,8 +195,9 @@ float Materials::read_ior(const JsonValue& material) const {
 
 TextureRef Materials::read_texture(const JsonValue& parent, std::string_view key, bool is_srgb) {
     const std::optional<JsonValue> info = parent.find(key);
-    if (!info) return {};
-    TextureRef texture = textures_->read(*info);
+    TextureRef texture;
+    if (!info) return texture;
+    read_or_leave_out(*info, messages_, [&] { texture = textures_->read(*info); });
     texture.is_srgb = is_srgb;
     return texture;
 }

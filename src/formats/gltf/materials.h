@@ -1,15 +1,17 @@
 #pragma once
 
 // glTF materials as Scene materials, in the order of their first use; those that nothing uses are not read.
+// A property that cannot be read is left out, and the rest of the material is read.
 //
-// Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit. Of
-// KHR_materials_specular a weight of 0 on what is no metal: that takes the coat off and leaves Lambert's law. Of
-// KHR_materials_transmission and _volume solid clear glass.
-// Occlusion textures are not read: a path tracer computes what they approximate.
+// Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit,
+// KHR_materials_pbrSpecularGlossiness by conversion. Of KHR_materials_specular a weight of 0 on what is no metal: that
+// takes the coat off and leaves Lambert's law. Of KHR_materials_transmission and _volume solid clear glass. Occlusion
+// textures are not read: a path tracer computes what they approximate.
 
 #include <optional>
 #include <vector>
 
+#include "formats/gltf/specular_glossiness.h"
 #include "formats/gltf/textures.h"
 #include "scene/scene.h"
 
@@ -25,10 +27,18 @@ public:
     /// Index into scene.materials of the material of `primitive`; glTF's default material where it names none.
     uint32_t material_of(const JsonValue& primitive);
 
+    uint32_t default_material();
+
+    /// Finishes materials of KHR_materials_pbrSpecularGlossiness once the scene's images are decoded. `limit`: bytes
+    /// that the images which this makes may take.
+    void convert_textures(uint64_t limit);
+
 private:
     uint32_t add(Material material);
     Material read(const JsonValue& material);
     void read_metallic_roughness(const JsonValue& pbr, Material& material);
+    void read_emission(const JsonValue& source, Material& material);
+    void read_specular_glossiness(const JsonValue& source, Material& material);
     void read_alpha(const JsonValue& source, Material& material) const;
     void read_specular(const JsonValue& material, Material& result) const;
     void read_transmission(const JsonValue& material, Material& result) const;
@@ -40,6 +50,7 @@ private:
     Scene& scene_;
     Messages& messages_;
     std::vector<std::optional<uint32_t>> by_index_;
+    std::vector<PendingConversion> pending_;
     std::optional<uint32_t> default_; // glTF's default material, or the grey of geometry alone
 };
 

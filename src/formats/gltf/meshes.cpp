@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "formats/gltf/animations.h"
+#include "formats/gltf/leave_out.h"
 #include "formats/gltf/skin.h"
 #include "scene/shape_mesh.h"
 
@@ -25,7 +26,8 @@ std::string members_as_text(const JsonValue& object, std::initializer_list<std::
 Meshes::Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
                bool geometry_only, Messages& messages)
     : document_(document), buffers_(buffers), nodes_(nodes), materials_(materials), scene_(scene),
-      geometry_only_(geometry_only), messages_(messages), reshaped_nodes_(nodes_with_animated_weights(document)) {}
+      geometry_only_(geometry_only), messages_(messages),
+      reshaped_nodes_(nodes_with_animated_weights(document, scene.clips)) {}
 
 // Equal texts: equal parts at all times.
 std::string Meshes::use_key(uint32_t node) const {
@@ -56,12 +58,21 @@ std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
     std::vector<Part> parts;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const std::string part_name = primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name;
-        const std::optional<uint32_t> part = mesh_of(primitives[i], index, part_name);
+        std::optional<uint32_t> part;
+        read_or_leave_out(primitives[i], messages_, [&] { part = mesh_of(primitives[i], index, part_name); });
         if (!part) continue;
-        parts.push_back({*part, materials_.material_of(primitives[i])});
+        parts.push_back({*part, material_of(primitives[i])});
         check_texture_coordinates(parts.back());
     }
     return parts;
+}
+
+/// One that cannot be read leaves the default material.
+uint32_t Meshes::material_of(const JsonValue& primitive) {
+    std::optional<uint32_t> material;
+    read_or_leave_out(fmt::format("the material of {}", primitive.pointer()), messages_,
+                      [&] { material = materials_.material_of(primitive); });
+    return material ? *material : materials_.default_material();
 }
 
 void Meshes::check_texture_coordinates(const Part& part) {
@@ -83,9 +94,16 @@ std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t nod
     buffers_.charge(name.size(), primitive);
     read->mesh.name = name;
     read->mesh.origin = primitive.pointer();
+    const std::size_t meshes = scene_.meshes.size(), shapes = scene_.shapes.size();
     scene_.meshes.push_back(std::move(read->mesh));
-    if (!read->targets.empty() || scene_.nodes[node].skin != kNoSkin) {
-        add_shape(primitive, node, std::move(read->targets));
+    try {
+        if (!read->targets.empty() || scene_.nodes[node].skin != kNoSkin) {
+            add_shape(primitive, node, std::move(read->targets));
+        }
+    } catch (const Error&) { // its caller says so
+        scene_.meshes.resize(meshes);
+        scene_.shapes.resize(shapes);
+        throw;
     }
     entry->second = static_cast<uint32_t>(scene_.meshes.size() - 1);
     return entry->second;
@@ -117,8 +135,10 @@ const std::vector<Transform>& Meshes::joints_of(uint32_t index) {
     const auto [entry, is_new] = joints_.try_emplace(index);
     if (!is_new) return entry->second;
     Skin& skin = scene_.skins[index];
-    skin.joint_from_mesh =
-        read_inverse_bind_matrices(document_, buffers_, document_.table("skins")[index], skin.joints.size());
+    const JsonValue& source = document_.table("skins")[index];
+    read_or_leave_out(fmt::format("{}/inverseBindMatrices", source.pointer()), messages_, [&] {
+        skin.joint_from_mesh = read_inverse_bind_matrices(document_, buffers_, source, skin.joints.size());
+    });
     return entry->second = joint_transforms(skin, nodes_.world_from_node());
 }
 

@@ -23,16 +23,17 @@ public:
         uint32_t material; // index into scene.materials
     };
 
-    /// `scene` has its nodes and skins.
+    /// `scene` has its nodes, skins and clips.
     Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
            bool geometry_only, Messages& messages);
 
     /// The drawable parts of the mesh that node `index` (which has one) shows, at rest. With a skin they are in world
-    /// space.
+    /// space. A part that cannot be read is left out with a warning.
     const std::vector<Part>& parts_of(uint32_t index);
 
 private:
     std::vector<Part> read_parts(uint32_t index);
+    uint32_t material_of(const JsonValue& primitive);
     void check_texture_coordinates(const Part& part);
     std::optional<uint32_t> mesh_of(const JsonValue& primitive, uint32_t node, const std::string& name);
     void add_shape(const JsonValue& primitive, uint32_t node, std::vector<MorphTarget> targets);

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "formats/gltf/leave_out.h"
+
 namespace pertev::gltf {
 namespace {
 
@@ -25,47 +27,75 @@ std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node) {
 
 } // namespace
 
-NodeGraph::NodeGraph(const Document& document, Messages& messages) {
-    read_children(document);
-    place_nodes(document);
-    for_each_below(scene_roots(document, messages), [&](uint32_t node) { scene_nodes_.push_back(node); });
+NodeGraph::NodeGraph(const Document& document, uint32_t shown, Messages& messages) {
+    read_children(document, messages);
+    cut_cycles(document, messages);
+    place_nodes(document, messages);
+    for_each_below(scene_roots(document, shown, messages), [&](uint32_t node) { scene_nodes_.push_back(node); });
 }
 
-void NodeGraph::read_children(const Document& document) {
+void NodeGraph::read_children(const Document& document, Messages& messages) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
     children_.resize(nodes.size());
     nodes_.resize(nodes.size());
-    for (uint32_t node = 0; node < nodes.size(); ++node) {
-        for (const JsonValue& reference : nodes[node].elements_of("children")) {
-            const uint32_t child = document.index_into("nodes", reference);
-            if (nodes_[child].parent != kNoNode) {
-                throw reference.error(fmt::format("node {} is already a child of node {}; expected one parent", child,
-                                                  nodes_[child].parent));
-            }
-            nodes_[child].parent = node;
-            children_[node].push_back(child);
+    const auto read_child = [&](uint32_t node, const JsonValue& reference) {
+        const uint32_t child = document.index_into("nodes", reference);
+        if (nodes_[child].parent != kNoNode) {
+            throw reference.error(
+                fmt::format("node {} is already a child of node {}; expected one parent", child, nodes_[child].parent));
         }
+        nodes_[child].parent = node;
+        children_[node].push_back(child);
+    };
+    for (uint32_t node = 0; node < nodes.size(); ++node) {
+        read_or_leave_out(fmt::format("{}/children", nodes[node].pointer()), messages, [&] {
+            for (const JsonValue& reference : nodes[node].elements_of("children")) {
+                read_or_leave_out(reference, messages, [&] { read_child(node, reference); });
+            }
+        });
     }
 }
 
-void NodeGraph::place_nodes(const Document& document) {
+/// Where a node is its own ancestor, the link to its parent goes. What is then below no root of the scene is not shown.
+void NodeGraph::cut_cycles(const Document& document, Messages& messages) {
+    enum class State : uint8_t { Unseen, OnThisPath, Seen };
+    std::vector<State> states(nodes_.size(), State::Unseen);
+    std::vector<uint32_t> path;
+    for (uint32_t start = 0; start < nodes_.size(); ++start) {
+        path.clear();
+        uint32_t node = start;
+        for (; node != kNoNode && states[node] == State::Unseen; node = nodes_[node].parent) {
+            states[node] = State::OnThisPath;
+            path.push_back(node);
+        }
+        if (node != kNoNode && states[node] == State::OnThisPath) {
+            const uint32_t parent = nodes_[node].parent;
+            std::erase(children_[parent], node);
+            nodes_[node].parent = kNoNode;
+            messages.leave_out(
+                fmt::format("{}: the node is its own ancestor; expected a tree; its place below node {} is "
+                            "left out",
+                            document.table("nodes")[node].place(), parent));
+        }
+        for (const uint32_t seen : path) states[seen] = State::Seen;
+    }
+}
+
+void NodeGraph::place_nodes(const Document& document, Messages& messages) {
     const std::vector<JsonValue>& nodes = document.table("nodes");
     const std::vector<uint32_t> order = parents_first(nodes_);
-    if (order.size() < nodes.size()) {
-        std::vector<bool> is_placed(nodes.size());
-        for (const uint32_t node : order) is_placed[node] = true;
-        const auto first = std::ranges::find(is_placed, false) - is_placed.begin();
-        throw nodes[static_cast<std::size_t>(first)].error("the node is its own ancestor; expected a tree");
-    }
     for (uint32_t node = 0; node < nodes.size(); ++node) {
-        nodes_[node].name = nodes[node].string_or("name", "");
-        nodes_[node].pose = pose_of(nodes[node]);
+        const auto attempt = [&](const char* what, const auto& read) {
+            read_or_leave_out(fmt::format("{} of {}", what, nodes[node].pointer()), messages, read);
+        };
+        attempt("the name", [&] { nodes_[node].name = nodes[node].string_or("name", ""); });
+        attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node]); });
     }
     places_ = places_of(nodes_, order);
     world_from_node_ = world_from_nodes(places_, {0, 0, 0});
 }
 
-std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages& messages) const {
+std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t shown, Messages& messages) const {
     const std::vector<JsonValue>& scenes = document.table("scenes");
     std::vector<uint32_t> roots;
     if (scenes.empty()) { // a library of parts: show all of it
@@ -74,22 +104,30 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages&
         }
         return roots;
     }
-    const std::optional<JsonValue> chosen = document.root().find("scene");
-    const uint32_t scene = chosen ? document.index_into("scenes", *chosen) : 0;
-    if (scenes.size() > 1) {
-        messages.note(
-            fmt::format("{}: the file has {} scenes; number {} is shown", document.file(), scenes.size(), scene));
-    }
+    // Some exporters list children too. A child is shown once, where its parent puts it.
     std::vector<bool> is_listed(nodes_.size());
-    for (const JsonValue& reference : scenes[scene].elements_of("nodes")) {
+    const auto read_root = [&](const JsonValue& reference) {
         const uint32_t node = document.index_into("nodes", reference);
-        if (nodes_[node].parent != kNoNode || is_listed[node]) {
-            throw reference.error(fmt::format("node {} {}; expected each root once", node,
-                                              is_listed[node] ? "is listed twice" : "is a child of another node"));
-        }
+        if (!is_listed[node]) roots.push_back(node);
         is_listed[node] = true;
-        roots.push_back(node);
+    };
+    read_or_leave_out(fmt::format("{}/nodes", scenes[shown].pointer()), messages, [&] {
+        for (const JsonValue& reference : scenes[shown].elements_of("nodes")) {
+            read_or_leave_out(reference, messages, [&] { read_root(reference); });
+        }
+    });
+    std::vector<bool> is_below(nodes_.size()); // one that is listed
+    for (const uint32_t node : parents_first(nodes_)) {
+        const uint32_t parent = nodes_[node].parent;
+        is_below[node] = parent != kNoNode && (is_listed[parent] || is_below[parent]);
     }
+    std::erase_if(roots, [&](uint32_t node) {
+        if (!is_below[node]) return false;
+        messages.warn(fmt::format("{}: node {}, which the scene lists, is below another one that it lists; it is shown "
+                                  "once",
+                                  scenes[shown].place(), node));
+        return true;
+    });
     return roots;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "formats/gltf/leave_out.h"
+
 namespace pertev::gltf {
 namespace {
 
@@ -10,8 +12,11 @@ std::vector<std::size_t> count_targets(const Document& document) {
     std::vector<std::size_t> counts;
     for (const JsonValue& mesh : document.table("meshes")) {
         std::size_t most = 0;
-        for (const JsonValue& primitive : mesh.elements_of("primitives")) {
-            if (const auto targets = primitive.find("targets")) most = std::max(most, targets->elements().size());
+        try {
+            for (const JsonValue& primitive : mesh.elements_of("primitives")) {
+                if (const auto targets = primitive.find("targets")) most = std::max(most, targets->elements().size());
+            }
+        } catch (const Error&) { // meshes.cpp tells it of parts that are shown
         }
         counts.push_back(most);
     }
@@ -19,32 +24,52 @@ std::vector<std::size_t> count_targets(const Document& document) {
 }
 
 /// The weights at rest of the morph targets: the node's own, else its mesh's, by target.
-std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh) {
-    const JsonValue& source = node.find("weights") ? node : mesh;
+std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh, Messages& messages) {
+    const std::optional<JsonValue> own = node.find("weights"), source = own ? own : mesh.find("weights");
     std::vector<float> weights;
-    for (const JsonValue& weight : source.elements_of("weights")) weights.push_back(weight.to_float());
+    if (!source) return weights;
+    read_or_leave_out(*source, messages, [&] {
+        for (const JsonValue& weight : source->elements()) weights.push_back(weight.to_float());
+    });
     return weights;
 }
 
 } // namespace
 
-void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene) {
+void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, Messages& messages) {
+    std::vector<bool> is_skin; // has all its joints
     for (const JsonValue& skin : document.table("skins")) {
-        const std::vector<JsonValue> joints = skin.at("joints").elements();
         scene.skins.emplace_back();
-        for (const JsonValue& joint : joints) scene.skins.back().joints.push_back(document.index_into("nodes", joint));
+        is_skin.push_back(read_or_leave_out(skin, messages, [&] {
+            for (const JsonValue& joint : skin.at("joints").elements()) {
+                scene.skins.back().joints.push_back(document.index_into("nodes", joint));
+            }
+        }));
+        if (!is_skin.back()) scene.skins.back() = {};
     }
     const std::vector<JsonValue>& sources = document.table("nodes");
     const std::vector<std::size_t> targets = count_targets(document);
-    for (std::size_t i = 0; i < sources.size(); ++i) {
+    const auto read = [&](std::size_t i) {
         const std::optional<JsonValue> reference = sources[i].find("mesh");
-        if (!reference) continue;
-        if (const auto skin = sources[i].find("skin")) scene.nodes[i].skin = document.index_into("skins", *skin);
+        if (!reference) return;
+        if (const auto skin = sources[i].find("skin")) {
+            read_or_leave_out(*skin, messages, [&] {
+                const uint32_t index = document.index_into("skins", *skin);
+                if (is_skin[index]) scene.nodes[i].skin = index;
+            });
+        }
         const uint32_t mesh = document.index_into("meshes", *reference);
-        if (targets[mesh] == 0) continue;
+        if (targets[mesh] == 0) return;
         buffers.charge(targets[mesh] * sizeof(float), sources[i]);
-        scene.nodes[i].morph_weights = read_weights(sources[i], document.table("meshes")[mesh]);
+        scene.nodes[i].morph_weights = read_weights(sources[i], document.table("meshes")[mesh], messages);
         scene.nodes[i].morph_weights.resize(targets[mesh]);
+    };
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        try {
+            read(i);
+        } catch (const Error& error) { // place_nodes tells it of nodes that are shown
+            if (error.code() != ErrorCode::BadInput) throw;
+        }
     }
 }
 

@@ -9,8 +9,8 @@
 
 namespace pertev::gltf {
 
-/// Fills scene.skins, and the skin and morph weights of scene.nodes, which are there. Throws Error(BadInput) for an
-/// index out of range.
-void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene);
+/// Fills scene.skins, and the skin and morph weights of scene.nodes, which are there. A skin with a joint
+/// that is none is left out.
+void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, Messages& messages);
 
 } // namespace pertev::gltf

@@ -8,6 +8,7 @@
 #include "base/message_text.h"
 #include "formats/gltf/accessor.h"
 #include "formats/gltf/camera.h"
+#include "formats/gltf/leave_out.h"
 #include "formats/gltf/light.h"
 
 namespace pertev::gltf {
@@ -51,6 +52,10 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
     return placements;
 }
 
+bool is_near(const Transform& world_from_local) {
+    return is_finite(world_from_local) && max_component(abs(world_from_local.translation)) <= kMaxCoordinate;
+}
+
 // Of a scene without instances: what there is, and what would be right.
 std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
     const std::size_t meshes = document.table("meshes").size(), shown = nodes.scene_nodes().size();
@@ -67,16 +72,21 @@ std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
 
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Messages& messages) {
+    const std::size_t before = messages.left_out().size();
     const auto place_mesh = [&](const JsonValue& node, uint32_t index) {
         const std::vector<Meshes::Part>& parts = meshes.parts_of(index);
         const std::optional<JsonValue> instancing = node.extension("EXT_mesh_gpu_instancing");
-        const bool has_skin = node.find("skin").has_value(); // its joints have moved it already
+        const bool has_skin = scene.nodes[index].skin != kNoSkin; // its joints have moved it already
         std::vector<Transform> node_from_local(1);
-        if (instancing && !has_skin) node_from_local = read_placements(document, buffers, *instancing);
-        const std::string name = node.string_or("name", "");
+        if (instancing && !has_skin) {
+            read_or_leave_out(*instancing, messages,
+                              [&] { node_from_local = read_placements(document, buffers, *instancing); });
+        }
+        const std::string& name = scene.nodes[index].name;
         buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : node_from_local) {
             const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.place(index), m, {0, 0, 0});
+            if (!is_near(world_from_local)) throw node.error("the mesh lies further out than 2^40 metres");
             for (const Meshes::Part& part : parts) {
                 scene.instances.push_back({.name = name,
                                            .mesh = part.mesh,
@@ -91,35 +101,58 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         }
     };
 
+    const auto place_camera = [&](const JsonValue& node, const JsonValue& reference, uint32_t index,
+                                  const Transform& world_from_node) {
+        Camera camera = read_camera(document.item("cameras", reference));
+        if (camera.name.empty()) camera.name = scene.nodes[index].name;
+        camera.origin = node.pointer();
+        camera.node = index;
+        const std::optional<Transform> rigid = without_scale(world_from_node);
+        if (rigid && !is_near(*rigid)) throw node.error("the camera lies further out than 2^40 metres");
+        if (rigid) {
+            camera.world_from_camera = *rigid;
+            scene.cameras.push_back(std::move(camera));
+        } else {
+            messages.leave_out(fmt::format("{}: the camera is squashed to nothing and left out", node.place()));
+        }
+    };
+    const auto place_lamp = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
+        const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual");
+        if (!extension) return;
+        Light light = read_light(document.item("lights", extension->at("light")), messages);
+        if (light.name.empty()) light.name = scene.nodes[index].name;
+        light.origin = node.pointer();
+        light.node = index;
+        if (!is_near(world_from_node)) {
+            throw node.error("the light lies further out than 2^40 metres");
+        }
+        if (place_light(world_from_node, light)) {
+            scene.lights.push_back(std::move(light));
+        } else {
+            messages.leave_out(fmt::format("{}: the light is squashed to nothing and left out", node.place()));
+        }
+    };
     for (const uint32_t index : nodes.scene_nodes()) {
         const JsonValue& node = document.table("nodes")[index];
-        const Transform& world_from_local = nodes.world_from_node(index);
-        if (node.find("mesh")) place_mesh(node, index);
-        if (const std::optional<JsonValue> reference = node.find("camera")) {
-            Camera camera = read_camera(document.item("cameras", *reference));
-            if (camera.name.empty()) camera.name = node.string_or("name", "");
-            camera.origin = node.pointer();
-            camera.node = index;
-            if (const std::optional<Transform> rigid = without_scale(world_from_local)) {
-                camera.world_from_camera = *rigid;
-                scene.cameras.push_back(std::move(camera));
-            } else {
-                messages.warn(fmt::format("{}: the camera is squashed to nothing and left out", node.place()));
-            }
-        }
-        if (const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual")) {
-            Light light = read_light(document.item("lights", extension->at("light")), messages);
-            if (light.name.empty()) light.name = node.string_or("name", "");
-            light.origin = node.pointer();
-            light.node = index;
-            if (place_light(world_from_local, light)) {
-                scene.lights.push_back(std::move(light));
-            } else {
-                messages.warn(fmt::format("{}: the light is squashed to nothing and left out", node.place()));
-            }
-        }
+        const Transform& world_from_node = nodes.world_from_node(index);
+        const auto attempt = [&](const char* what, const auto& place) {
+            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), messages, place);
+        };
+        attempt("mesh", [&] {
+            if (node.find("mesh")) place_mesh(node, index);
+        });
+        attempt("camera", [&] {
+            if (const auto reference = node.find("camera")) place_camera(node, *reference, index, world_from_node);
+        });
+        attempt("light", [&] { place_lamp(node, index, world_from_node); });
     }
-    if (scene.instances.empty()) scene.no_instances = describe_nothing(document, nodes);
+    if (!scene.instances.empty()) return;
+    scene.no_instances = describe_nothing(document, nodes);
+    const std::vector<std::string> left_out = messages.left_out();
+    if (left_out.empty()) return;
+    // The first that was left out here, where meshes are read, tells why; else the first of all.
+    const std::size_t first = before < left_out.size() ? before : 0;
+    scene.no_instances += fmt::format("; left out: {}", left_out[first]);
 }
 
 } // namespace pertev::gltf

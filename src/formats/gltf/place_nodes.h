@@ -10,8 +10,8 @@
 
 namespace pertev::gltf {
 
-/// Appends to scene.instances, scene.lights and scene.cameras, in the order of the nodes. A camera or light that a
-/// node squashes to nothing is left out with a warning.
+/// Appends to scene.instances, scene.lights and scene.cameras, in the order of the nodes. What of them cannot
+/// be read, or a node squashes to nothing, is left out with a warning.
 void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Meshes& meshes, Scene& scene,
                  Messages& messages);
 

@@ -1,10 +1,13 @@
 #include "formats/gltf/primitive.h"
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
 
+#include "formats/gltf/extensions.h"
+#include "formats/gltf/leave_out.h"
 #include "formats/gltf/triangle_list.h"
 
 namespace pertev::gltf {
@@ -56,7 +59,7 @@ std::vector<Vec4> read_colors(const Accessor& accessor) {
     return colors;
 }
 
-void read_attributes(const PrimitiveRequest& request, const JsonValue& attributes, Mesh& mesh) {
+void read_attributes(const PrimitiveRequest& request, const JsonValue& attributes, Mesh& mesh, Messages& messages) {
     const AttributeReader reader(request, attributes);
     const auto positions = reader.find("POSITION", 0, {ElementType::Vec3});
     const uint64_t vertices = positions->count();
@@ -65,18 +68,24 @@ void read_attributes(const PrimitiveRequest& request, const JsonValue& attribute
     }
     mesh.positions = positions->read_vec3();
     if (vertices == 0) return;
-    if (const auto normals = reader.find("NORMAL", vertices, {ElementType::Vec3})) mesh.normals = normals->read_vec3();
+    // The shape is there without these.
+    const auto attempt = [&](const char* name, std::initializer_list<ElementType> types, const auto& take) {
+        read_or_leave_out(fmt::format("{}/{}", attributes.pointer(), name), messages, [&] {
+            if (const auto accessor = reader.find(name, vertices, types)) take(*accessor);
+        });
+    };
+    attempt("NORMAL", {ElementType::Vec3}, [&](const Accessor& normals) { mesh.normals = normals.read_vec3(); });
     if (request.geometry_only) return;
-    const auto tangents = reader.find("TANGENT", vertices, {ElementType::Vec4});
-    if (tangents && !mesh.normals.empty()) mesh.tangents = tangents->read_vec4(); // without normals they mean nothing
-    if (const auto uv = reader.find("TEXCOORD_0", vertices, {ElementType::Vec2})) mesh.uv[0] = uv->read_vec2();
-    if (const auto uv = reader.find("TEXCOORD_1", vertices, {ElementType::Vec2})) mesh.uv[1] = uv->read_vec2();
-    if (const auto colors = reader.find("COLOR_0", vertices, {ElementType::Vec3, ElementType::Vec4})) {
-        mesh.colors = read_colors(*colors);
-    }
+    attempt("TANGENT", {ElementType::Vec4}, [&](const Accessor& tangents) {
+        if (!mesh.normals.empty()) mesh.tangents = tangents.read_vec4(); // without normals they mean nothing
+    });
+    attempt("TEXCOORD_0", {ElementType::Vec2}, [&](const Accessor& uv) { mesh.uv[0] = uv.read_vec2(); });
+    attempt("TEXCOORD_1", {ElementType::Vec2}, [&](const Accessor& uv) { mesh.uv[1] = uv.read_vec2(); });
+    attempt("COLOR_0", {ElementType::Vec3, ElementType::Vec4},
+            [&](const Accessor& colors) { mesh.colors = read_colors(colors); });
 }
 
-std::vector<MorphTarget> read_targets(const PrimitiveRequest& request, const Mesh& mesh) {
+std::vector<MorphTarget> read_targets(const PrimitiveRequest& request, const Mesh& mesh, Messages& messages) {
     std::vector<MorphTarget> targets;
     for (const JsonValue& source : request.primitive.elements_of("targets")) {
         const AttributeReader reader(request, source);
@@ -85,9 +94,11 @@ std::vector<MorphTarget> read_targets(const PrimitiveRequest& request, const Mes
             return offsets ? offsets->read_vec3() : std::vector<Vec3>();
         };
         MorphTarget& target = targets.emplace_back();
-        target.positions = read("POSITION", mesh.positions.size());
-        target.normals = read("NORMAL", mesh.normals.size());
-        target.tangents = read("TANGENT", mesh.tangents.size());
+        read_or_leave_out(source, messages, [&] {
+            target.positions = read("POSITION", mesh.positions.size());
+            target.normals = read("NORMAL", mesh.normals.size());
+            target.tangents = read("TANGENT", mesh.tangents.size());
+        });
     }
     return targets;
 }
@@ -101,46 +112,65 @@ std::vector<uint32_t> read_corners(const PrimitiveRequest& request, std::size_t 
         return corners;
     }
     const Accessor accessor(request.document, request.buffers, *reference, {ElementType::Scalar});
-    std::vector<uint32_t> corners = accessor.read_integers();
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        if (corners[i] >= vertices) {
-            throw reference->error(
-                fmt::format("index {} is {}; expected less than {}, the number of vertices", i, corners[i], vertices));
-        }
+    return accessor.read_integers();
+}
+
+/// Leaves out the triangles with a corner that is no vertex.
+void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::vector<uint32_t>& indices,
+                         Messages& messages) {
+    const auto is_past = [&](uint32_t index) { return index >= vertices; };
+    const auto first = std::ranges::find_if(indices, is_past);
+    if (first == indices.end()) return;
+    const uint32_t index = *first;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        if (is_past(indices[i]) || is_past(indices[i + 1]) || is_past(indices[i + 2])) continue;
+        for (std::size_t c = 0; c < 3; ++c) indices[kept++] = indices[i + c];
     }
-    return corners;
+    const std::size_t dropped = (indices.size() - kept) / 3;
+    indices.resize(kept);
+    messages.leave_out(fmt::format("{}: index {} where there are {} vertices; {} with such a corner left out",
+                                   primitive.at("indices").place(), index, vertices,
+                                   dropped == 1 ? "the triangle" : fmt::format("the {} triangles", dropped)));
+}
+
+/// Whether the vertices are in a Draco stream alone.
+bool is_compressed_alone(const PrimitiveRequest& request, const JsonValue& position) {
+    if (!request.primitive.extension("KHR_draco_mesh_compression")) return false;
+    const JsonValue& accessor = request.document.item("accessors", position);
+    return !accessor.find("bufferView") && !accessor.find("sparse");
 }
 
 } // namespace
 
 std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages) {
-    const std::string& file = request.document.file();
+    const auto leave_out = [&](const std::string& what) {
+        messages.leave_out(fmt::format("{}: {}", request.primitive.place(), what));
+        return std::nullopt;
+    };
     const Topology topology = read_topology(request.primitive);
-    if (!draws_triangles(topology)) {
-        messages.warn(fmt::format("{}: a part made of points or lines is left out", file));
-        return std::nullopt;
-    }
+    if (!draws_triangles(topology)) return leave_out("a part made of points or lines is left out");
     const JsonValue attributes = request.primitive.at("attributes");
-    if (!attributes.find("POSITION")) {
-        messages.warn(fmt::format("{}: a part without positions is left out", file));
-        return std::nullopt;
+    const std::optional<JsonValue> position = attributes.find("POSITION");
+    if (!position) return leave_out("a part without positions is left out");
+    if (is_compressed_alone(request, *position)) {
+        constexpr std::string_view draco = "KHR_draco_mesh_compression";
+        return leave_out(fmt::format("a part compressed by {}, which is not supported, is left out{}", draco,
+                                     conversion_advice(draco, request.document.path())));
     }
     Primitive result;
     Mesh& mesh = result.mesh;
-    read_attributes(request, attributes, mesh);
-    result.targets = read_targets(request, mesh);
+    read_attributes(request, attributes, mesh, messages);
+    result.targets = read_targets(request, mesh, messages);
     std::vector<uint32_t> corners = read_corners(request, mesh.positions.size());
     if (topology == Topology::Triangles && corners.size() % 3 != 0) {
-        messages.warn(
-            fmt::format("{}: a list of triangles whose length is not a multiple of 3; the rest is left out", file));
+        leave_out("a list of triangles whose length is not a multiple of 3; the rest is left out");
     }
     if (topology != Topology::Triangles)
         request.buffers.charge(corners.size() * 3 * sizeof(uint32_t), request.primitive);
     mesh.indices = triangle_list(topology, std::move(corners));
-    if (mesh.indices.empty()) {
-        messages.warn(fmt::format("{}: a part without a whole triangle is left out", file));
-        return std::nullopt;
-    }
+    drop_triangles_past(mesh.positions.size(), request.primitive, mesh.indices, messages);
+    if (mesh.indices.empty()) return leave_out("a part without a whole triangle is left out");
     return result;
 }
 

@@ -27,7 +27,9 @@ struct Primitive {
     std::vector<MorphTarget> targets;
 };
 
-/// Nothing, after a warning, where the primitive draws no triangle: points, lines, no positions. Normals and tangents
+/// Nothing, after a warning, where the primitive draws no triangle: points, lines, no positions, a compression that is
+/// not supported. Throws Error(BadInput) where positions or indices cannot be read; of what else cannot be, a warning
+/// says that it is left out. Normals and tangents
 /// are as the file gives them; validate() brings them to unit length.
 std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages);
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "base/message_text.h"
+#include "formats/gltf/extensions.h"
+#include "formats/gltf/leave_out.h"
 #include "formats/gltf/uri.h"
 #include "math/portable_math.h"
 
@@ -26,12 +29,21 @@ Wrap read_wrap(const JsonValue& sampler, std::string_view key) {
     }
 }
 
+// Pictures of a kind that this reader does not decode.
+constexpr std::string_view kOtherImages[] = {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif",
+                                             "MSFT_texture_dds"};
+
+constexpr float kMostTransform = 0x1p39f;
+
 // The order is translation * rotation * scale. The rotation's sign is that of the extension's words, pictures and test
 // model (counter-clockwise in u right, v down); the GLSL in its text turns the other way (KhronosGroup/glTF #1563).
 void read_transform(const JsonValue& transform, TextureRef& texture) {
     const std::array<float, 2> offset = transform.floats_or<2>("offset", {0, 0});
     const std::array<float, 2> scale = transform.floats_or<2>("scale", {1, 1});
     const float rotation = transform.float_or("rotation", 0);
+    for (const float number : {offset[0], offset[1], scale[0], scale[1]}) {
+        if (abs(number) > kMostTransform) throw transform.error(fmt::format("{}; expected at most 2^39", number));
+    }
     const float s = sin(rotation), c = cos(rotation);
     texture.m00 = c * scale[0];
     texture.m01 = s * scale[1];
@@ -48,27 +60,39 @@ TextureRef Textures::read(const JsonValue& info) {
     TextureRef texture;
     uint64_t uv_set = info.unsigned_or("texCoord", 0);
     if (const std::optional<JsonValue> transform = info.extension("KHR_texture_transform")) {
-        uv_set = transform->unsigned_or("texCoord", uv_set);
-        read_transform(*transform, texture);
+        read_or_leave_out(*transform, messages_, [&] {
+            uv_set = transform->unsigned_or("texCoord", uv_set);
+            read_transform(*transform, texture);
+        });
     }
     if (const std::optional<JsonValue> sampler = source.find("sampler")) {
-        read_sampler(document_.item("samplers", *sampler), texture);
+        read_or_leave_out(*sampler, messages_, [&] { read_sampler(document_.item("samplers", *sampler), texture); });
     }
     if (uv_set > 1) {
-        messages_.warn(fmt::format("{}: set {} of texture coordinates; only 0 and 1 are supported, the texture is left "
-                                   "out",
-                                   info.place(), uv_set));
+        messages_.leave_out(fmt::format("{}: set {} of texture coordinates; only 0 and 1 are supported, the texture is "
+                                        "left out",
+                                        info.place(), uv_set));
         return {};
     }
     texture.uv_set = static_cast<uint8_t>(uv_set);
     const std::optional<JsonValue> reference = source.find("source");
     if (!reference) {
-        messages_.warn_of_missing(
-            fmt::format("{}: the texture has no image that is supported; it is left out", source.place()));
+        leave_out_without_image(source);
         return {};
     }
     texture.image = image(*reference);
     return texture;
+}
+
+void Textures::leave_out_without_image(const JsonValue& texture) {
+    for (const std::string_view extension : kOtherImages) {
+        if (!texture.extension(extension)) continue;
+        messages_.leave_out(fmt::format("{}: the texture has its picture by {} alone, which is not supported; it is "
+                                        "left out{}",
+                                        texture.place(), extension, conversion_advice(extension, document_.path())));
+        return;
+    }
+    messages_.leave_out(fmt::format("{}: the texture has no image that is supported; it is left out", texture.place()));
 }
 
 void Textures::read_sampler(const JsonValue& sampler, TextureRef& texture) const {
@@ -105,18 +129,17 @@ int32_t Textures::add_image(const JsonValue& image) {
     if (!uri) throw image.error("an image without data; expected \"uri\" or \"bufferView\"");
     const std::string_view text = uri->to_string();
     if (!is_data_uri(text)) {
-        const std::optional<std::string> path = decode_path_uri(text);
-        if (!path) throw uri->error(fmt::format("\"{}\"; expected a relative path or a data URI", text));
+        const std::optional<std::string> path = file_name_of_uri(text, document_.path());
+        if (!path) throw uri->error(fmt::format("\"{}\"; expected a relative path or a data URI", shortened(text)));
         try {
-            return loader_.add_file(document_.path(), *path);
+            return loader_.add_file(document_.path(), *path, uri->place());
         } catch (const Error& error) {
             throw uri->error(error);
         }
     }
     std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
     if (!bytes) {
-        messages_.warn_of_missing(
-            fmt::format("{}: the data URI cannot be decoded; the texture is left out", uri->place()));
+        messages_.leave_out(fmt::format("{}: the data URI cannot be decoded; the texture is left out", uri->place()));
         return kNoImage;
     }
     return loader_.add_bytes(name, embedded_.emplace_back(*std::move(bytes)));

@@ -24,12 +24,14 @@ public:
           images_(document.table("images").size()) {}
 
     /// The texture that `info`, a textureInfo, describes. Without an image (missing, of a kind that is not supported,
-    /// over a third set of texture coordinates) after a warning.
+    /// over a third set of texture coordinates) after a warning. Throws Error(BadInput) for one that is not described
+    /// as the format has it.
     TextureRef read(const JsonValue& info);
 
 private:
     int32_t image(const JsonValue& reference);
     int32_t add_image(const JsonValue& image);
+    void leave_out_without_image(const JsonValue& texture);
     void read_sampler(const JsonValue& sampler, TextureRef& texture) const;
 
     const Document& document_;

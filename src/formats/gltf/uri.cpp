@@ -1,9 +1,11 @@
 #include "formats/gltf/uri.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdint>
 #include <span>
+#include <system_error>
 
 namespace pertev::gltf {
 namespace {
@@ -56,28 +58,39 @@ int hex_digit(char c) {
     return -1;
 }
 
-std::optional<std::string> undo_percent_encoding(std::string_view text) {
+/// A '%' that starts no code stands for itself where `is_lenient`, else there is nothing.
+std::optional<std::string> undo_percent_encoding(std::string_view text, bool is_lenient) {
     std::string result;
     result.reserve(text.size());
     for (std::size_t i = 0; i < text.size(); ++i) {
         char c = text[i];
         if (c == '%') {
-            if (text.size() - i < 3) return std::nullopt;
-            const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
-            if (high < 0 || low < 0) return std::nullopt;
-            c = static_cast<char>(high * 16 + low);
-            i += 2;
+            const bool has_two = text.size() - i >= 3;
+            const int high = has_two ? hex_digit(text[i + 1]) : -1, low = has_two ? hex_digit(text[i + 2]) : -1;
+            if (high >= 0 && low >= 0) {
+                c = static_cast<char>(high * 16 + low);
+                i += 2;
+            } else if (!is_lenient) {
+                return std::nullopt;
+            }
         }
         result += c;
     }
     return result;
 }
 
-// "C:" is a scheme too: an absolute path of another system is no more a relative path than http: is.
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+bool starts_with_in_any_case(std::string_view text, std::string_view lower_case) {
+    return text.size() >= lower_case.size() &&
+           std::equal(lower_case.begin(), lower_case.end(), text.begin(), [](char a, char b) { return a == lower(b); });
+}
+
+// A scheme of one letter is a drive of another system.
 bool has_scheme(std::string_view uri) {
     for (std::size_t i = 0; i < uri.size(); ++i) {
         const char c = uri[i];
-        if (c == ':') return i > 0;
+        if (c == ':') return i > 1;
         const bool letter = std::isalpha(static_cast<unsigned char>(c)) != 0;
         const bool later = std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.';
         if (!letter && !(i > 0 && later)) return false;
@@ -85,17 +98,30 @@ bool has_scheme(std::string_view uri) {
     return false;
 }
 
+constexpr std::string_view kData = "data:", kFile = "file:", kBase64 = ";base64";
+
+/// RFC 8089: what stands behind "file:", without the name of a host, and a drive without the slash before it.
+std::string_view path_of_file_uri(std::string_view rest) {
+    if (rest.starts_with("//")) {
+        const std::size_t slash = rest.find('/', 2);
+        rest = slash == std::string_view::npos ? std::string_view() : rest.substr(slash);
+    }
+    const bool has_drive = rest.size() > 2 && rest[0] == '/' && (rest[2] == ':' || rest[2] == '|');
+    return has_drive ? rest.substr(1) : rest;
+}
+
 } // namespace
 
-bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
+bool is_data_uri(std::string_view uri) { return starts_with_in_any_case(uri, kData); }
 
 std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (!is_data_uri(uri) || comma == std::string_view::npos) return std::nullopt;
     const std::string_view encoded = uri.substr(comma + 1);
-    const bool is_base64 = uri.substr(0, comma).ends_with(";base64");
+    const bool is_base64 =
+        comma >= kBase64.size() && starts_with_in_any_case(uri.substr(comma - kBase64.size(), kBase64.size()), kBase64);
     if (is_base64 && encoded.find('%') == std::string_view::npos) return decode_base64(encoded);
-    const std::optional<std::string> text = undo_percent_encoding(encoded);
+    const std::optional<std::string> text = undo_percent_encoding(encoded, false);
     if (!text) return std::nullopt;
     if (is_base64) return decode_base64(*text);
     const auto bytes = std::as_bytes(std::span(*text));
@@ -103,10 +129,23 @@ std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
 }
 
 std::optional<std::string> decode_path_uri(std::string_view uri) {
-    if (has_scheme(uri)) return std::nullopt;
-    std::optional<std::string> path = undo_percent_encoding(uri);
-    if (path && path->find('\0') != std::string::npos) return std::nullopt;
+    if (starts_with_in_any_case(uri, kFile)) {
+        uri = path_of_file_uri(uri.substr(kFile.size()));
+    } else if (has_scheme(uri)) {
+        return std::nullopt;
+    }
+    std::optional<std::string> path = undo_percent_encoding(uri, true);
+    if (path->find('\0') != std::string::npos) return std::nullopt;
     return path;
+}
+
+std::optional<std::string> file_name_of_uri(std::string_view uri, const std::filesystem::path& from) {
+    const std::optional<std::string> decoded = decode_path_uri(uri);
+    if (!decoded || *decoded == uri || uri.find('%') == std::string_view::npos) return decoded;
+    const std::filesystem::path folder = from.parent_path();
+    std::error_code ec;
+    if (std::filesystem::exists(folder / *decoded, ec) || !std::filesystem::exists(folder / uri, ec)) return decoded;
+    return std::string(uri);
 }
 
 } // namespace pertev::gltf

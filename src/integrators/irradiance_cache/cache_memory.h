@@ -19,8 +19,15 @@ enum class WalkAim : uint32_t {
 
 /// Beside the walk's throughput, which counts for light that its next surface sends on.
 struct CacheSight {
-    Rgb seen;  // counts for light that the ray itself runs into, also by way of mirrors and smooth glass
+    Rgb seen;  // counts for light that the ray itself runs into
     float pdf; // with which its direction was drawn, 1/sr; 0 after the camera or a delta lobe
+};
+
+/// Whether lamps may be seen by mirrors and smooth glass in the scene, which takes some of both.
+struct MirroredLamps {
+    uint64_t mirrors, lamps; // instances; where there is an environment, all count as lamps
+
+    HD bool are_possible() const { return mirrors > 0 && lamps > 0; }
 };
 
 /// A diffuse surface where light is to be looked up.
@@ -34,6 +41,7 @@ struct CacheLookup {
 
 struct CacheWalksView {
     Float4* sights; // [walks]
+    Float4* paths;  // [walks] throughput of all light, as path tracing has it; 0 of a record's rays
     float* ways;    // [walks] from the camera, metres
     WalkAim* aims;  // [walks]
     // Lookups of a round, side by side; WalkCounts::vertices is their number.
@@ -50,6 +58,10 @@ struct CacheWalksView {
         const Float4 s = sights[walk];
         return {{s.x, s.y, s.z}, s.w};
     }
+    HD void store_path(uint32_t walk, Rgb throughput) const {
+        paths[walk] = {throughput.r, throughput.g, throughput.b, 0};
+    }
+    HD Rgb path_of(uint32_t walk) const { return {paths[walk].x, paths[walk].y, paths[walk].z}; }
     HD void store(uint32_t at, const CacheLookup& lookup) const {
         const Hit& hit = lookup.hit;
         const Vec3 d = lookup.direction;
@@ -78,6 +90,7 @@ inline std::size_t lay_out(CacheWalksView& view, std::byte* memory, uint32_t wal
         bytes += (count * sizeof(T) + 15) / 16 * 16;
     };
     place(view.sights, walks);
+    place(view.paths, walks);
     place(view.ways, walks);
     place(view.aims, walks);
     place(view.places, walks);

@@ -6,6 +6,7 @@
 // Those that compile soon: shading has files of its own.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const BeginCacheWalks&);
+template void launch(Queue&, const char*, WorkCount, const CountMirroredLamps&);
 template void launch(Queue&, const char*, WorkCount, const BeginSeekers&);
 template void launch(Queue&, const char*, WorkCount, const StoreDistances&);
 template void launch(Queue&, const char*, WorkCount, const ReadCells&);

@@ -3,8 +3,9 @@
 // The stages of walks of irradiance caching: those of the camera, and those that are a record's rays. Both are path
 // tracing. But where a walk of the camera's has met mirrors and smooth glass alone and comes to a surface with a
 // diffuse base, the light there is
-//   L S* D             drawn, by a shadow ray and by the walk's own next ray, as path tracing does it;
-//   L (D|G|S)* (D|G) S* D  looked up: a record's rays bring it. Where there is no record, the walk goes on as a path.
+//   L S* D                  drawn, by a shadow ray and by the walk's own next ray, as path tracing does it;
+//   L S+ (D|G) (D|G|S)* D   found by the walk, which goes on for it alone where the scene has mirrors or smooth glass;
+//   L (D|G) (D|G|S)* D      looked up: a record's rays bring it. Where there is no record, the walk goes on as a path.
 // What other lobes there scatter is found by the same next ray.
 //
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 2.
@@ -12,11 +13,27 @@
 #include "integrators/irradiance_cache/cache_memory.h"
 #include "integrators/irradiance_cache/cached_surface.h"
 #include "integrators/subpaths/begin_eyes.h"
+#include "shading/may_be_specular.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {
 
 inline constexpr uint32_t kNumberOfOthers = 2; // of the choices of a vertex: whether light goes on by other lobes
+
+/// Stage: counts instance i.
+struct CountMirroredLamps {
+    SceneView scene;
+    MirroredLamps* count;
+
+    HD void operator()(uint32_t i) const {
+        const InstanceView& instance = scene.instances[i];
+        if (instance.is_hidden != 0) return;
+        const MaterialView& material = scene.materials[instance.material];
+        const bool glows = material.kind == MaterialKind::Unlit || !is_black(material.emission);
+        if (may_be_specular(material)) atomic_add(&count->mirrors, 1);
+        if (glows || scene.lights.has_environment()) atomic_add(&count->lamps, 1);
+    }
+};
 
 /// Walks 0, 1, ... become the camera's of the samples.
 struct BeginCacheWalks {
@@ -26,6 +43,7 @@ struct BeginCacheWalks {
     HD void operator()(uint32_t i) const {
         begin(i);
         cache.store_sight(i, {{1, 1, 1}, 0});
+        cache.store_path(i, {1, 1, 1});
         cache.ways[i] = 0;
         cache.aims[i] = WalkAim::Seek;
     }
@@ -37,7 +55,8 @@ struct ShadeCacheWalks {
     WalkScene scene;
     WalksView walks;
     CacheWalksView cache;
-    FilmView film;      // of pixels, or of the cells of hemispheres; no sums: nothing is added
+    FilmView film; // of pixels, or of the cells of hemispheres; no sums: nothing is added
+    const MirroredLamps* mirrored;
     bool is_hemisphere; // walk i brings light to cell first_cell + i
     uint32_t first_cell;
     uint32_t round;
@@ -144,10 +163,13 @@ private:
         const Rgb before = sample.weight;
         if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
         const float made_up = max_component(before) > 0 ? max_component(sample.weight) / max_component(before) : 0.0f;
-        sight = {sample.is_delta() ? sight.seen * sample.weight : state.throughput * sample.weight,
-                 sample.is_delta() ? 0.0f : sample.pdf};
+        // What mirrors and smooth glass show of lamps is no record's, so that it counts for all of the path.
+        const Rgb path = cache.path_of(walk) * sample.weight;
+        sight = sample.is_delta() ? CacheSight{path, 0} : CacheSight{state.throughput * sample.weight, sample.pdf};
         state.throughput = made_up * (state.throughput * onwards);
-        if (is_black(sight.seen) && is_black(state.throughput)) return;
+        const bool counts = !is_black(sight.seen) || !is_black(state.throughput);
+        if (!counts && (is_black(path) || !mirrored->are_possible())) return;
+        cache.store_path(walk, path);
         ++state.scatterings;
         walks.states[walk] = state;
         cache.store_sight(walk, sight);

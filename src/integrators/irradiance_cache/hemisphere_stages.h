@@ -49,7 +49,9 @@ struct BeginHemispheres {
         const bool is_before = (dot(surface.geometric_normal, wi) > 0) == (side > 0);
         if (!is_before || is_black(state.throughput)) return;
         walks.states[i] = state;
-        cache.store_sight(i, {{0, 0, 0}, 0}); // what is seen straight or by mirrors is not the record's
+        // What is seen straight or by mirrors is not the record's, nor are lamps that later bounces see by mirrors.
+        cache.store_sight(i, {{0, 0, 0}, 0});
+        cache.store_path(i, {0, 0, 0});
         cache.ways[i] = 0;
         cache.aims[i] = WalkAim::GoOn;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,

@@ -72,7 +72,7 @@ IrradianceCacheIntegrator::IrradianceCacheIntegrator(Queue& queue, const Subpath
 
 std::size_t IrradianceCacheIntegrator::predicted_bytes(const IrradianceCacheSettings& cache, uint64_t pixels,
                                                        uint32_t batch, bool in_loop, bool on_cuda) {
-    std::size_t bytes = RecordStore::predicted_bytes(pixels) + kCounts * sizeof(uint64_t);
+    std::size_t bytes = RecordStore::predicted_bytes(pixels) + kCounts * sizeof(uint64_t) + sizeof(MirroredLamps);
     if (!on_cuda) bytes += RecordStore::predicted_host_bytes(pixels);
     if (in_loop) return bytes;
     const uint32_t walks = walks_at_once(cache, pixels, batch);
@@ -80,7 +80,8 @@ std::size_t IrradianceCacheIntegrator::predicted_bytes(const IrradianceCacheSett
 }
 
 std::size_t IrradianceCacheIntegrator::bytes() const {
-    return memory_.size() + store_.bytes() + counts_.size() * sizeof(uint64_t);
+    return memory_.size() + store_.bytes() + counts_.size() * sizeof(uint64_t) +
+           mirrored_.size() * sizeof(MirroredLamps);
 }
 
 const HostTrees* IrradianceCacheIntegrator::trees_of_loop() const { return in_loop_ ? tracer_->host_trees() : nullptr; }
@@ -96,6 +97,10 @@ void IrradianceCacheIntegrator::begin(const PictureView& picture, SceneTracer& t
     store_.make_room(pixels);
     if (counts_.size() == 0) counts_ = {queue_, kCounts, "counts of irradiance caching"};
     queue_.zero(counts_.data() + kMissed, sizeof(uint64_t));
+    if (mirrored_.size() == 0) mirrored_ = {queue_, 1, "counts of mirrors and lamps"};
+    queue_.zero(mirrored_.data(), sizeof(MirroredLamps));
+    launch(queue_, "count mirrored lamps", picture.scene.instance_count,
+           CountMirroredLamps{picture.scene, mirrored_.data()});
     if (trees_of_loop() != nullptr) return;
     walks_in_flight_ = walks_at_once(picture_cache_, pixels, batch_);
     const std::size_t bytes = bytes_in_flight(walks_in_flight_, walks_in_flight_);
@@ -124,6 +129,7 @@ CacheJob IrradianceCacheIntegrator::make_job(uint32_t seed) const {
     job.walk.scene.settings.seed ^= seed;
     job.records = store_.view();
     job.missed = counts_.data() + kMissed;
+    job.mirrored = mirrored_.data();
     return job;
 }
 

@@ -91,6 +91,7 @@ private:
     bool has_records_ = false;
     RecordStore store_;
     Buffer<uint64_t> counts_; // lookups that found no record; invalid samples of the records
+    Buffer<MirroredLamps> mirrored_;
     Buffer<std::byte> memory_;
     uint32_t walks_in_flight_ = 0;
     WalksView walks_{};      // of memory_

@@ -54,6 +54,7 @@ struct BeginSeekers {
         walks.states[i] = state;
         walks.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
         cache.store_sight(i, {{1, 1, 1}, 0});
+        cache.store_path(i, {1, 1, 1});
         cache.ways[i] = 0;
         cache.aims[i] = WalkAim::Seek;
         sites[first + i] = {}; // whole: the host reads all of it

@@ -16,6 +16,7 @@ struct CacheJob {
     bool shows_records;
     Rgb mark; // light of a record's mark
     uint64_t* missed;
+    const MirroredLamps* mirrored;
 
     // Of the overture.
     OvertureGrid grid;
@@ -49,7 +50,8 @@ void run_cache_rounds(Way& way, const CacheJob& job) {
                         DrawRecords<kKnown>{walk.scene, walks, job.cache, job.records, walk.film, job.mark, round});
             }
             way.run("shade_cache_walks", rays,
-                    ShadeCacheWalks<kKnown>{walk.scene, walks, job.cache, walk.film, kIsHemisphere, first, round});
+                    ShadeCacheWalks<kKnown>{walk.scene, walks, job.cache, walk.film, job.mirrored, kIsHemisphere, first,
+                                            round});
             if (kWalks == CacheWalks::Picture) {
                 way.run("look_up_light", lookups,
                         LookUpLight<kKnown>{walk.scene, walks, job.cache, job.records, walk.film, job.missed});

@@ -195,11 +195,11 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
         if (is_frame && path.depth == 0) store_no_hit(film.frame, path.pixel);
         const bool is_hidden = picture.hide_background && path.depth == 0;
         if (scene.lights.has_environment() && !is_hidden) {
-            const float light_pdf = path.bsdf_pdf > 0 ? pdf_environment(scene.lights, path.direction) : 0.0f;
-            if (leaves_light && path.depth == 1 && light_pdf > 0) {
+            const EnvironmentHit seen = find_environment(scene.lights, path.direction, path.bsdf_pdf > 0);
+            if (leaves_light && path.depth == 1 && seen.pdf > 0) {
                 left.light[path.pixel] = place_in_environment(path.direction);
             } else {
-                add_emission(settings, path, environment_radiance(scene.lights.environment, path.direction), light_pdf);
+                add_emission(settings, path, seen.radiance, seen.pdf);
             }
         }
         if (tells_bounce && path.depth > 1) {

@@ -8,6 +8,7 @@
 
 #include "accel/hploc/leaves.h"
 #include "integrators/photon_map/photon_targets.h"
+#include "shading/may_be_specular.h"
 
 namespace pertev {
 
@@ -19,22 +20,6 @@ struct SpecularBounds {
     hploc::OrderedBounds all, cells[kMostTargets];
     int32_t reach; // hploc::ordered of minus the squared distance, of the farthest corner from the middle of `all`
 };
-
-/// Whether some place of the surface may have a delta lobe.
-HD inline bool may_be_specular(const MaterialView& material) {
-    switch (material.kind) {
-    case MaterialKind::Diffuse:
-    case MaterialKind::Unlit:
-        return false;
-    case MaterialKind::Dielectric:
-        if (material.ior == 1) return true;
-        break;
-    case MaterialKind::Conductor:
-    case MaterialKind::MetallicRoughness:
-        break;
-    }
-    return material.roughness_texture.has_image() || !(alpha_from_roughness(material.roughness) >= kSmoothAlpha);
-}
 
 /// Triangle i of all instances: extends the bounds, or, once these are known, those of the cells.
 struct FindSpecular {

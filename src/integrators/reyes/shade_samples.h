@@ -131,7 +131,8 @@ struct ShadeSamples {
 
 private:
     HD void add_layers(uint32_t pixel, uint32_t sample, const Micropolygon& seen, Vec2 place, const Ray& ray) const {
-        if (film.aovs == 0) return add_channel(film, pixel, kFilmHits, 1.0f);
+        const bool is_background = shows_background(pass.picture.scene, seen.triangle.corners.instance);
+        if (film.aovs == 0 && !is_background) return add_channel(film, pixel, kFilmHits, 1.0f);
         const PinholePoint corners[3] = {seen.points[0].place, seen.points[1].place, seen.points[2].place};
         const Vec2 inside = weights_at(corners, pass.camera.x_of(static_cast<double>(place.x)),
                                        pass.camera.y_of(static_cast<double>(place.y)));

@@ -146,6 +146,7 @@ HD inline ValueRange color_range(const MeshView& mesh, TriangleIndices i) {
     const float a = mesh.colors[i.a].w, b = mesh.colors[i.b].w, c = mesh.colors[i.c].w;
     if (!(is_finite(a) && is_finite(b) && is_finite(c))) return any_value();
     const ValueRange range = {min(a, min(b, c)), max(a, max(b, c))};
+    if (range.least == range.most) return range; // equal values are interpolated exactly
     const float rounding = 0x1p-20f * max(abs(range.least), abs(range.most));
     return {range.least - rounding, range.most + rounding};
 }

@@ -90,13 +90,15 @@ void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& 
 
 } // namespace
 
-std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs) {
+std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs, Glass glass) {
     std::vector<LookHit> hits(rays.size());
     std::vector<Bounds3> bounds;
     for (const Mesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh));
     std::vector<LocalRay> local;
     for (const Instance& instance : scene.instances) {
-        if (instance.is_hidden) continue;
+        const Material& material = scene.materials[instance.material];
+        if (instance.is_hidden || instance.is_background) continue;
+        if (glass == Glass::LetsThrough && material.kind == MaterialKind::Dielectric) continue;
         const Transform local_from_world = inverse(instance.world_from_local);
         local.clear();
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -105,7 +107,7 @@ std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays
             if (meets(bounds[instance.mesh], ray)) local.push_back(ray);
         }
         if (local.empty()) continue;
-        const bool has_back = backs == Backs::All || scene.materials[instance.material].double_sided;
+        const bool has_back = backs == Backs::All || material.double_sided;
         cast_at_mesh(scene.meshes[instance.mesh], has_back, local, hits);
     }
     return hits;

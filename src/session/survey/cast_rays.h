@@ -23,9 +23,12 @@ struct LookHit {
 
 /// Which backs rays meet: all, or those alone that the camera sees (Material::double_sided).
 enum class Backs { All, Shown };
+/// Whether panes of glass stop rays. (Surfaces of blended alpha always do.)
+enum class Glass { Stops, LetsThrough };
 
-/// The nearest hit of each ray; the front where a front and a back lie at one distance. Time: rays times triangles of
-/// all instances whose box some ray meets. The scene has been through validate().
-std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs = Backs::All);
+/// The nearest hit of each ray; the front where a front and a back lie at one distance. A made-up ground is not met.
+/// Time: rays times triangles of all instances whose box some ray meets. The scene has been through validate().
+std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs = Backs::All,
+                               Glass glass = Glass::Stops);
 
 } // namespace pertev

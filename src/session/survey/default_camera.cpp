@@ -1,16 +1,24 @@
 #include "session/survey/default_camera.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "math/portable_math.h"
 #include "session/place_text.h"
 #include "session/survey/aisle.h"
+#include "session/survey/cast_rays.h"
 #include "session/survey/surroundings.h"
 
 namespace pertev {
 namespace {
 
 constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 degrees, of the smaller side
+constexpr float kAside = 28, kAbove = 18;                          // degrees, of a view from outside
+constexpr float kAboveFlat = 38;                                   // degrees, of what lies flat
+constexpr uint64_t kMostTrianglesSeen = 8'000'000;                 // a second on one core
+constexpr int kLooks = 8;                                          // rays along each side of a view that is tried
 
 Camera look(Vec3 eye, Vec3 target, float fov_y, const char* name) {
     Camera camera;
@@ -40,7 +48,7 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
     const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
     float distance = 0;
     for (const Instance& instance : scene.instances) {
-        if (instance.is_hidden) continue;
+        if (instance.is_hidden || instance.is_background) continue;
         const Mesh& mesh = scene.meshes[instance.mesh];
         const std::size_t step = 1 + mesh.indices.size() / 20'000;
         for (std::size_t i = 0; i < mesh.indices.size(); i += step) {
@@ -51,6 +59,56 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
     }
     if (distance == 0) distance = length(box.size());
     return look(centre + (1.08f * distance) * direction, centre, o.fov_y, name);
+}
+
+/// Unit, towards the eye: `aside` degrees to the right of +z, seen from there, and `above` the horizon.
+Vec3 way(float aside, float above) {
+    const float a = aside * (kPi / 180), b = above * (kPi / 180);
+    return {sin(a) * cos(b), sin(b), cos(a) * cos(b)};
+}
+
+/// Of the rays of a view from `direction` (unit, towards the eye), those that meet something.
+int count_hits(const Scene& scene, const Bounds3& box, Vec3 direction, Backs backs) {
+    const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
+    const Vec3 size = box.size(), right = column(view, 0), up = column(view, 1);
+    const float half_x = 0.5f * dot(abs(right), size), half_y = 0.5f * dot(abs(up), size);
+    std::vector<LookRay> rays;
+    for (int i = 0; i < kLooks * kLooks; ++i) {
+        const float x = (2 * static_cast<float>(i % kLooks) + 1) / kLooks - 1;
+        const float y = (2 * static_cast<float>(i / kLooks) + 1) / kLooks - 1;
+        rays.push_back(
+            {box.centre() + length(size) * direction + (x * half_x) * right + (y * half_y) * up, -direction});
+    }
+    return static_cast<int>(std::ranges::count_if(cast_rays(scene, rays, backs), &LookHit::is_hit));
+}
+
+/// Where to look from: a little to the side of +z, the front of glTF's models, and above; or, where hardly anything but
+/// hidden backs would be seen from there, from the first other direction that shows at least half of the most.
+Vec3 way_to_look_from(const Scene& scene, const Bounds3& box) {
+    const Vec3 size = box.size();
+    const float flat = clamp(1 - 4 * size.y / max(size.x, size.z), 0.0f, 1.0f); // NaN, of a point, becomes a bound
+    const float above = kAbove + (kAboveFlat - kAbove) * flat;
+    const Vec3 front = way(kAside, above);
+    uint64_t triangles = 0;
+    bool hides_any = false;
+    for (const Instance& instance : scene.instances) {
+        triangles += scene.meshes[instance.mesh].triangle_count();
+        hides_any = hides_any || !scene.materials[instance.material].double_sided;
+    }
+    if (!hides_any || triangles > kMostTrianglesSeen) return front;
+    if (2 * count_hits(scene, box, front, Backs::Shown) >= count_hits(scene, box, front, Backs::All)) return front;
+    std::vector<Vec3> ways;
+    std::vector<int> shown;
+    for (const float up : {above, -above}) {
+        for (const float aside : {kAside, -kAside, 65.0f, -65.0f, 115.0f, -115.0f, 180 - kAside, kAside - 180}) {
+            ways.push_back(way(aside, up));
+            shown.push_back(count_hits(scene, box, ways.back(), Backs::Shown));
+        }
+    }
+    const int most = std::ranges::max(shown);
+    if (most == 0) return front;
+    const auto first = std::ranges::find_if(shown, [&](int count) { return 2 * count >= most; });
+    return ways[static_cast<std::size_t>(first - shown.begin())];
 }
 
 Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
@@ -65,11 +123,11 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
 Camera make_default_camera(const Scene& scene, float aspect, Messages& messages) {
     Surroundings around = look_around(scene);
     if (around.bounds.is_empty()) around.bounds = {{-1, -1, -1}, {1, 1, 1}}; // all is hidden at rest
-    const char* what = "a view from outside and above";
+    const char* what = "a view from outside";
     Camera camera;
     switch (around.kind) {
     case SurroundingsKind::Object:
-        camera = fitted(scene, around.bounds, normalize({0.55f, 0.42f, 0.8f}), aspect, "default, outside");
+        camera = fitted(scene, around.bounds, way_to_look_from(scene, around.bounds), aspect, "default, outside");
         break;
     case SurroundingsKind::Stage:
         camera = fitted(scene, around.bounds, around.open_side, aspect, "default, in front");
@@ -82,8 +140,8 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     }
     const Vec3 eye = camera.world_from_camera.translation;
     const Vec3 target = eye - camera.focus_distance * column(camera.world_from_camera, 2);
-    messages.note(fmt::format("no camera in the scene: {} (--eye {} --target {})", what, place_text(scene, eye, 4),
-                              place_text(scene, target, 4)));
+    messages.make_up(fmt::format("no camera in the scene: {} (--eye {} --target {})", what, place_text(scene, eye, 4),
+                                 place_text(scene, target, 4)));
     return camera;
 }
 

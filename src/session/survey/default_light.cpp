@@ -4,64 +4,53 @@
 
 #include <fmt/format.h>
 
-#include "base/parallel_for.h"
 #include "math/portable_math.h"
 #include "session/survey/aisle.h"
+#include "session/survey/made_up_sky.h"
 #include "session/survey/surroundings.h"
+#include "session/survey/weak_light.h"
 
 namespace pertev {
 namespace {
 
-constexpr uint32_t kSkyWidth = 256, kSkyHeight = 128;
-
-bool is_lamp(const Material& material) {
-    // What glows by a texture is a display or a badge, not what the rest is to be seen by.
-    return material.is_lamp() && !material.emission_texture.has_image();
+/// Whether any pixel of a lamp's texture gives light.
+bool has_light(const TextureImage& image) {
+    const std::vector<uint8_t>& bytes = image.rgba8.pixels;
+    for (std::size_t i = 0; i < bytes.size(); i += 4) {
+        if ((bytes[i] | bytes[i + 1] | bytes[i + 2]) != 0) return true;
+    }
+    const std::vector<float>& floats = image.rgba_float.pixels;
+    for (std::size_t i = 0; i < floats.size(); i += 4) {
+        if (max(floats[i], max(floats[i + 1], floats[i + 2])) > 0) return true;
+    }
+    return false;
 }
 
-bool needs_light(const Scene& scene) {
-    if (scene.environment) return false;
+enum class OwnLight {
+    Enough,  // lights or an environment, or all is unlit and shows without light
+    Glowing, // surfaces alone
+    None,
+};
+
+OwnLight own_light(const Scene& scene) {
+    if (scene.environment) return OwnLight::Enough;
     const bool is_lit = std::any_of(scene.lights.begin(), scene.lights.end(),
                                     [](const Light& light) { return max_component(light.intensity) > 0; });
-    if (is_lit) return false;
-    bool is_all_unlit = true; // what is unlit is seen without light, and gives none to the rest
-    for (const Instance& instance : scene.instances) {
-        const Material& material = scene.materials[instance.material];
-        if (is_lamp(material)) return false; // hidden or not: it may come
+    if (is_lit) return OwnLight::Enough;
+    std::vector<bool> is_used(scene.materials.size());
+    for (const Instance& instance : scene.instances) is_used[instance.material] = true; // hidden or not: it may come
+    bool is_all_unlit = true;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (!is_used[i]) continue;
+        if (material.is_lamp() &&
+            (!material.emission_texture.has_image() ||
+             has_light(scene.images[static_cast<std::size_t>(material.emission_texture.image)]))) {
+            return OwnLight::Glowing;
+        }
         is_all_unlit = is_all_unlit && material.kind == MaterialKind::Unlit;
     }
-    return !is_all_unlit;
-}
-
-/// Radiance from the unit direction d, W/(sr m2).
-Rgb sky(Vec3 d) {
-    const Rgb zenith = {0.32f, 0.46f, 0.72f}, horizon = {0.84f, 0.89f, 0.95f}, ground = {0.30f, 0.28f, 0.26f};
-    const float up = d.y > 0 ? d.y : 0.0f;
-    Rgb colour = lerp(horizon, zenith, up * (2 - up));
-    // The ground rises into the horizon within a few degrees: a hard edge would show in every mirror.
-    if (d.y < 0) colour = lerp(horizon, ground, min(-8 * d.y, 1.0f));
-    // A lobe cos^64, in squarings: soft shadows, and few samples find it.
-    const Vec3 sun = normalize({-0.45f, 0.72f, 0.53f});
-    float lobe = max(dot(d, sun), 0.0f);
-    for (int i = 0; i < 6; ++i) lobe = lobe * lobe;
-    return colour + (32.0f * lobe) * Rgb{1.0f, 0.92f, 0.78f};
-}
-
-Environment make_sky() {
-    Environment environment;
-    Image& image = environment.image;
-    image = {.width = kSkyWidth, .height = kSkyHeight, .channels = 3, .pixels = {}};
-    image.pixels.resize(std::size_t(kSkyWidth) * kSkyHeight * 3);
-    parallel_for(kSkyHeight, 8, [&](uint64_t y) {
-        const float theta = kPi * (static_cast<float>(y) + 0.5f) / static_cast<float>(kSkyHeight);
-        for (uint32_t x = 0; x < kSkyWidth; ++x) {
-            const float phi = kTwoPi * ((static_cast<float>(x) + 0.5f) / static_cast<float>(kSkyWidth) - 0.5f);
-            const Rgb c = sky({sin(theta) * sin(phi), cos(theta), -(sin(theta) * cos(phi))});
-            float* pixel = image.at(x, static_cast<uint32_t>(y));
-            pixel[0] = c.r, pixel[1] = c.g, pixel[2] = c.b;
-        }
-    });
-    return environment;
+    return is_all_unlit ? OwnLight::Enough : OwnLight::None;
 }
 
 void add_lamps(Scene& scene, const Surroundings& room) {
@@ -82,16 +71,19 @@ void add_lamps(Scene& scene, const Surroundings& room) {
 
 } // namespace
 
-DefaultLight add_default_light(Scene& scene, Messages& messages) {
-    if (!needs_light(scene)) return DefaultLight::None;
+DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages) {
+    const OwnLight own = own_light(scene);
+    const bool is_weak = own == OwnLight::Glowing && use == SceneUse::Picture && is_light_too_weak(scene);
+    if (own != OwnLight::None && !is_weak) return DefaultLight::None;
+    const char* why = is_weak ? "what glows in the scene lights too little of it to see by" : "no light in the scene";
     const Surroundings around = look_around(scene);
     if (around.is_dark) {
         add_lamps(scene, around);
-        messages.note("no light in the scene, a closed room: it gets a row of lamps");
+        messages.make_up(fmt::format("{}, a closed room: it gets a row of lamps", why));
         return DefaultLight::Lamps;
     }
-    scene.environment = make_sky();
-    messages.note("no light in the scene: it gets a sky");
+    scene.environment = use == SceneUse::Benchmark ? make_clear_sky() : make_studio();
+    messages.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (--environment 0,0,0: none)" : ""));
     return DefaultLight::Sky;
 }
 

@@ -1,18 +1,19 @@
 #pragma once
 
-// The light of a scene that has none.
+// The light of a scene that has none, or too little to see by.
 
 #include "base/messages.h"
 #include "scene/scene.h"
+#include "session/scene_use.h"
 
 namespace pertev {
 
 enum class DefaultLight { None, Sky, Lamps }; // None: the scene has light, or nothing to be lit
 
-/// Gives a scene with something to be lit, but without lights (above 0), emissive materials or environment, a sky: 256
-/// x 128 pixels, blue above, a broad warm sun from the upper left front. A white surface under it sends about 1.5 W/(sr
-/// m2). In a closed room, where no light comes in, it is a row of lamps instead. A notice tells of it. The scene has
-/// been through validate().
-DefaultLight add_default_light(Scene& scene, Messages& messages);
+/// Gives a scene with something to be lit a sky (made_up_sky.h), where it has no lights (above 0), no emitters and no
+/// environment; for pictures also where its emitters light too little to see by (weak_light.h). In a closed room, where
+/// no light comes in, it is a row of lamps instead. A notice tells of it. The scene has been through validate(). Throws
+/// Error(OverLimit) as prepare_scene() does.
+DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages);
 
 } // namespace pertev

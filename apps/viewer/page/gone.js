@@ -1,0 +1,40 @@
+// What the page says when there is no connection: what is known, what somebody can do, and no promise.
+
+import { element } from "./panel.js";
+
+/** @typedef {import("./link.js").LinkState} LinkState */
+
+const kTitles = /** @type {Record<string, string>} */ ({
+  trying: "The connection is lost", lost: "The viewer cannot be reached", ended: "The viewer has ended",
+  refused: "The viewer has closed this page's connection",
+});
+
+/** @param {LinkState} now @param {string} reason @param {string} scene */
+export function showGone(now, reason, scene) {
+  document.body.dataset.gone = now;
+  element("gone").hidden = now === "open";
+  if (now === "open") return;
+  element("gone-title").textContent = kTitles[now];
+  element("gone-again").hidden = now === "ended" || now === "trying";
+  const start = `pertev view ${scene || "SCENE"}, on the machine that has the scene, starts one. It prints the address to open.`;
+  const texts = /** @type {Record<string, string>} */ ({
+    trying: "The page tries again.",
+    lost: `The network is down, or the viewer has ended: then ${start}`,
+    ended: `It said: ${reason}. Its address leads nowhere now. ${start}`,
+    refused: `It said: ${reason}.`,
+  });
+  element("gone-text").textContent = texts[now];
+  if (now === "lost") void lookForAnother(start);
+}
+
+/** Another viewer may listen at this address by now. It lets nobody in by the old one's cookie.
+ * @param {string} start */
+async function lookForAnother(start) {
+  try {
+    const answer = await fetch(location.pathname, { cache: "no-store" });
+    if (answer.status === 403) {
+      element("gone-text").textContent = `The viewer of this page has ended, and another one is at its address: open what that one printed. Or ${start}`;
+    }
+  } catch { // nobody is there
+  }
+}

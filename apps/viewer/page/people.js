@@ -1,0 +1,97 @@
+// Who is there, who steers, and what the others wish: in the panel, and in a bar that is there without it.
+
+import { element, make } from "./panel.js";
+
+/** @typedef {import("./link.js").Link} Link */
+/** @typedef {{id: number, asks: boolean, wish: string}} Person */
+
+/** @param {string} text @param {() => void} onClick */
+function button(text, onClick) {
+  const made = /** @type {HTMLButtonElement} */ (make("button", text));
+  made.addEventListener("click", () => {
+    onClick();
+    made.blur(); // keys steer again
+  });
+  return made;
+}
+
+export class People {
+  /** @param {Link} link */
+  constructor(link) {
+    this.link = link;
+    this.you = 0;
+    this.holder = 0;
+    /** @type {Person[]} */
+    this.all = [];
+    this.declined = ""; // the wish that was read and put away
+  }
+
+  steers() {
+    return this.you !== 0 && this.holder === this.you;
+  }
+
+  /** @param {{you: number, steers: number, people: Person[]}} message */
+  show(message) {
+    this.you = message.you;
+    this.holder = message.steers;
+    this.all = message.people;
+    document.body.dataset.steers = String(this.steers());
+    this.showRows();
+    this.showBar();
+  }
+
+  /** @param {number} to */
+  hand(to) {
+    this.link.send({ type: "hand", to });
+  }
+
+  askButton() {
+    return button("ask to steer", () => this.link.send({ type: "ask" }));
+  }
+
+  showRows() {
+    const place = element("people");
+    place.hidden = this.all.length < 2 && this.steers();
+    place.replaceChildren(make("h2", "Who is here"));
+    for (const person of this.all) {
+      const row = make("div", "", "row");
+      row.append(make("b", `viewer ${person.id}${person.id === this.you ? " (you)" : ""}`));
+      if (person.id === this.holder) {
+        row.append(make("span", "steers", "value"));
+      } else if (this.steers()) {
+        row.append(button(person.asks ? "asks: hand over" : "hand over", () => this.hand(person.id)));
+      } else if (person.id === this.you) {
+        row.append(person.asks ? make("span", "asked", "value") : this.askButton());
+      }
+      place.append(row);
+      if (person.wish && person.id !== this.holder) place.append(make("p", `would like to ${person.wish}`, "wish"));
+    }
+  }
+
+  /** Whoever steers sees there who wishes what; the others that somebody else steers. */
+  showBar() {
+    const wishing = this.all.find((person) => person.id !== this.you && (person.wish || person.asks));
+    const own = this.all.find((person) => person.id === this.you);
+    const wish = wishing ? `${wishing.id} ${wishing.wish} ${wishing.asks}` : "";
+    if (wish !== this.declined) this.declined = "";
+    let text = "";
+    /** @type {HTMLElement[]} */
+    let buttons = [];
+    if (this.steers()) {
+      if (wishing && !this.declined) {
+        text = `viewer ${wishing.id} would like to ${wishing.wish || "steer"}`;
+        buttons = [button("hand over", () => this.hand(wishing.id)), button("not now", () => {
+          this.declined = wish;
+          this.showBar();
+        })];
+      }
+    } else if (own) {
+      text = this.holder ? `viewer ${this.holder} steers` : "nobody steers";
+      if (own.asks) text += "; you have asked to";
+      else buttons = [this.askButton()];
+    }
+    element("wheel").hidden = text === "";
+    element("wheel-text").textContent = text;
+    element("wheel-buttons").replaceChildren(...buttons);
+  }
+}

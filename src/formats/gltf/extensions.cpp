@@ -1,0 +1,61 @@
+#include "formats/gltf/extensions.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace pertev::gltf {
+namespace {
+
+constexpr std::array<std::string_view, 9> kRead = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_animation_pointer",
+    "KHR_lights_punctual",     "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_unlit",     "KHR_mesh_quantization",           "KHR_texture_transform"};
+
+// materials.cpp reads some cases of these and warns of the others.
+constexpr std::array<std::string_view, 4> kReadInPart = {"KHR_materials_pbrSpecularGlossiness",
+                                                         "KHR_materials_specular", "KHR_materials_transmission",
+                                                         "KHR_materials_volume"};
+
+// The picture is the file's first look, whatever these say.
+constexpr std::array<std::string_view, 3> kWithoutEffect = {"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld"};
+
+struct Conversion {
+    std::string_view extension, command;
+};
+
+// Compressions, which a file may have beside data that is not compressed: primitives and textures warn where they have
+// nothing else.
+constexpr std::array<Conversion, 4> kConversions = {{{"KHR_draco_mesh_compression", "copy"},
+                                                     {"KHR_texture_basisu", "ktxdecompress"},
+                                                     {"EXT_texture_webp", "png"},
+                                                     {"EXT_texture_avif", "png"}}};
+
+template <class Names>
+bool holds(const Names& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+const Conversion* conversion_of(std::string_view extension) {
+    const auto found = std::ranges::find(kConversions, extension, &Conversion::extension);
+    return found == kConversions.end() ? nullptr : &*found;
+}
+
+} // namespace
+
+bool is_known_extension(std::string_view name) {
+    return holds(kRead, name) || holds(kReadInPart, name) || holds(kWithoutEffect, name) ||
+           conversion_of(name) != nullptr;
+}
+
+std::string conversion_advice(std::string_view extension, const std::filesystem::path& file) {
+    const Conversion* conversion = conversion_of(extension);
+    if (conversion == nullptr) return "";
+    std::filesystem::path to = file.filename();
+    to.replace_filename(to.stem().string() + "-converted" + to.extension().string());
+    return fmt::format("; this command converts the file: npx @gltf-transform/cli {} \"{}\" \"{}\"",
+                       conversion->command, file.filename().string(), to.string());
+}
+
+} // namespace pertev::gltf

@@ -1,0 +1,34 @@
+#pragma once
+
+// The one rule of this reader: what cannot be read is left out with a warning, and the rest of the file is read on.
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/messages.h"
+#include "formats/gltf/json_value.h"
+
+namespace pertev::gltf {
+
+/// Runs `read`. Where it throws Error(BadInput), a warning gives the reason and says that `what` is left out. Returns
+/// whether `read` came to its end. Other errors pass: a limit holds for the whole file.
+template <class Read>
+bool read_or_leave_out(const std::string& what, Messages& messages, const Read& read) {
+    try {
+        read();
+        return true;
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        messages.leave_out(fmt::format("{}; {} is left out", error.what(), what));
+        return false;
+    }
+}
+
+/// The same for what stands at `place`.
+template <class Read>
+bool read_or_leave_out(const JsonValue& place, Messages& messages, const Read& read) {
+    return read_or_leave_out(place.pointer(), messages, read);
+}
+
+} // namespace pertev::gltf

@@ -1,0 +1,217 @@
+#include "scene/tangents/make_tangents.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "math/double_vec3.h"
+#include "scene/node.h"
+#include "scene/shape_mesh.h"
+#include "scene/tangents/corner_tangents.h"
+#include "scene/tangents/split_vertices.h"
+
+namespace pertev {
+namespace {
+
+/// The vertices of a mesh, or each of its corners by itself where it has no normals: those of its triangles are taken
+/// then.
+class Vertices {
+public:
+    /// `indices` as the file winds them. Both outlive this object.
+    Vertices(std::span<const uint32_t> indices, std::span<const Vec2> uv, bool has_normals)
+        : has_normals_(has_normals), indices_(indices), uv_(uv) {
+        if (has_normals) return;
+        corner_uv_ = expanded(uv);
+        corner_numbers_.resize(indices.size());
+        for (std::size_t i = 0; i < indices.size(); ++i) corner_numbers_[i] = static_cast<uint32_t>(i);
+    }
+
+    /// The mesh with its vertices at these places; normals are of any length but 0. Valid until the next call, and as
+    /// long as `positions` are.
+    TangentMesh at(std::span<const Vec3> positions, std::span<const Vec3> normals) {
+        if (has_normals_) {
+            normals_.resize(normals.size());
+            for (std::size_t i = 0; i < normals.size(); ++i) normals_[i] = unit_or_up(normals[i]);
+            return {.positions = positions, .normals = normals_, .uv = uv_, .indices = indices_};
+        }
+        corner_positions_ = expanded(positions);
+        normals_.resize(corner_positions_.size());
+        for (std::size_t i = 0; i < normals_.size(); i += 3) {
+            const DoubleVec3 a = to_double(corner_positions_[i]), ab = to_double(corner_positions_[i + 1]) - a,
+                             ac = to_double(corner_positions_[i + 2]) - a, area = cross(ab, ac);
+            const Vec3 normal = unit_or_up(to_float(area / std::sqrt(dot(area, area))));
+            normals_[i] = normals_[i + 1] = normals_[i + 2] = normal;
+        }
+        return {.positions = corner_positions_, .normals = normals_, .uv = corner_uv_, .indices = corner_numbers_};
+    }
+
+private:
+    template <class T>
+    std::vector<T> expanded(std::span<const T> of_vertices) const {
+        std::vector<T> of_corners(indices_.size());
+        for (std::size_t i = 0; i < of_corners.size(); ++i) of_corners[i] = of_vertices[indices_[i]];
+        return of_corners;
+    }
+    static Vec3 unit_or_up(Vec3 v) {
+        const Vec3 unit = normalize_safely(v);
+        return is_finite(unit) ? unit : Vec3{0, 0, 1};
+    }
+
+    bool has_normals_;
+    std::span<const uint32_t> indices_;
+    std::span<const Vec2> uv_;
+    std::vector<uint32_t> corner_numbers_;
+    std::vector<Vec2> corner_uv_;
+    std::vector<Vec3> corner_positions_, normals_;
+};
+
+template <class T>
+void append_copies(std::vector<T>& values, const std::vector<uint32_t>& copied_from) {
+    if (values.empty()) return;
+    values.reserve(values.size() + copied_from.size());
+    for (const uint32_t i : copied_from) values.push_back(values[i]);
+}
+
+template <class T>
+void append_copies(std::vector<T>& values, const std::vector<uint32_t>& copied_from, uint32_t values_each) {
+    values.reserve(values.size() + copied_from.size() * values_each);
+    for (const uint32_t i : copied_from) {
+        for (uint32_t k = 0; k < values_each; ++k) values.push_back(values[i * std::size_t(values_each) + k]);
+    }
+}
+
+std::vector<Vec4> at_vertices(const std::vector<Vec4>& of_corners, const SplitVertices& split) {
+    std::vector<Vec4> tangents;
+    tangents.reserve(split.first_corner.size());
+    for (const uint32_t corner : split.first_corner) {
+        tangents.push_back(corner == kNoCornerShows ? Vec4{1, 0, 0, 1} : of_corners[corner]);
+    }
+    return tangents;
+}
+
+std::vector<Vec3> sum(const std::vector<Vec3>& values, const std::vector<Vec3>& offsets) {
+    std::vector<Vec3> sums = values;
+    for (std::size_t i = 0; i < offsets.size(); ++i) sums[i] += offsets[i];
+    return sums;
+}
+
+/// Returns the differences between the tangents of the mesh that is moved to a target and those at rest; empty if there
+/// are none.
+std::vector<Vec3> tangent_offsets(const std::vector<Vec4>& at_target, const std::vector<Vec4>& tangents) {
+    std::vector<Vec3> offsets;
+    offsets.reserve(tangents.size());
+    bool any = false;
+    for (std::size_t i = 0; i < tangents.size(); ++i) {
+        const Vec4 to = at_target[i], from = tangents[i];
+        offsets.push_back({to.x - from.x, to.y - from.y, to.z - from.z});
+        any |= !(offsets.back() == Vec3());
+    }
+    return any ? offsets : std::vector<Vec3>();
+}
+
+void wind_other_way(std::vector<uint32_t>& indices) {
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
+}
+
+/// `shape` is null where nothing moves the vertices; else the caller makes the mesh's vertices of the shape's.
+void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
+    const bool is_turned_over = shape != nullptr && shape->is_turned_over;
+    if (is_turned_over) wind_other_way(mesh.indices);
+    const std::vector<Vec3>& positions = shape != nullptr ? shape->positions : mesh.positions;
+    const std::vector<Vec3>& normals = shape != nullptr ? shape->normals : mesh.normals;
+    Vertices vertices(mesh.indices, mesh.uv[uv_set], !normals.empty());
+    const TangentMesh at_rest = vertices.at(positions, normals);
+    const TangentGroups groups = make_tangent_groups(at_rest);
+    const std::vector<Vec4> of_corners = corner_tangents(at_rest, groups);
+    const SplitVertices split = split_vertices(mesh.indices, mesh.positions.size(), of_corners);
+    mesh.tangents = at_vertices(of_corners, split);
+    if (shape != nullptr) {
+        shape->tangents = mesh.tangents;
+        for (MorphTarget& target : shape->targets) {
+            target.tangents.clear();
+            if (target.positions.empty() && target.normals.empty()) continue;
+            const std::vector<Vec3> moved_positions = sum(positions, target.positions);
+            const TangentMesh moved = vertices.at(moved_positions, sum(normals, target.normals));
+            target.tangents = tangent_offsets(at_vertices(corner_tangents(moved, groups), split), mesh.tangents);
+        }
+    }
+    mesh.indices = split.indices;
+    if (is_turned_over) wind_other_way(mesh.indices);
+    const std::vector<uint32_t>& copied_from = split.copied_from;
+    append_copies(mesh.positions, copied_from);
+    append_copies(mesh.normals, copied_from);
+    for (std::vector<Vec2>& uv : mesh.uv) append_copies(uv, copied_from);
+    append_copies(mesh.colors, copied_from);
+    if (shape == nullptr) return;
+    append_copies(shape->positions, copied_from);
+    append_copies(shape->normals, copied_from);
+    for (MorphTarget& target : shape->targets) {
+        append_copies(target.positions, copied_from);
+        append_copies(target.normals, copied_from);
+    }
+    append_copies(shape->joints, copied_from, shape->joints_per_vertex);
+    append_copies(shape->weights, copied_from, shape->joints_per_vertex);
+}
+
+constexpr uint32_t kNone = 0xffffffffu;
+
+/// The mesh that instances with a normal map over either set of coordinates get in place of their own; kNone: there are
+/// none.
+using MeshBySet = std::array<uint32_t, 2>;
+
+/// Adds copies of meshes that need tangents over both sets, and points instances to theirs.
+std::vector<MeshBySet> choose_meshes(Scene& scene) {
+    std::vector<MeshBySet> chosen(scene.meshes.size(), {kNone, kNone});
+    for (Instance& instance : scene.instances) {
+        const TextureRef& map = scene.materials[instance.material].normal_texture;
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (!map.has_image() || !mesh.tangents.empty() || mesh.uv[map.uv_set].empty()) continue;
+        MeshBySet& by_set = chosen[instance.mesh];
+        if (by_set[map.uv_set] == kNone) {
+            if (by_set[1 - map.uv_set] == kNone) {
+                by_set[map.uv_set] = instance.mesh;
+            } else {
+                by_set[map.uv_set] = static_cast<uint32_t>(scene.meshes.size());
+                scene.meshes.push_back(Mesh(mesh));
+                const auto shape = std::ranges::find(scene.shapes, instance.mesh, &MeshShape::mesh);
+                if (shape != scene.shapes.end()) {
+                    MeshShape copy = *shape;
+                    copy.mesh = by_set[map.uv_set];
+                    scene.shapes.push_back(std::move(copy));
+                }
+            }
+        }
+        instance.mesh = by_set[map.uv_set];
+    }
+    return chosen;
+}
+
+} // namespace
+
+void make_tangents(Scene& scene) {
+    struct Task {
+        uint32_t mesh;
+        uint8_t uv_set;
+    };
+    std::vector<Task> tasks;
+    for (const MeshBySet& by_set : choose_meshes(scene)) {
+        for (uint8_t set = 0; set < 2; ++set) {
+            if (by_set[set] != kNone) tasks.push_back({by_set[set], set});
+        }
+    }
+    if (tasks.empty()) return;
+    std::vector<MeshShape*> shapes(scene.meshes.size());
+    for (MeshShape& shape : scene.shapes) shapes[shape.mesh] = &shape;
+    parallel_for(tasks.size(), 1, [&](uint64_t i) {
+        add_tangents(scene.meshes[tasks[i].mesh], shapes[tasks[i].mesh], tasks[i].uv_set);
+    });
+    std::vector<MeshShape*> changed;
+    for (const Task& task : tasks) {
+        if (shapes[task.mesh] != nullptr) changed.push_back(shapes[task.mesh]);
+    }
+    shape_at_rest(scene, changed);
+}
+
+} // namespace pertev

@@ -1,0 +1,13 @@
+#pragma once
+
+// What a scene is opened for. It decides what may be made up where a file lacks light.
+
+namespace pertev {
+
+enum class SceneUse {
+    Picture,     // `render` and `view`: a studio where the file has no light, or too little to see by
+    Measurement, // `measure` and `solve`: a studio where the file has no emitter at all
+    Benchmark,   // `bench` and `lab`: as Measurement, under the sky that recorded figures were measured under
+};
+
+} // namespace pertev

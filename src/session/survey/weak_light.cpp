@@ -1,0 +1,67 @@
+#include "session/survey/weak_light.h"
+
+#include <optional>
+#include <vector>
+
+#include "device/queue.h"
+#include "scene/posed_scene.h"
+#include "session/session.h"
+#include "session/survey/default_camera.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16;
+constexpr float kVisible = 0.18f / 16; // four stops below middle grey
+constexpr double kShareToSeeBy = 0.75; // of the surfaces in the picture
+
+double share_lit_from(const Camera& camera, const Scene& scene) {
+    Queue queue = Queue::make_cpu();
+    RenderSettings settings;
+    settings.width = kWidth, settings.height = kHeight, settings.samples = kSamples;
+    settings.filter = PixelFilter::Box;
+    settings.transparent = true;
+    settings.tracers = default_tracers(false, TreeBuild::Fast); // the trees of so few rays must be there soon
+    Messages unsaid;
+    const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), unsaid);
+    Session session(queue, prepared, camera, settings);
+    session.render(kSamples);
+    const float scale = exposure_scale(session.meter(ToneMap::Agx));
+    const Image picture = session.picture();
+    // Means of blocks, since single pixels of so few samples are dark by chance.
+    double lit = 0, all = 0;
+    for (uint32_t top = 0; top < kHeight; top += kBlock) {
+        for (uint32_t left = 0; left < kWidth; left += kBlock) {
+            float light = 0, covered = 0;
+            for (uint32_t y = top; y < top + kBlock; ++y) {
+                for (uint32_t x = left; x < left + kBlock; ++x) {
+                    const float* pixel = picture.at(x, y);
+                    light += luminance({pixel[0], pixel[1], pixel[2]});
+                    covered += pixel[3];
+                }
+            }
+            if (!(covered > 0)) continue;
+            all += static_cast<double>(covered);
+            if (scale * light >= kVisible * covered) lit += static_cast<double>(covered);
+        }
+    }
+    return all > 0 ? lit / all : 1;
+}
+
+} // namespace
+
+double share_lit(const Scene& scene) {
+    const bool has_camera = !scene.cameras.empty();
+    Messages unsaid;
+    const Camera made_up =
+        has_camera ? Camera() : make_default_camera(scene, static_cast<float>(kWidth) / kHeight, unsaid);
+    const auto look = [&](const Scene& now) { return share_lit_from(has_camera ? now.cameras.front() : made_up, now); };
+    if (scene.animations.empty()) return look(scene);
+    PosedScene posed(scene);
+    posed.set_time(0);
+    return look(posed.scene());
+}
+
+bool is_light_too_weak(const Scene& scene) { return share_lit(scene) < kShareToSeeBy; }
+
+} // namespace pertev

@@ -1,0 +1,27 @@
+#pragma once
+
+// Whether a material may scatter light like a smooth mirror or smooth glass.
+
+#include "base/host_device.h"
+#include "shading/bsdf.h"
+#include "shading/material_view.h"
+
+namespace pertev {
+
+/// Whether some place of a surface of the material may have a delta lobe.
+HD inline bool may_be_specular(const MaterialView& material) {
+    switch (material.kind) {
+    case MaterialKind::Diffuse:
+    case MaterialKind::Unlit:
+        return false;
+    case MaterialKind::Dielectric:
+        if (material.ior == 1) return true;
+        break;
+    case MaterialKind::Conductor:
+    case MaterialKind::MetallicRoughness:
+        break;
+    }
+    return material.roughness_texture.has_image() || !(alpha_from_roughness(material.roughness) >= kSmoothAlpha);
+}
+
+} // namespace pertev

@@ -1,0 +1,92 @@
+"""What cannot be read is left out with a warning, --strict refuses, and lists tell what was left out and made up."""
+
+import json
+
+from cli_run import CliTest, gltf_with_cameras, main, read_exr, write
+
+SMALL = ["--size", "8x8", "--spp", "1", "--exposure", "0", "--device", "cpu"]
+SQUARE = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\n"
+
+
+class LeftOut(CliTest):
+    def model(self, name="model.gltf", **members):
+        """A triangle before two cameras, with further members."""
+        write(self.path(name), json.dumps({**json.loads(gltf_with_cameras()), **members}))
+        return name
+
+    def test_an_unknown_extension_that_is_required_is_left_out_and_strict_refuses(self):
+        scene = self.model(extensionsUsed=["EXT_new"], extensionsRequired=["EXT_new"])
+        outcome = self.succeed("render", scene, "-o", "x.png", "--json", *SMALL)
+        done = outcome.events("done")[0]
+        self.assertEqual(len(done["left_out"]), 1, done)
+        self.assertIn("model.gltf: /extensionsRequired/0: the file requires the extension EXT_new", done["left_out"][0])
+        self.assertEqual([event["text"] for event in outcome.events("warning")], done["left_out"])
+        self.refuse(2, "render", scene, "-o", "y.png", "--strict", *SMALL,
+                    says=["--strict: ", "/extensionsRequired/0", "EXT_new", "nothing is rendered"])
+
+    def test_of_several_things_left_out_strict_names_the_first_and_their_number(self):
+        scene = self.model(extensionsUsed=["EXT_new", "EXT_newer", "EXT_newest"])
+        self.refuse(2, "render", scene, "-o", "y.png", "--strict", "--json", *SMALL,
+                    says=["EXT_new, ", "and 2 warnings like it"])
+
+    def test_what_leaves_no_picture_is_an_error_that_tells_what_is_left_out(self):
+        accessors = [{"componentType": 5126, "count": 3, "type": "VEC3"}]
+        meshes = [{"primitives": [{"attributes": {"POSITION": 0},
+                                   "extensions": {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}}}]}]
+        scene = self.model(accessors=accessors, meshes=meshes, extensionsRequired=["KHR_draco_mesh_compression"])
+        command = "npx @gltf-transform/cli copy \"model.gltf\" \"model-converted.gltf\""
+        for flags in [[], ["-q"], ["--json"], ["--strict"]]:
+            self.refuse(2, "render", scene, "-o", "x.png", *flags, *SMALL, says=["KHR_draco_mesh_compression", command])
+
+    def test_a_whole_scene_leaves_nothing_out_and_makes_up_what_it_lacks(self):
+        done = self.succeed("render", self.model(), "-o", "x.png", "--json", "--strict", *SMALL).events("done")[0]
+        self.assertEqual(done["left_out"], [])
+        self.assertEqual(len(done["made_up"]), 1, done)  # the light
+        self.assertIn("light", done["made_up"][0])
+        write(self.path("square.obj"), SQUARE + "f 4 3 2 1\n")
+        done = self.succeed("render", "square.obj", "-o", "y.png", "--json", "--strict", *SMALL).events("done")[0]
+        self.assertEqual(len([text for text in done["made_up"] if "camera" in text]), 1, done)
+        self.assertEqual(self.succeed("render", "cornell-box", "-o", "z.png", "--json", *SMALL).events("done")[0]["made_up"],
+                         [])
+
+    def test_metadata_and_info_have_the_lists(self):
+        scene = self.model(extensionsUsed=["EXT_new"])
+        done = self.succeed("render", scene, "-o", "x.exr", "--json", *SMALL).events("done")[0]
+        info = self.succeed("info", "x.exr", "--json").events("info")[0]
+        self.assertEqual(json.loads(info["pertev.left_out"]), done["left_out"])
+        self.assertEqual(json.loads(info["pertev.made_up"]), done["made_up"])
+        info = self.succeed("info", scene, "--json").events("info")[0]
+        self.assertEqual(info["left_out"], done["left_out"])
+
+    def test_measure_and_sequences_have_the_lists(self):
+        scene = self.model(extensionsUsed=["EXT_new"])
+        at = ["--at", "0,0,1", "--normal", "0,0,1", "--spp", "1", "--device", "cpu"]
+        self.assertEqual(len(self.succeed("measure", scene, "--json", *at).events("measure")[0]["left_out"]), 1)
+        outcome = self.succeed("render", scene, "-o", "f###.png", "--turntable", "2", "--json", *SMALL)
+        self.assertEqual(len(outcome.events("sequence")[0]["left_out"]), 1)
+
+    def test_faces_and_lines_that_cannot_be_read_are_left_out(self):
+        good = SQUARE + "f 4 3 2 1\n"
+        write(self.path("m.mtl"), "newmtl m\nKd 1 oops 0\nKe 1 1 1\n")
+        write(self.path("bad.mtl.obj"), "mtllib m.mtl\nusemtl m\n" + good)
+        write(self.path("past.obj"), good + "f 1 2 9\n")
+        write(self.path("word.obj"), good + "f 1 2 three\n")
+        header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        body = "0 0 0\n1 0 0\n0 1 0\n"
+        faces = "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+        write(self.path("past.ply"), header + faces + body + "3 0 1 2\n3 0 1 7\n")
+        write(self.path("cut.ply"), header + faces + body + "3 0 1 2\n3 0\n")
+        for scene, place in [("bad.mtl.obj", "m.mtl:2: Kd"), ("past.obj", "past.obj:6: "), ("word.obj", "word.obj:6: "),
+                             ("past.ply", "past.ply:"), ("cut.ply", "cut.ply:")]:
+            with self.subTest(scene=scene):
+                done = self.succeed("render", scene, "-o", "x.exr", "--json", *SMALL).events("done")[0]
+                self.assertEqual(len(done["left_out"]), 1, done)
+                self.assertIn(place, done["left_out"][0])
+                self.assertTrue(read_exr(self.path("x.exr")))
+                self.refuse(2, "render", scene, "-o", "y.exr", "--strict", *SMALL, says=["--strict: ", place])
+        write(self.path("none.obj"), SQUARE + "f 1 2 9\n")
+        self.refuse(2, "render", "none.obj", "-o", "x.exr", *SMALL, says=["no face"])
+
+
+if __name__ == "__main__":
+    main()

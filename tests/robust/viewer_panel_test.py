@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""The panel of `pertev view` in a real headless Chromium: its groups, a phone's window, two windows, and a viewer that has
+ended. Skipped where there is no Chromium."""
+
+import json
+import sys
+import unittest
+
+from chromium import Chromium, find_chromium
+from cli_run import main
+from viewer_client import Viewer
+
+if find_chromium() is None:
+    print("skipped: no Chromium is here")
+    sys.exit(77)
+
+
+BROWSER = Chromium()  # one for all, as its start takes long
+READY = "document.body.dataset.phase == 'done' && document.body.dataset.steers == 'true'"
+
+
+def setUpModule():  # pylint: disable=invalid-name
+    BROWSER.__enter__()
+
+
+def tearDownModule():  # pylint: disable=invalid-name
+    BROWSER.__exit__()
+
+
+def window(page, width, height, ratio=1):
+    page.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=False)
+
+
+def shown(page, selector):
+    """Whether somebody sees this."""
+    return page.value(f"(() => {{ const e = document.querySelector({json.dumps(selector)}); "
+                      "return e.checkVisibility() && e.getBoundingClientRect().height > 0; })()")
+
+
+class Panel(unittest.TestCase):
+    def setUp(self):
+        window(BROWSER, 1280, 720)
+
+    def test_settings_stand_before_numbers_in_groups_that_fold_and_stay_as_they_were_left(self):
+        with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
+            page.until(READY + " && document.querySelector('#readings details')")
+            names = page.value("[...document.querySelectorAll('#panel details')].map((d) => d.dataset.group)")
+            for before, after in [("Light", "Scene"), ("Camera", "Path of the camera"), ("Scene", "Now"), ("Now", "Stages")]:
+                self.assertLess(names.index(before), names.index(after), names)
+            self.assertTrue(shown(page, "#setting-max_depth"))
+            self.assertFalse(shown(page, "#setting-restir"))
+            for group in ("Light", "Frames"):
+                page.value(f"document.querySelector('#settings details[data-group={group}] summary').click()")
+            self.assertFalse(shown(page, "#setting-max_depth"))
+            self.assertTrue(shown(page, "#setting-restir"))
+            page.go(viewer.address)
+            page.until(READY + " && document.querySelector('#readings details')")
+            self.assertFalse(shown(page, "#setting-max_depth"))
+            self.assertTrue(shown(page, "#setting-restir"))
+            for group in ("Light", "Frames"):
+                page.value(f"document.querySelector('#settings details[data-group={group}] summary').click()")
+            self.assertEqual(page.errors, [])
+
+    def test_a_phone_shows_the_picture_first_in_its_shape_and_opens_and_closes_the_panel(self):
+        with Viewer(size="", spp=1) as viewer, BROWSER.visit("about:blank") as page:
+            window(page, 390, 844, 2)
+            page.value("localStorage")  # of about:blank there is none: nothing is remembered yet
+            page.go(viewer.address)
+            page.until(READY)
+            page.value("localStorage.clear()")
+            page.go(viewer.address)
+            page.until(READY + " && document.body.dataset.flags.includes('--size')")
+            self.assertTrue(shown(page, "#panel-open"))
+            self.assertFalse(shown(page, "#panel"))
+            page.call("Emulation.setTouchEmulationEnabled", enabled=True)
+            for opens in (True, False):
+                spot = page.value(f"(() => {{ const r = document.querySelector('#panel-{'open' if opens else 'close'}')"
+                                  ".getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2, r.width]; })()")
+                self.assertGreater(spot[2], 30)  # a finger finds it
+                page.click(spot[0], spot[1])
+                page.until(f"document.querySelector('#panel').hidden == {json.dumps(not opens)}")
+                if opens:
+                    over = page.value("document.querySelector('#panel').getBoundingClientRect().right - innerWidth")
+                    self.assertLessEqual(over, 0)
+                    page.go(viewer.address)
+                    page.until(READY)
+                    self.assertTrue(shown(page, "#panel"))  # as it was left
+            page.call("Emulation.setTouchEmulationEnabled", enabled=False)
+            size = page.value("document.body.dataset.flags.match(/--size (\\d+)x(\\d+)/).slice(1).map(Number)")
+            self.assertAlmostEqual(size[0] / size[1], 390 / 844, 2)
+            self.assertLessEqual(size[0] * size[1], 1280 * 720)
+            window(page, 600, 300)  # it is turned
+            page.until("document.body.dataset.flags.includes('--size 600x300') && document.body.dataset.phase == 'done'")
+            page.value("localStorage.clear()")
+            self.assertEqual(page.errors, [])
+
+
+class TwoWindows(unittest.TestCase):
+    def test_a_drag_that_does_nothing_is_explained_and_who_steers_sees_the_wish_and_hands_over(self):
+        with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as first, Chromium() as second:
+            window(first, 1280, 720)
+            first.until(READY)
+            self.assertFalse(shown(first, "#wheel"))
+            second.go(viewer.address)
+            second.until("document.body.dataset.steers == 'false' && document.body.dataset.samples")
+            self.assertTrue(shown(second, "#wheel"))
+            second.drag("left", 100, 0)
+            second.until("document.querySelector('#notice').textContent.includes('cannot turn the view')")
+            first.until("document.querySelector('#wheel-text').textContent.includes('would like to turn the view')")
+            second.key("Digit2", "2")
+            first.until("document.querySelector('#wheel-text').textContent.includes('Scatterings')")
+            before = first.value("document.body.dataset.flags")
+            first.value("[...document.querySelectorAll('#wheel button')].find((b) => b.textContent == 'hand over').click()")
+            second.until("document.body.dataset.steers == 'true'")
+            second.drag("left", 100, 0)
+            second.until(f"document.body.dataset.flags != {json.dumps(before)}")
+            self.assertFalse(shown(second, "#wheel"))
+            self.assertEqual(first.errors + second.errors, [])
+
+
+class Ended(unittest.TestCase):
+    def test_a_viewer_that_has_ended_is_not_waited_for_and_no_promise_is_made(self):
+        with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
+            page.until(READY)
+            self.assertEqual(viewer.end()[0], 0)
+            page.until("document.body.dataset.gone == 'ended'")
+            text = page.value("document.querySelector('#gone').innerText")
+            self.assertIn("pertev view cornell-box", text)
+            self.assertNotIn("comes back", text)
+            self.assertFalse(shown(page, "#gone-again"))
+            self.assertEqual(page.errors, [])  # it does not even try
+
+    def test_where_nobody_answers_the_page_gives_up_and_says_how_to_start_a_viewer(self):
+        with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
+            page.until(READY)
+            viewer.process.kill()  # without a word
+            page.until("document.body.dataset.gone == 'trying'")
+            page.until("document.body.dataset.gone == 'lost'")
+            text = page.value("document.querySelector('#gone').innerText")
+            self.assertIn("pertev view cornell-box", text)
+            self.assertNotIn("comes back", text)
+            self.assertTrue(shown(page, "#gone-again"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""`pertev view` as a program sees it: the picture takes the window's shape, grows on a slow machine, and keeps what it has;
+a second client is told why it does not steer; and nobody is told where files lie."""
+
+import os
+import select
+import time
+
+from cli_frames_test import moving_gltf
+from cli_run import SANITIZED, CliTest, main, read_exr, write
+from viewer_client import Client, Viewer
+
+
+class Shape(CliTest):
+    def test_the_picture_takes_the_window_s_shape_and_the_flags_that_are_shown_make_it(self):
+        with Viewer(size="", spp=2) as viewer, Client(viewer) as client:
+            for width, height in [(120, 80), (64, 100)]:
+                client.say(type="shape", width=width, height=height)
+                state = client.done(lambda s, w=width, h=height: s["flags"].endswith(f" --size {w}x{h}") and s["hash"])
+                self.assertIn(["Now", "flags that make it", state["flags"]], state["rows"])
+                self.assertIn(["Now", "size", f"{width} x {height}"], state["rows"])
+                size, camera = f"{width}x{height}", state["flags"].removesuffix(f" --size {width}x{height}")
+                made = self.render("--exposure", "auto", *camera.replace("'", "").split(), size=size, spp=2,
+                                   output=self.path("x.png"))
+                self.assertEqual(made["hash"], state["hash"])
+            with Client(viewer, key="second") as other:
+                other.say(type="shape", width=30, height=30)  # does not steer
+                client.steer(type="orbit", dx=0.1, dy=0)
+                self.assertTrue(client.done(lambda s: s["input"] == 1)["flags"].endswith("64x100"))
+
+    def test_a_window_gets_no_more_pixels_than_the_default_and_none_where_the_size_was_asked_for(self):
+        with Viewer(size="", spp=1) as viewer, Client(viewer) as client:
+            client.say(type="shape", width=3840, height=2160)
+            client.picture()
+            client.say(type="shape", width=2000, height=4000)
+            header, _ = client.picture(lambda h: h["full_width"] < 1280)
+            self.assertLessEqual(header["full_width"] * header["full_height"], 1280 * 720)
+            self.assertAlmostEqual(header["full_height"] / header["full_width"], 2, 2)
+        with Viewer(size="64x48", spp=1) as viewer, Client(viewer) as client:
+            client.say(type="shape", width=100, height=100)
+            state = client.done()
+            self.assertNotIn("--size", state["flags"])
+            self.assertIn(["Now", "size", "64 x 48"], state["rows"])
+
+
+class Keeps(CliTest):
+    def test_a_setting_that_is_refused_keeps_the_samples(self):
+        with Viewer("--threads", "1", size="160x120", spp=100000) as viewer, Client(viewer) as client:
+            samples = 0
+            for name, value in [("integrator", "whitted"), ("max_depth", -1), ("integrator", "nothing"), ("fov", 500),
+                                ("integrator", "path"), ("structure", 7), ("home", "where it is")]:
+                before = client.text("state", lambda s, n=samples: s["samples"] > n + 4 and s["hash"])["samples"]
+                number = client.steer(type="home") if name == "home" else client.set(name, value)
+                state = client.text("state", lambda s, n=number: s["input"] == n)
+                self.assertGreaterEqual(state["samples"], before, name)
+                state = client.text("state", lambda s: s["hash"])
+                self.assertGreaterEqual(state["samples"], before, name)
+                samples = state["samples"]
+
+
+class Grows(CliTest):
+    def test_on_a_slow_machine_the_picture_grows_and_a_new_setting_is_soon_seen_small(self):
+        with Viewer("--threads", "1", size="2560x1920", spp=64) as viewer, Client(viewer) as client:
+            end, widths = time.monotonic() + 60, []
+            while time.monotonic() < end and (not widths or widths[-1] < 1280):
+                header, _ = client.picture()
+                if not widths or header["width"] != widths[-1]:
+                    widths.append(header["width"])
+            self.assertGreater(len(widths), 2, widths)
+            self.assertEqual(widths[-3:], sorted(widths[-3:]))  # before, sizes follow what frames have told of the machine
+            for name, value in [("max_depth", 3), ("integrator", "distributed"), ("layer", "albedo")]:
+                began = time.monotonic()
+                number = client.set(name, value)
+                header, _ = client.picture(lambda h, n=number: h["input"] == n)
+                self.assertLess(time.monotonic() - began, 10 if SANITIZED else 3, name)  # a second, on a quiet machine
+                self.assertLess(header["width"], 1280, name)
+
+
+class Together(CliTest):
+    def test_a_second_client_is_told_why_it_does_not_steer_and_who_steers_sees_the_wish(self):
+        with Viewer() as viewer, Client(viewer, key="first") as first:
+            before = first.done()["flags"]
+            with Client(viewer, key="second") as second:
+                second.text("people")
+                for _ in range(20):
+                    second.steer(type="orbit", dx=0.1, dy=0)
+                told = second.text("notice")
+                self.assertEqual(told["kind"], "why")
+                people = first.text("people", lambda p: any(person["wish"] for person in p["people"]))
+                wishing = next(person for person in people["people"] if person["wish"])
+                self.assertIn(f"viewer {people['you']} steers", told["text"])
+                self.assertNotEqual(wishing["id"], people["you"])
+                self.assertEqual(wishing["wish"], "turn the view")
+                first.say(type="hand", to=wishing["id"])
+                second.text("people", lambda p: p["steers"] == p["you"] and not any(q["wish"] for q in p["people"]))
+                second.steer(type="orbit", dx=0.1, dy=0)
+                second.text("state", lambda s: s["flags"] != before)
+
+
+class Secrets(CliTest):
+    def test_no_client_learns_where_the_scene_lies(self):
+        os.mkdir(self.path("a-secret"))
+        write(self.path("a-secret/m.gltf"), moving_gltf())
+        with Viewer("--time", "0", scene=self.path("a-secret/m.gltf"), spp=1) as viewer, Client(viewer) as client:
+            welcome = client.text("welcome")
+            self.assertEqual(welcome["scene"], "m.gltf")
+            self.assertIn(["Scene", "file", "m.gltf"], welcome["about"])
+            state = client.done()
+            for format_ in ("png", "exr"):
+                with open(self.path("saved"), "wb") as file:
+                    file.write(viewer.get(f"/save?format={format_}")[2])
+                with open(self.path("saved"), "rb") as file:
+                    self.assertNotIn(b"a-secret", file.read())
+            self.assertEqual(read_exr(self.path("saved"))[:2], (64, 48))
+            self.assertNotIn("a-secret", str(welcome) + str(state))
+
+
+class Log(CliTest):
+    def test_the_log_of_a_viewer_that_waits_says_nothing_twice(self):
+        with Viewer(size="16x16", spp=1) as viewer:
+            heard, end = b"", time.monotonic() + 11  # a log is written to every 10 s while there is news
+            while (left := end - time.monotonic()) > 0:
+                if select.select([viewer.process.stderr], [], [], left)[0]:
+                    heard += os.read(viewer.process.stderr.fileno(), 4096)
+            lines = [line for line in heard.decode().splitlines() if line]
+            self.assertEqual(len(lines), len(set(lines)), lines)
+            self.assertNotIn("waiting", heard.decode())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,47 @@
+// Messages: what was left out and what was made up, in one list each.
+
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include "base/json_text.h"
+#include "base/messages.h"
+
+using namespace pertev;
+
+TEST_CASE("what is left out is a warning, what is made up a notice, and each has a list") {
+    Messages messages;
+    messages.warn("repaired");
+    messages.leave_out("a texture");
+    messages.note("a default");
+    messages.make_up("a sky");
+    messages.leave_out("a texture");
+    messages.leave_out("a lamp");
+    REQUIRE(messages.all().size() == 5);
+    CHECK(messages.all()[1].is_warning);
+    CHECK(messages.all()[1].times == 2);
+    CHECK(!messages.all()[3].is_warning);
+    CHECK(messages.left_out() == std::vector<std::string>{"a texture", "a lamp"});
+    CHECK(messages.made_up() == std::vector<std::string>{"a sky"});
+
+    Messages others;
+    others.warn("a texture"); // told before without saying that it is left out
+    others.add_all(messages);
+    CHECK(others.left_out() == messages.left_out());
+    CHECK(others.made_up() == messages.made_up());
+    CHECK(others.all()[0].times == 3);
+}
+
+TEST_CASE("a file with a million faults does not fill the memory with them") {
+    Messages messages;
+    for (int i = 0; i < 1'000'000; ++i) messages.leave_out(fmt::format("fault {}", i % 500'000));
+    CHECK(messages.all().size() == 101);
+    CHECK(messages.left_out().size() == 101);
+    CHECK(messages.all()[0].times == 2);
+    CHECK(messages.all()[100].times == 1'000'000 - 200);
+}
+
+TEST_CASE("lists of texts are arrays of JSON") {
+    CHECK(json_strings({}) == "[]");
+    CHECK(json_strings({"a \"b\"", "c"}) == R"(["a \"b\"","c"])");
+}

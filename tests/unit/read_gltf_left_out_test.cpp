@@ -1,0 +1,251 @@
+// What other viewers show is shown: members that are null, numbers without bound, containers that are padded in other
+// ways, names of another machine. What cannot be shown is left out with a warning.
+
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <span>
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "base/write_file_atomically.h"
+#include "formats/gltf/uri.h"
+#include "formats/read_gltf.h"
+#include "scene/validate.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+using test::GltfBuilder;
+
+namespace {
+
+GltfBuilder triangle() {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+    return builder;
+}
+
+constexpr const char* kMesh = R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)";
+
+std::string with_triangle(const std::string& members) { return triangle().json(kMesh + members); }
+
+Light lamp(const std::string& members) {
+    const Scene scene = test::read_gltf_text(
+        with_triangle(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)" + members +
+                      R"(}]}},"nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}])"));
+    return scene.lights.at(0);
+}
+
+/// What reading and validating says; the Error's text comes last.
+std::vector<std::string> told_of(const std::string& json) {
+    Messages messages;
+    std::vector<std::string> texts;
+    std::string error;
+    try {
+        Scene scene = test::read_gltf_text(json, messages);
+        validate(scene, "model.gltf", messages);
+    } catch (const Error& fault) {
+        error = fault.what();
+    }
+    texts = messages.left_out();
+    if (!error.empty()) texts.push_back("error: " + error);
+    return texts;
+}
+
+Scene read_glb(std::vector<std::byte> bytes, Messages& messages) {
+    const auto path = test::scratch_folder() / "model.glb";
+    write_file_atomically(path, bytes);
+    return read_gltf(path, FileAccess(path, {}), {}, messages);
+}
+
+uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t at) {
+    uint32_t value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+}
+
+void set_u32(std::vector<std::byte>& bytes, std::size_t at, std::size_t value) {
+    const auto number = static_cast<uint32_t>(value);
+    std::memcpy(bytes.data() + at, &number, sizeof number);
+}
+
+} // namespace
+
+TEST_CASE("a member that is null is one that is not there") {
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        with_triangle(
+            R"("extensionsUsed":null,"extensionsRequired":null,"animations":null,"skins":null,"scene":null,)"
+            R"("extensions":null,"cameras":[null],"materials":[{"name":null,"pbrMetallicRoughness":null,)"
+            R"("normalTexture":null,"alphaMode":null,"alphaCutoff":null,"extensions":null}],"nodes":[)"
+            R"({"mesh":0,"name":null,"camera":null,"skin":null,"children":null,"matrix":null,)"
+            R"("translation":null,"rotation":null,"weights":null,"extensions":{"KHR_lights_punctual":null}}])"),
+        messages);
+    CHECK(scene.instances.size() == 1);
+    CHECK(scene.instances.at(0).world_from_local == Transform());
+    CHECK(messages.all().empty());
+}
+
+TEST_CASE("an element that is null counts as an object without members, and nothing else is lost") {
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        with_triangle(R"("nodes":[null,{"mesh":0,"children":[null,0]}],"animations":[{"channels":[null]},null])"),
+        messages);
+    CHECK(scene.instances.size() == 1);
+    CHECK(scene.nodes[0].parent == 1);
+    CHECK(messages.left_out().size() == 2); // the child and the channel
+}
+
+TEST_CASE("a number beyond the largest float is the largest, and a range of that is none") {
+    for (const std::string range : {"3.40282347E+38", "3.4028234663852886e+38", "1.7976931348623157e+308"}) {
+        const Light light = lamp("\"range\":" + range);
+        CHECK(light.range == std::numeric_limits<float>::max());
+    }
+    const Light bright = lamp(R"("intensity":1e300,"color":[1,2,0])");
+    CHECK(is_finite(bright.intensity));
+    CHECK(bright.intensity.b == 0);
+}
+
+TEST_CASE("what lies out of all bounds is left out, and the rest is shown") {
+    Messages messages;
+    Scene scene = test::read_gltf_text(
+        with_triangle(R"("cameras":[{"type":"perspective","perspective":{"yfov":1}}],"nodes":[{"mesh":0},)"
+                      R"({"mesh":0,"translation":[1e300,0,0]},{"camera":0,"translation":[0,-1e39,0]},)"
+                      R"({"mesh":0,"scale":[1e300,1,1],"children":[4]},{"mesh":0,"scale":[1e300,1,1]}])"),
+        messages);
+    validate(scene, "model.gltf", messages);
+    REQUIRE(scene.instances.size() == 1);
+    CHECK(scene.instances[0].node == 0);
+    CHECK(scene.cameras.empty());
+    CHECK(messages.left_out().size() == 4);
+}
+
+TEST_CASE("a GLB's JSON may be padded with zero bytes, and its header may give a wrong length") {
+    const std::vector<std::byte> good = triangle().glb(std::string(kMesh) + R"("nodes":[{"mesh":0}])");
+    Messages silent;
+    CHECK(read_glb(good, silent).instances.size() == 1);
+    CHECK(silent.all().empty());
+
+    std::vector<std::byte> padded = good;
+    padded.insert(padded.begin() + 20 + u32_at(good, 12), 4, std::byte{});
+    set_u32(padded, 8, padded.size());
+    set_u32(padded, 12, u32_at(good, 12) + 4);
+    CHECK(read_glb(padded, silent).instances.size() == 1);
+    CHECK(silent.all().empty());
+
+    const std::size_t json_end = 20 + u32_at(good, 12);
+    for (const std::size_t length : {good.size() + 4, std::size_t(0), good.size() - 4, json_end}) {
+        CAPTURE(length);
+        std::vector<std::byte> wrong = good;
+        set_u32(wrong, 8, length);
+        Messages messages;
+        CHECK(read_glb(wrong, messages).instances.size() == 1);
+        CHECK(messages.left_out().empty());
+    }
+    std::vector<std::byte> cut_off(good.begin(), good.end() - 4);
+    Messages messages;
+    CHECK(read_glb(cut_off, messages).instances.empty());
+    CHECK(test::has_warning(messages, {"model.glb: byte", "cut off", "left out"}));
+}
+
+TEST_CASE("a part that is compressed alone is left out with the command that converts the file") {
+    const std::string draco = R"("extensionsRequired":["KHR_draco_mesh_compression"],)"
+                              R"("accessors":[{"componentType":5126,"type":"VEC3","count":3}],)";
+    const std::string compressed =
+        R"({"attributes":{"POSITION":0},"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{}}}})";
+    const std::string command = "gltf-transform/cli copy \"model.gltf\" \"model-converted.gltf\"";
+    const std::vector<std::string> told =
+        told_of(R"({"asset":{"version":"2.0"},)" + draco + R"("meshes":[{"primitives":[)" + compressed +
+                R"(]}],"nodes":[{"mesh":0}]})");
+    REQUIRE(told.size() == 2);
+    CHECK(told[0].find("model.gltf: /meshes/0/primitives/0: a part compressed by KHR_draco_mesh_compression") !=
+          std::string::npos);
+    CHECK(told[0].find(command) != std::string::npos);
+    CHECK(told[1].starts_with("error: "));
+    CHECK(told[1].find(command) != std::string::npos);
+
+    // Beside data that is not compressed it is not needed.
+    CHECK(told_of(triangle().json(R"("extensionsUsed":["KHR_draco_mesh_compression"],"meshes":[{"primitives":[)" +
+                                  compressed + R"(]}],"nodes":[{"mesh":0}])"))
+              .empty());
+}
+
+TEST_CASE("a texture with a picture of another kind alone is left out with the command that converts the file") {
+    for (const auto& [extension, command] :
+         {std::pair("KHR_texture_basisu", "cli ktxdecompress "), std::pair("EXT_texture_webp", "cli png ")}) {
+        CAPTURE(extension);
+        const std::vector<std::string> told = told_of(triangle().json(
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
+            R"({"emissiveTexture":{"index":0}}],"textures":[{"extensions":{")" +
+            std::string(extension) + R"(":{"source":0}}}],"images":[{"uri":"a.ktx2"}])"));
+        REQUIRE(told.size() == 1);
+        CHECK(told[0].find("/textures/0") != std::string::npos);
+        CHECK(told[0].find(command) != std::string::npos);
+    }
+}
+
+TEST_CASE("an image's name may be absolute, of another system, a file: URI or hold a percent sign") {
+    const auto folder = test::scratch_folder();
+    const std::string png =
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC";
+    const auto read = [&](const std::string& uri, Messages& messages) {
+        const auto path = folder / "model.gltf";
+        const std::string text = triangle().json(
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
+            R"({"emissiveTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":")" +
+            uri + "\"}]");
+        write_file_atomically(path, std::as_bytes(std::span(text)));
+        return read_gltf(path, FileAccess(path, {}), {}, messages);
+    };
+    const std::optional<std::vector<std::byte>> picture = gltf::decode_data_uri("data:;base64," + png);
+    for (const char* name : {"a.png", "100%.png", "b%20c.png"}) write_file_atomically(folder / name, *picture);
+    for (const std::string& uri :
+         std::vector<std::string>{"file:///C:/model/a.png", "C:\\\\model\\\\a.png", "/model/a.png", "100%.png",
+                                  "100%25.png", "b%20c.png", "DATA:image/png;base64," + png}) {
+        CAPTURE(uri);
+        Messages messages;
+        CHECK(read(uri, messages).images.size() == 1);
+        CHECK(messages.left_out().empty());
+    }
+    for (const std::string uri :
+         {"file:///C:/model/gone.png", "C:\\\\model\\\\gone.png", "gone%.png", "http://a/b.png"}) {
+        CAPTURE(uri);
+        Messages messages;
+        const Scene scene = read(uri, messages);
+        CHECK(scene.instances.size() == 1);
+        CHECK(scene.images.empty());
+        CHECK(messages.left_out().size() == 1);
+        CHECK(test::has_warning(messages, {"model.gltf: /images/0/uri"}));
+    }
+}
+
+TEST_CASE("an attribute that cannot be read is left out, and the part is shown") {
+    GltfBuilder builder = triangle();
+    builder.add("VEC2", std::vector<float>{0, 0, 1, 0});
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        builder.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1,"NORMAL":9}},)"
+                     R"({"attributes":{"POSITION":9}}]}],"nodes":[{"mesh":0}])"),
+        messages);
+    REQUIRE(scene.instances.size() == 1);
+    CHECK(scene.meshes[0].uv[0].empty());
+    CHECK(scene.meshes[0].normals.empty());
+    CHECK(messages.left_out().size() == 3);
+}
+
+TEST_CASE("of a material only the property that cannot be read is left out") {
+    Messages messages;
+    const Scene scene = test::read_gltf_text(
+        triangle().json(
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],)"
+            R"("materials":[{"alphaMode":"GLASS","emissiveFactor":[1,2],"pbrMetallicRoughness":)"
+            R"({"baseColorFactor":[0.25,0.5,1,1],"baseColorTexture":{"index":5}},"doubleSided":true}])"),
+        messages);
+    const Material& material = scene.materials.at(0);
+    CHECK(material.base_color == Rgb{0.25f, 0.5f, 1});
+    CHECK(material.alpha_mode == AlphaMode::Opaque);
+    CHECK(material.double_sided);
+    CHECK(messages.left_out().size() == 3);
+}

@@ -1,0 +1,146 @@
+// When surfaces that glow light a scene too little to see it by, and what is made up then.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/read_scene.h"
+#include "session/open_scene.h"
+#include "session/survey/default_light.h"
+#include "session/survey/weak_light.h"
+#include "tests/support/options.h"
+
+using namespace pertev;
+
+namespace {
+
+/// A quad of half size `half` about `middle`, whose front points along the unit `front`.
+void add_quad(Scene& scene, Vec3 middle, Vec3 front, float half, uint32_t material) {
+    const Vec3 u = half * Vec3{front.y, front.z, front.x}, v = cross(front, u);
+    Mesh mesh;
+    mesh.positions = {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
+    mesh.indices = {0, 1, 2, 0, 2, 3};
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back({.name = "quad",
+                               .mesh = static_cast<uint32_t>(scene.meshes.size() - 1),
+                               .material = material,
+                               .world_from_local = {}});
+}
+
+/// A cube of 1 m, and a lamp of 2 cm on its top that shines upwards.
+Scene make_body_with_lamp() {
+    Scene scene;
+    scene.materials.push_back({.name = "body"});
+    scene.materials.push_back({.name = "lamp", .emission = grey(50)});
+    for (const Vec3 front :
+         {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+        add_quad(scene, 0.5f * front, front, 0.5f, 0);
+    }
+    add_quad(scene, {0, 0.501f, 0}, {0, 1, 0}, 0.01f, 1);
+    return scene;
+}
+
+/// A floor beneath a lamp of 1 m.
+Scene make_lit_floor() {
+    Scene scene;
+    scene.materials.push_back({.name = "floor"});
+    scene.materials.push_back({.name = "lamp", .emission = grey(5)});
+    add_quad(scene, {}, {0, 1, 0}, 2, 0);
+    add_quad(scene, {0, 2, 0}, {0, -1, 0}, 0.5f, 1);
+    return scene;
+}
+
+DefaultLight light_added(Scene scene, SceneUse use) {
+    Messages messages;
+    const DefaultLight added = add_default_light(scene, use, messages);
+    CHECK(messages.all().size() == (added == DefaultLight::None ? 0 : 1)); // said where it is done
+    CHECK(scene.environment.has_value() == (added == DefaultLight::Sky));
+    return added;
+}
+
+void add_emission_texture(Scene& scene, uint8_t value) {
+    TextureImage image;
+    image.rgba8.width = image.rgba8.height = 1;
+    image.rgba8.pixels = {value, value, value, 255};
+    scene.images.push_back(std::move(image));
+    scene.materials[1].emission_texture.image = 0;
+}
+
+} // namespace
+
+TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and in nothing else") {
+    const Scene scene = make_body_with_lamp();
+    CHECK(share_lit(scene) < 0.01);
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+    CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
+    CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
+}
+
+TEST_CASE("a lamp that lights what is seen gets no sky, with an emission texture or without") {
+    Scene scene = make_lit_floor();
+    CHECK(share_lit(scene) > 0.9);
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
+    add_emission_texture(scene, 200);
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
+    CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
+}
+
+TEST_CASE("a lamp whose texture is black gives no light, so there is a sky") {
+    Scene scene = make_lit_floor();
+    add_emission_texture(scene, 0);
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+    CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::Sky);
+}
+
+TEST_CASE("the first camera of the file decides, and how bright the lamp is does not") {
+    Scene scene = make_lit_floor();
+    for (const float scale : {1e-6f, 1e6f}) {
+        scene.materials[1].emission = grey(scale);
+        CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
+    }
+    Camera from_below;
+    from_below.world_from_camera = look_at({0, -3, 1}, {}, {0, 1, 0}); // sees the dark side of the floor
+    scene.cameras.push_back(from_below);
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+}
+
+TEST_CASE("an animation decides as it stands at time 0") {
+    Scene scene = make_lit_floor();
+    scene.nodes.resize(1);
+    scene.instances[1].node = 0; // the lamp
+    AnimationChannel grows = {.target = 0, .part = AnimatedPart::Scale, .times = {0, 1}, .values = {1, 1, 1, 0, 0, 0}};
+    scene.animations.push_back({.name = "", .origin = "", .channels = {grows}});
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
+    scene.animations[0].channels[0].values = {0, 0, 0, 1, 1, 1}; // it is not there at first
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+}
+
+TEST_CASE("benchmarks keep the sky that their figures were measured under") {
+    Scene studio, clear;
+    for (Scene* scene : {&studio, &clear}) {
+        scene->materials.emplace_back();
+        add_quad(*scene, {}, {0, 1, 0}, 1, 0);
+    }
+    Messages messages;
+    add_default_light(studio, SceneUse::Picture, messages);
+    add_default_light(clear, SceneUse::Benchmark, messages);
+    // White surfaces that face up send as much under either: 1.5 W/(sr m2).
+    for (const Scene* scene : {&studio, &clear}) {
+        const Image& sky = scene->environment->image;
+        double irradiance = 0;
+        for (uint32_t y = 0; y < sky.height / 2; ++y) {
+            const double theta = 3.14159265358979 * (y + 0.5) / sky.height;
+            const double weight = std::sin(theta) * std::cos(theta) * 2 * 3.14159265358979 * 3.14159265358979 /
+                                  (double(sky.width) * sky.height);
+            for (uint32_t x = 0; x < sky.width; ++x) {
+                const float* pixel = sky.at(x, y);
+                irradiance += weight * double(luminance({pixel[0], pixel[1], pixel[2]}));
+            }
+        }
+        CHECK(irradiance / 3.14159265358979 == doctest::Approx(1.5).epsilon(0.05));
+    }
+    const auto largest = [](const Scene& scene) { return *std::ranges::max_element(scene.environment->image.pixels); };
+    CHECK(largest(clear) > 30);
+    CHECK(largest(studio) < 8); // so it is found with less noise
+}

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Renders every model of a folder with no flag but its size and its samples, and puts the pictures on one sheet.
+
+    tools/make_first_views.py build/bin/pertev ../shared/scenes/gltf docs/pictures/first_views.jpg
+
+A model is a .gltf or .glb file; of a folder that holds several, the first by name. The sheet shows what a person sees who
+opens a file: the view, the light, the ground and the exposure that are made up where the file has none. Needs Pillow.
+"""
+import argparse
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from PIL import Image, ImageDraw
+
+KINDS = {'.gltf', '.glb', '.obj', '.ply'}
+
+
+def models(folder):
+    """Returns one file of each folder below `folder`, in the order of the folders' names."""
+    found = {}
+    for path in sorted(folder.rglob('*')):
+        if path.suffix.lower() in KINDS:
+            found.setdefault(path.parent, path)
+    return list(found.values())
+
+
+def render(pertev, path, size, samples, more):
+    with tempfile.TemporaryDirectory() as scratch:
+        out = pathlib.Path(scratch) / 'view.png'
+        command = [pertev, 'render', str(path), '-o', str(out), '--size', '%dx%d' % size, '--spp', str(samples), '-q',
+                   *more]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            print('%s: %s' % (path, done.stderr.strip()), file=sys.stderr)
+            return None
+        return Image.open(out).convert('RGB')
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('pertev')
+    parser.add_argument('scenes', nargs='+', help='folders, or single files')
+    parser.add_argument('sheet', help='the picture to write')
+    parser.add_argument('--columns', type=int, default=8)
+    parser.add_argument('--size', default='200x150', help='of each view, WIDTHxHEIGHT')
+    parser.add_argument('--spp', type=int, default=64)
+    parser.add_argument('--quality', type=int, default=80)
+    parser.add_argument('--only', default='', help='words, comma-separated, one of which a path must hold')
+    parser.add_argument('--more', default='', help='further flags of each render, separated by blanks')
+    args = parser.parse_args()
+
+    width, height = (int(part) for part in args.size.split('x'))
+    paths = []
+    for scene in map(pathlib.Path, args.scenes):
+        paths += models(scene) if scene.is_dir() else [scene]
+    if args.only:
+        paths = [path for path in paths if any(word in str(path) for word in args.only.split(','))]
+    label = 14
+    rows = (len(paths) + args.columns - 1) // args.columns
+    sheet = Image.new('RGB', (args.columns * width, rows * (height + label)), 'white')
+    draw = ImageDraw.Draw(sheet)
+    failed = 0
+    for number, path in enumerate(paths):
+        x, y = number % args.columns * width, number // args.columns * (height + label)
+        view = render(args.pertev, path, (width, height), args.spp, args.more.split())
+        failed += view is None
+        if view is not None:
+            sheet.paste(view, (x, y))
+        draw.text((x + 3, y + height + 1), path.stem[:32], fill='black')
+    sheet.save(args.sheet, quality=args.quality, optimize=True)
+    print('%s: %d views, %d failed' % (args.sheet, len(paths), failed))
+    return 1 if failed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
