@@ -28,11 +28,14 @@ public:
     void showed(float scale) { shown_ = scale; }
     /// Whether a sample takes long, so that nobody should have to wait for one.
     bool is_slow() const { return full_s_ > soon_s_; }
+    /// Whether a sample that takes so long may be waited for, even by somebody who moves the camera.
+    bool is_short(double sample_s) const { return sample_s <= kShort * soon_s_; }
     /// Returns the scale of the next picture, or nothing where the samples of the full one may gather. `has_whole`:
     /// a last picture of full size comes before the samples.
     std::optional<float> next(bool has_whole) const;
 
 private:
+    static constexpr double kShort = 0.4;
     double soon_s_;
     float shown_ = 0;
     double full_s_ = 0; // of a sample of all pixels

@@ -413,10 +413,12 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     if (!was_begun) half_samples_ = 0;
     const uint32_t until = competes ? std::min(wanted, std::bit_floor(before) * 2 + !was_begun) : wanted;
     // A picture of the movement is finished whatever comes: input comes faster than pictures, and would break off each.
-    const bool is_slow = growth_.is_slow();
+    // At rest no whole sample is lost: who asked for another picture may get the same one after all. A short sample is
+    // waited for, and a long one goes through a film of its own. The first has none before it.
+    const bool is_slow = growth_.is_slow(), is_short = was_begun && growth_.is_short(sample_s_);
     const std::atomic<bool>& stops = is_slow ? hurry_ : abandon_;
-    session_.abandon_when(is_of_movement ? nullptr : &stops);
-    session_.keep_samples_when_abandoned(is_slow);
+    session_.abandon_when(is_of_movement || is_short ? nullptr : &stops);
+    session_.keep_samples_when_abandoned(!is_short);
     const Stopwatch render;
     ShownFrame frame;
     uint32_t added = 0;

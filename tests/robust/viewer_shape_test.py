@@ -48,10 +48,9 @@ class Keeps(CliTest):
         with Viewer("--threads", "1", size="160x120", spp=100000) as viewer, Client(viewer) as client:
             samples = 0
             for name, value in [("integrator", "whitted"), ("max_depth", -1), ("integrator", "nothing"), ("fov", 500),
-                                ("integrator", "path"), ("structure", 7)]:
+                                ("integrator", "path"), ("structure", 7), ("home", "where it is")]:
                 before = client.text("state", lambda s, n=samples: s["samples"] > n + 4 and s["hash"])["samples"]
-                client.set(name, value)
-                number = client.input
+                number = client.steer(type="home") if name == "home" else client.set(name, value)
                 state = client.text("state", lambda s, n=number: s["input"] == n)
                 self.assertGreaterEqual(state["samples"], before, name)
                 state = client.text("state", lambda s: s["hash"])
