@@ -113,8 +113,7 @@ int bench_job(const JobFlags& flags) {
     const RenderResult result = session.result();
     const std::string hash = picture_hash(result.picture).hex();
     if (!flags.output.empty()) {
-        write_image(flags.output, result.picture);
-        reporter.output(flags.output);
+        reporter.write_output(flags.output, [&] { write_image(flags.output, result.picture); });
     }
     const double pixels = static_cast<double>(settings.width) * settings.height, samples = pixels * settings.samples;
     const double samples_per_second = samples / result.render_seconds, mean = mean_of(result.picture);

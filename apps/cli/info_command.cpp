@@ -14,6 +14,7 @@
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "formats/file_choices.h"
 #include "formats/read_scene.h"
 #include "image/image_format.h"
 #include "image/picture_hash.h"
@@ -21,6 +22,7 @@
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
 #include "scene/scene_origin.h"
+#include "session/metadata_json.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {
@@ -35,12 +37,6 @@ struct InfoFlags {
 class Facts {
 public:
     void add(const std::string& name, const std::string& text) { facts_.push_back({name, text, json_string(text)}); }
-    void add(const std::string& name, double number) {
-        facts_.push_back({name, fmt::format("{}", number), json_number(number)});
-    }
-    void add(const std::string& name, float number) {
-        facts_.push_back({name, fmt::format("{}", number), json_number(static_cast<double>(number))});
-    }
     void add(const std::string& name, DoubleVec3 v) {
         facts_.push_back({name, fmt::format("{:.12g} {:.12g} {:.12g}", v.x, v.y, v.z),
                           fmt::format("[{},{},{}]", json_number(v.x), json_number(v.y), json_number(v.z))});
@@ -58,6 +54,10 @@ public:
         std::string json;
         for (const std::string& text : texts) json += (json.empty() ? "" : ",") + json_string(text);
         facts_.push_back({name, fmt::format("{}", fmt::join(texts, " ")), fmt::format("[{}]", json)});
+    }
+    void add(const ExrMetadata::value_type& entry) {
+        const auto text = [](const auto& value) { return fmt::format("{}", value); };
+        facts_.push_back({entry.first, std::visit(text, entry.second), metadata_json(entry)});
     }
     void report(Reporter& reporter) const {
         std::string json = R"({"event":"info")", lines;
@@ -93,9 +93,20 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     std::vector<std::string> channels;
     for (const ExrChannel& channel : exr.channels) channels.push_back(channel.name);
     facts.add("channels", channels);
-    for (const auto& entry : exr.metadata) {
-        std::visit([&](const auto& value) { facts.add(entry.first, value); }, entry.second);
+    for (const auto& entry : exr.metadata) facts.add(entry);
+}
+
+/// Which animations and scenes the file has, and which of them a render plays and shows unless flags say otherwise.
+void describe_choices(const Scene& scene, Facts& facts) {
+    std::vector<std::string> animations = list_clips(scene.clips); // what --animation takes
+    for (std::size_t i = 0; i < animations.size(); ++i) {
+        animations[i] += fmt::format(" ({:.6g} s)", scene.clips[i].end_s);
     }
+    facts.add("animations", animations);
+    if (animations.size() > 1) facts.add("plays", clip_choice(scene.clips));
+    if (scene.file_scenes.size() < 2) return;
+    facts.add("file_scenes", list_file_scenes(scene)); // what --file-scene takes
+    facts.add("shows", file_scene_choice(scene));
 }
 
 void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
@@ -126,12 +137,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
         cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);
     }
     facts.add("cameras", cameras);
-    std::vector<std::string> animations;
-    for (const Animation& animation : scene.animations) {
-        const std::string name = animation.name.empty() ? fmt::format("{}", animations.size()) : animation.name;
-        animations.push_back(fmt::format("{} ({:.6g} s)", name, animation.end_s()));
-    }
-    facts.add("animations", animations);
+    describe_choices(scene, facts);
 }
 
 void describe_solution(const InfoFlags& flags, Facts& facts) {
@@ -151,8 +157,11 @@ int info(const InfoFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     Facts facts;
-    facts.add("file", flags.scene.scene);
-    if (is_picture_name(flags.scene.scene)) {
+    const std::string& name = flags.scene.scene;
+    facts.add("file", name);
+    refuse(!flags.scene.file_scene.empty() && (is_picture_name(name) || !is_scene_name(name)),
+           fmt::format("--file-scene: of a scene; {} is none", name));
+    if (is_picture_name(name)) {
         describe_image(flags, facts, messages);
     } else if (is_scene_name(flags.scene.scene)) {
         describe_scene(flags, facts, messages);
@@ -174,10 +183,12 @@ void add_info_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("info", "Say what a scene, a picture or a radiosity solution holds");
     const auto flags = std::make_shared<InfoFlags>();
     verb.add_option("FILE", flags->scene.scene,
-                    "a scene (.gltf .glb .obj .ply or a built-in one), a picture, or what solve has made")
+                    "a scene (.gltf .glb .obj .ply, or a built-in one:\n" + builtin_scene_list() +
+                        "),\na picture, or what solve has made")
         ->type_name("")
         ->check(file_name())
         ->required();
+    add_file_scene(verb, flags->scene);
     add_read_options(verb, flags->scene);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = info(*flags); });

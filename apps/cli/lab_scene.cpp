@@ -17,6 +17,10 @@ namespace pertev {
 Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
     const std::string& name = options.scene;
     if (const RecordScene* record = find_record_scene(name)) {
+        if (!options.file_scene.empty()) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--file-scene: {} has no scenes of its own to choose from", name));
+        }
         return make_record_scene(*record, public_scenes_folder(), messages);
     }
     std::error_code no_such_name; // of a name too long for a file, too

@@ -2,6 +2,7 @@
 // --json, an object.
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -98,6 +99,12 @@ int run(int argc, char** argv, bool json) {
     }
 }
 
+/// Whether the standard output is a pipe whose reader has gone, as `head` does once it has its lines.
+bool is_reader_gone() {
+    pollfd out = {STDOUT_FILENO, POLLOUT, 0};
+    return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
+}
+
 } // namespace
 } // namespace pertev
 
@@ -116,6 +123,7 @@ int main(int argc, char** argv) {
     const int status = run(argc, argv, json);
     std::cout.flush(); // CLI11 writes help and version there
     if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        if (is_reader_gone()) return status; // it has all that it wanted
         return std::max(status, report_error(false, ErrorCode::FileWrite, "cannot write to the standard output"));
     }
     return status;

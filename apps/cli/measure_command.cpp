@@ -41,6 +41,9 @@ MeterPlace place_of(const MeasureFlags& flags) {
     return place;
 }
 
+/// A vector of the command line, which is one.
+std::string json_of(const std::string& vector) { return json_vector(vector).value_or(json_string(vector)); }
+
 std::string in_json(const Measured& m, double scale = 1) {
     return fmt::format(R"({{"value":{},"standard_error":{}}})", json_number(scale * m.value),
                        json_number(scale * m.standard_error));
@@ -56,10 +59,10 @@ void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, d
     if (reporter.json()) {
         reporter.result(fmt::format(
             R"({{"event":"measure","scene":{},"at":{},"normal":{},"device":{},"irradiance_rgb":[{},{},{}],"irradiance":{},"illuminance":{},"lumens_per_watt":{},"paths":{},"invalid_paths":{},"rays":{},"max_depth":{},"seed":{},"seconds":{:.3f}}})",
-            json_string(flags.scene.scene), json_string(flags.at), json_string(flags.normal),
-            json_string(queue.device_name()), in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]),
-            in_json(e.luminance), in_json(e.luminance, efficacy), json_number(efficacy), e.paths, e.invalid_paths,
-            e.rays.total(), flags.max_depth, flags.seed, seconds));
+            json_string(flags.scene.scene), json_of(flags.at), json_of(flags.normal), json_string(queue.device_name()),
+            in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]), in_json(e.luminance),
+            in_json(e.luminance, efficacy), json_number(efficacy), e.paths, e.invalid_paths, e.rays.total(),
+            flags.max_depth, flags.seed, seconds));
         return;
     }
     reporter.answer(fmt::format("irradiance   {} W/m2 (red {}, green {}, blue {})\n"
@@ -127,9 +130,11 @@ void add_measure_command(CLI::App& app, int& status) {
         ->type_name("N")
         ->check(whole_between(0, kMostMeterSeed))
         ->capture_default_str();
-    verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
+    verb.add_option("--time", flags->time_s, "the scene at this time of its animation (at rest)")
         ->type_name("SECONDS")
-        ->check(number_between(-1e9f, 1e9f));
+        ->check(number_between(-1e9f, 1e9f))
+        ->group("Motion");
+    add_animation(verb, flags->scene);
     add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     add_machine_flags(verb, flags->machine, "Machine");

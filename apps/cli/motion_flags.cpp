@@ -119,8 +119,8 @@ std::optional<FrameSequence> frame_sequence(const RenderFlags& flags) {
 void add_time_flags(CLI::App& verb, RenderFlags& flags, bool plays) {
     const char* group = "Motion";
     verb.add_option("--time", flags.time_s,
-                    fmt::format("the scene at this time of its animations, which all play\nfrom 0 on ({})",
-                                plays ? "without it, they play" : "at rest"))
+                    fmt::format("the scene at this time of its animation, which plays from 0 on\n({})",
+                                plays ? "without it, it plays" : "at rest"))
         ->type_name("SECONDS")
         ->check(number_between(-1e9f, 1e9f))
         ->group(group);

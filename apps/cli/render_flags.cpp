@@ -1,8 +1,10 @@
 #include "apps/cli/render_flags.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
 #include <limits>
+#include <map>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -42,15 +44,36 @@ bool is_picture(const std::string& name) {
     }
 }
 
-/// "a.png,b.exr" is one file's name, which hardly anybody means. Throws Error(BadInput) where it is no picture's.
-void check_for_list(const std::string& output, Messages& messages) {
+/// "a.png,b.exr" is one file's name, which hardly anybody means. Throws Error(BadInput).
+void refuse_list(const std::string& output) {
     const std::size_t comma = output.find(',');
     if (comma == std::string::npos || !is_picture(output.substr(0, comma))) return;
-    const std::string text = fmt::format("-o {}: this is the name of one file; each picture has a -o of its own: -o {} "
-                                         "-o {}",
-                                         output, output.substr(0, comma), output.substr(comma + 1));
-    if (!is_picture(output)) throw Error(ErrorCode::BadInput, text);
-    messages.warn(text);
+    std::string each = output;
+    for (std::size_t at = 0; (at = each.find(',', at)) != std::string::npos; at += 4) each.replace(at, 1, " -o ");
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("-o {}: this is the name of one file; each picture has a -o of its own: -o {}", output, each));
+}
+
+/// The file that is written, however it is named: without links, "." and "..".
+std::filesystem::path place_of(const std::string& file) {
+    std::error_code fault; // then the name as it is
+    const std::filesystem::path place = std::filesystem::weakly_canonical(file, fault);
+    return fault ? std::filesystem::path(file) : place;
+}
+
+/// Throws Error(BadInput) where two outputs are one file, of which the second picture would replace the first; of a
+/// sequence, where they are at some frame.
+void refuse_twins(const std::vector<std::string>& outputs, const std::optional<FrameSequence>& frames) {
+    std::map<std::filesystem::path, std::string> taken;
+    for (const std::string& output : outputs) {
+        const std::string file = frames ? frame_file(output, frames->last) : output; // the most digits
+        const auto [place, is_new] = taken.emplace(place_of(file), output);
+        if (is_new) continue;
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("-o {}: -o {} names the same file{}; leave out one of them", output, place->second,
+                                frames ? fmt::format(" for frame {}", frames->last) : ""));
+    }
 }
 
 /// Names that the picture's own channels and other layers have in files.
@@ -389,9 +412,14 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
     RenderSettings size; // where no flag tells it, it is small enough for every format
     if (!flags.size.empty()) std::tie(size.width, size.height) = parse_size("--size", flags.size);
     for (const std::string& output : flags.outputs) {
-        check_for_list(output, messages);
+        refuse_list(output);
         check_image_output(frames ? frame_file(output, frames->first) : output, size.width, size.height);
+        if (frames || !names_frames(output)) continue;
+        messages.note(fmt::format("-o {}: # stands for a frame's number with --frames A-B or --turntable N alone; this "
+                                  "is one picture, whose file is called so",
+                                  output));
     }
+    refuse_twins(flags.outputs, frames);
     if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
         throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
     }

@@ -1,6 +1,7 @@
 #include "apps/cli/render_frames.h"
 
 #include <algorithm>
+#include <exception>
 #include <iterator>
 #include <string_view>
 #include <variant>
@@ -39,9 +40,11 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
     for (const auto& [name, value] : settings_metadata(record)) {
         // They stand there only where they are; a run without them must be told apart from one with them.
         constexpr std::string_view kSometimes[] = {
-            "pertev.denoise", "pertev.ambient", "pertev.shading",     "pertev.wireframe",      "pertev.lpe",
-            "pertev.up_axis", "pertev.unit",    "pertev.lamp",        "pertev.quantity",       "pertev.false_color",
-            "pertev.shutter", "pertev.frame",   "pertev.first_frame", "pertev.reconstruction", "pertev.displacement"};
+            "pertev.denoise",     "pertev.ambient",        "pertev.shading",      "pertev.wireframe",
+            "pertev.lpe",         "pertev.up_axis",        "pertev.unit",         "pertev.lamp",
+            "pertev.quantity",    "pertev.false_color",    "pertev.shutter",      "pertev.frame",
+            "pertev.first_frame", "pertev.reconstruction", "pertev.displacement", "pertev.animation",
+            "pertev.file_scene",  "pertev.ground"};
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
@@ -59,6 +62,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
                                      {"hash of --camera-path", hash_of_file(flags.camera_path)},
                                      {"hash of the scene's file", hash_of_file(flags.scene.scene)},
                                      {"hash of --environment", hash_of_file(flags.scene.environment)},
+                                     {"--animation", record.scene.animation},
+                                     {"--file-scene", record.scene.file_scene},
                                      {"--shutter", shutter_text(flags)},
                                      {"--size", fmt::format("{}x{}", picture.width, picture.height)},
                                      {"--spp", fmt::format("{}", picture.samples)},
@@ -81,7 +86,8 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
 
 /// What is said of a whole sequence.
 struct Tally {
-    uint32_t rendered = 0, kept = 0, again = 0; // again: of those that were kept, rendered for the history of others
+    bool has_begun = false;                    // a frame was rendered, written or not
+    uint32_t written = 0, kept = 0, again = 0; // again: of those that were kept, rendered for the history of others
     uint64_t invalid_samples = 0;
     double update_s = 0;
 };
@@ -186,6 +192,61 @@ void say_history(const SequenceRun& run, const SequenceRecord& done, uint32_t fr
                                               first, first + there - 1));
 }
 
+/// Writes the frame's files. Throws Error(FileWrite) that names those that could not be written.
+WrittenPicture write_frame(const SequenceRun& run, uint32_t frame, RenderResult& result) {
+    WrittenPicture written = write_picture(files_of(run.flags, frame), run.record, result);
+    const std::string failures = report_files(written, run.reporter);
+    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+    return written;
+}
+
+/// Renders and writes those frames that are not there yet, in their order, and counts in `tally` as it goes on. Throws
+/// Error where one cannot be made or written: those before it are whole.
+void make_frames(const SequenceRun& run, SequenceRecord& done, Tally& tally) {
+    const FrameSequence& sequence = run.camera.sequence;
+    const bool goes_on = run.flags.goes_on, in_real_time = run.record.frame.has_value();
+    const uint32_t with_history = in_real_time ? count_frames_to_make(sequence, done, goes_on) : 0;
+    if (in_real_time) run.session.cut();
+    if (goes_on) say_history(run, done, with_history);
+    run.reporter.set_work("rendering");
+    for (uint32_t number = 0; number < sequence.count() && !interrupted(); ++number) {
+        const uint32_t frame = sequence.first + number;
+        const std::optional<double> time_s = sequence.time_of(frame);
+        const bool is_there = goes_on && done.has(frame);
+        if (is_there && number >= with_history) {
+            ++tally.kept;
+            run.reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true}})", frame));
+            continue;
+        }
+        const Stopwatch update;
+        if ((run.record.settings.aovs & kAovMotion) != 0) {
+            show_frame_before(frame, run.camera, run.moving, run.session, run.reporter.messages());
+        }
+        go_to_frame(frame, run.camera, run.moving, run.session, run.record, run.reporter.messages());
+        const double update_s = update.seconds();
+        RenderResult result = in_real_time ? frame_of(run, frame, is_there) : picture_of(run, frame);
+        if (result.samples < run.record.settings.samples) return; // interrupted: not whole, and not written
+        tally.has_begun = true;
+        const std::string hash = picture_hash(result.picture).hex();
+        if (in_real_time) done.check_picture(frame, hash);
+        if (is_there) {
+            ++tally.kept, ++tally.again;
+            run.reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true,"hash":"{}"}})", frame, hash));
+            continue;
+        }
+        run.record.scene.build_seconds = update_s;
+        const WrittenPicture written = write_frame(run, frame, result);
+        ++tally.written;
+        tally.update_s += update_s;
+        tally.invalid_samples += result.invalid_samples;
+        run.reporter.event(fmt::format(
+            R"({{"event":"frame","frame":{},"time":{},{},"samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
+            frame, time_s ? fmt::format("{}", *time_s) : "null", hashes_json(written), result.samples, update_s,
+            result.render_seconds));
+        done.add(frame, hash);
+    }
+}
+
 } // namespace
 
 void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
@@ -229,62 +290,27 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
     const SequenceRun run = {flags, camera, moving, record, session, reporter};
     SequenceRecord done(flags.outputs, settings_of(flags, sequence, record));
     if (flags.goes_on) done.load();
-    const bool in_real_time = record.frame.has_value();
-    const uint32_t with_history = in_real_time ? count_frames_to_make(sequence, done, flags.goes_on) : 0;
-    if (in_real_time) session.cut();
-    if (flags.goes_on) say_history(run, done, with_history);
-    reporter.set_work("rendering");
     Tally tally;
-    std::string failures;
-    for (uint32_t number = 0; number < sequence.count() && failures.empty() && !interrupted(); ++number) {
-        const uint32_t frame = sequence.first + number;
-        const std::optional<double> time_s = sequence.time_of(frame);
-        const bool is_there = flags.goes_on && done.has(frame);
-        if (is_there && number >= with_history) {
-            ++tally.kept;
-            reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true}})", frame));
-            continue;
-        }
-        const Stopwatch update;
-        if ((record.settings.aovs & kAovMotion) != 0) {
-            show_frame_before(frame, camera, moving, session, reporter.messages());
-        }
-        go_to_frame(frame, camera, moving, session, record, reporter.messages());
-        const double update_s = update.seconds();
-        RenderResult result = in_real_time ? frame_of(run, frame, is_there) : picture_of(run, frame);
-        if (result.samples < record.settings.samples) break; // interrupted: not whole, and not written
-        const std::string hash = picture_hash(result.picture).hex();
-        if (in_real_time) done.check_picture(frame, hash);
-        if (is_there) {
-            ++tally.kept, ++tally.again;
-            reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true,"hash":"{}"}})", frame, hash));
-            continue;
-        }
-        record.scene.build_seconds = update_s;
-        const WrittenPicture written = write_picture(files_of(flags, frame), record, result);
-        failures = report_files(written, reporter);
-        if (failures.empty()) done.add(frame, hash);
-        ++tally.rendered;
-        tally.update_s += update_s;
-        tally.invalid_samples += result.invalid_samples;
-        reporter.event(fmt::format(
-            R"({{"event":"frame","frame":{},"time":{},{},"samples":{},"update_seconds":{:.6f},"render_seconds":{:.6f}}})",
-            frame, time_s ? fmt::format("{}", *time_s) : "null", hashes_json(written), result.samples, update_s,
-            result.render_seconds));
+    std::exception_ptr failure; // ends the sequence, and is told once the frames before it have been
+    try {
+        make_frames(run, done, tally);
+    } catch (...) {
+        failure = std::current_exception();
     }
+    if (failure && !tally.has_begun && tally.kept == 0) std::rethrow_exception(failure); // there is nothing to count
     reporter.end_progress();
     reporter.say_messages();
-    const bool cut_short = failures.empty() && tally.rendered + tally.kept < sequence.count();
+    const bool is_whole = tally.written + tally.kept == sequence.count(), cut_short = !failure && !is_whole;
     reporter.say(fmt::format("{} of {} written{} in {:.2f} s, of which {:.1f} ms a frame to move the scene; {}{}",
-                             tally.rendered, counted(sequence.count(), "frame"), kept_text(tally), watch.seconds(),
-                             1e3 * tally.update_s / std::max(tally.rendered, 1u),
+                             tally.written, counted(sequence.count(), "frame"), kept_text(tally), watch.seconds(),
+                             1e3 * tally.update_s / std::max(tally.written, 1u),
                              counted(tally.invalid_samples, "invalid sample"),
                              cut_short ? "; interrupted: the same command with --continue goes on" : ""));
     reporter.result(fmt::format(
         R"({{"event":"sequence","frames":{},"written":{},"kept":{},"rendered_again":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
-        sequence.count(), tally.rendered, tally.kept, tally.again, watch.seconds(), tally.update_s,
+        sequence.count(), tally.written, tally.kept, tally.again, watch.seconds(), tally.update_s,
         tally.invalid_samples, cut_short));
-    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+    if (failure) std::rethrow_exception(failure);
     if (flags.strict && tally.invalid_samples > 0) throw not_finite(tally.invalid_samples);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }

@@ -3,30 +3,15 @@
 #include <sys/resource.h>
 
 #include <string_view>
-#include <type_traits>
-#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/byte_units.h"
 #include "base/message_text.h"
+#include "session/metadata_json.h"
 
 namespace pertev {
-namespace {
-
-/// Of a value of an EXR's metadata.
-template <class Value>
-std::string json_of(const Value& value) {
-    if constexpr (std::is_same_v<Value, std::string>) {
-        return json_string(value);
-    } else {
-        return json_number(static_cast<double>(value));
-    }
-}
-
-} // namespace
-
 uint64_t peak_memory_bytes() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
@@ -35,9 +20,9 @@ uint64_t peak_memory_bytes() {
 
 void report_camera(const CameraSource& camera, Reporter& reporter) {
     std::string object = R"({"event":"camera")";
-    for (const auto& [name, value] : camera_metadata(camera)) {
-        object += fmt::format(",{}:{}", json_string(name.substr(std::string_view("pertev.").size())),
-                              std::visit([](const auto& v) { return json_of(v); }, value));
+    for (const auto& entry : camera_metadata(camera)) {
+        object += fmt::format(",{}:{}", json_string(entry.first.substr(std::string_view("pertev.").size())),
+                              metadata_json(entry));
     }
     reporter.event(object + '}');
 }

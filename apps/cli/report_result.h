@@ -15,7 +15,7 @@ namespace pertev {
 uint64_t peak_memory_bytes();
 
 /// With --json, an object of the flags that place this camera, under the names and with the values that they have in an
-/// EXR's metadata.
+/// EXR's metadata, where vectors are texts and here arrays.
 void report_camera(const CameraSource& camera, Reporter& reporter);
 
 /// Says which files were written. Returns what went wrong with the others; empty where nothing has.

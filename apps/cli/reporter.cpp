@@ -12,6 +12,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/error.h"
+
 namespace pertev {
 namespace {
 
@@ -97,6 +99,16 @@ void Reporter::answer(const std::string& lines) {
 void Reporter::output(const std::string& path, const std::string& why_not) {
     event(fmt::format(R"({{"event":"output","path":{},"written":{},"error":{}}})", json_string(path), why_not.empty(),
                       why_not.empty() ? "null" : json_string(why_not)));
+}
+
+void Reporter::write_output(const std::string& path, const std::function<void()>& write) {
+    try {
+        write();
+    } catch (const Error& error) {
+        output(path, error.what());
+        throw;
+    }
+    output(path);
 }
 
 void Reporter::end_progress() {

@@ -3,6 +3,7 @@
 // What a verb says: messages and a progress line for people on stderr, or one JSON object a line on stdout.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -49,6 +50,8 @@ public:
     void answer(const std::string& lines);
     /// A file that was written, or with a reason one that was not; only with --json.
     void output(const std::string& path, const std::string& why_not = "");
+    /// Has `write` write this file, and says so, or why it did not. Throws as `write`.
+    void write_output(const std::string& path, const std::function<void()>& write);
     void end_progress();
 
     bool json() const { return flags_.json; }

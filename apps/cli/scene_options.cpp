@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/parse_values.h"
 #include "base/limits.h"
+#include "formats/builtin_scenes.h"
 #include "session/open_scene.h"
 #include "session/photometry.h"
 
@@ -28,6 +30,8 @@ OpenOptions open_options(const SceneOptions& options) {
     open.efficacy = static_cast<double>(options.efficacy);
     open.two_sided_lights = options.two_sided_lights;
     open.show_back_faces = options.show_back_faces;
+    open.animation = options.animation;
+    open.file_scene = options.file_scene;
     return open;
 }
 
@@ -55,11 +59,31 @@ void check_scene_options(const SceneOptions& options) {
     read_options(open_options(options));
 }
 
+std::string builtin_scene_list() { return fmt::format("{}", fmt::join(builtin_scene_names(), ", ")); }
+
 void add_scene_name(CLI::App& verb, SceneOptions& options) {
-    verb.add_option("SCENE", options.scene, "a .gltf, .glb, .obj or .ply file, or a built-in scene: cornell-box")
+    verb.add_option("SCENE", options.scene,
+                    "a .gltf, .glb, .obj or .ply file, or a built-in scene:\n" + builtin_scene_list())
         ->type_name("")
         ->check(file_name())
         ->required();
+    add_file_scene(verb, options);
+}
+
+void add_file_scene(CLI::App& verb, SceneOptions& options) {
+    verb.add_option("--file-scene", options.file_scene,
+                    "of a glTF file with several scenes: the one of this name or\nnumber, from 0 (the file's default)")
+        ->type_name("NAME|N")
+        ->check(file_name());
+}
+
+void add_animation(CLI::App& verb, SceneOptions& options) {
+    verb.add_option("--animation", options.animation,
+                    "of a file with several animations: what plays, by its name or\nnumber, from 0; all: every one at "
+                    "once (the first)")
+        ->type_name("NAME|N|all")
+        ->check(file_name())
+        ->group("Motion");
 }
 
 void add_view_options(CLI::App& verb, SceneOptions& options) {
@@ -144,6 +168,7 @@ void add_scene_options(CLI::App& verb, SceneOptions& options) {
     verb.add_flag("--show-back-faces", options.show_back_faces,
                   "let the camera see backs that a glTF file hides\n(doubleSided: false)")
         ->group("Faces");
+    add_animation(verb, options);
 }
 
 void add_read_options(CLI::App& verb, SceneOptions& options) {

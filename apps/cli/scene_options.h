@@ -22,7 +22,7 @@ struct SceneOptions {
     std::string scene;
     std::vector<std::filesystem::path> allowed_paths;
     std::string up_axis, unit; // of the file's coordinates
-    std::string camera; // name or number
+    std::string camera;        // name or number
     std::string eye, target, up;
     float fov_deg = 0; // 0: the camera's own
     float aperture_m = -1, focus_m = 0;
@@ -33,14 +33,21 @@ struct SceneOptions {
     std::vector<std::string> lamps; // --lamp
     float efficacy = 0;             // lm/W; 0: by the kind of file
     bool two_sided_lights = false, show_back_faces = false;
+    std::string animation, file_scene; // names or numbers; empty: the first, and the file's own choice
 };
 
 /// SCENE, its camera, its environment and which faces count.
 void add_scene_options(CLI::App& verb, SceneOptions& options);
 /// The same without the environment, the faces and the lens, for verbs that look at geometry alone, through its middle.
 void add_view_options(CLI::App& verb, SceneOptions& options);
-/// SCENE alone.
+/// SCENE, and which scene of the file it is.
 void add_scene_name(CLI::App& verb, SceneOptions& options);
+/// The names of all built-in scenes, for help.
+std::string builtin_scene_list();
+/// --file-scene alone.
+void add_file_scene(CLI::App& verb, SceneOptions& options);
+/// --animation alone; add_scene_options has it.
+void add_animation(CLI::App& verb, SceneOptions& options);
 /// The environment, lamps and --two-sided-lights alone.
 void add_light_options(CLI::App& verb, SceneOptions& options);
 /// What a file's reader takes, --allow-path, --up-axis and --unit, alone.
@@ -49,7 +56,8 @@ void add_read_options(CLI::App& verb, SceneOptions& options);
 /// What can be told before the scene is read. Throws Error(BadInput) for a flag that another one makes useless.
 void check_scene_options(const SceneOptions& options);
 
-/// A file, or a built-in scene by its name (session/open_scene.h's read_scene_and_lamps). Throws Error.
+/// A file, or a built-in scene by its name, with nothing added (session/open_scene.h's read_scene_and_lamps). Throws
+/// Error.
 Scene read_any_scene(const SceneOptions& options, Messages& messages);
 
 // The rest is session/open_scene.h and session/choose_camera.h for flags as they stand on the command line. Each throws

@@ -65,8 +65,7 @@ int solve(const SolveFlags& flags) {
     reporter.say_messages();
     const SolvedRadiosity solved = solve_and_report(moving.prepared(), flags.radiosity, flags.seed, reporter);
     reporter.set_work("writing");
-    write_solution(flags.output, solved.solution);
-    reporter.output(flags.output);
+    reporter.write_output(flags.output, [&] { write_solution(flags.output, solved.solution); });
     const bool cut_short = solved.stats.was_interrupted;
     const std::string holds =
         cut_short ? fmt::format(", ended before it was whole: it holds {}", describe(solved.solution.extent)) : "";
@@ -96,9 +95,11 @@ void add_solve_command(CLI::App& app, int& status) {
         ->check(whole_between(0, UINT32_MAX))
         ->capture_default_str()
         ->group("Radiosity");
-    verb.add_option("--time", flags->time_s, "the scene at this time of its animations (at rest)")
+    verb.add_option("--time", flags->time_s, "the scene at this time of its animation (at rest)")
         ->type_name("SECONDS")
-        ->check(number_between(-1e9f, 1e9f));
+        ->check(number_between(-1e9f, 1e9f))
+        ->group("Motion");
+    add_animation(verb, flags->scene);
     add_read_options(verb, flags->scene);
     add_light_options(verb, flags->scene);
     verb.add_option("--threads", flags->threads, "of the CPU (all)")

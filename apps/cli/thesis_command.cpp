@@ -200,6 +200,14 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     const bool has_pictures = !output.empty();
     ThesisReport thesis;
     Attempts attempts(thesis);
+    bool is_written = false; // the report, as it is by now
+    const auto write_report = [&](const std::string& what) {
+        is_written = false;
+        attempts.attempt(what, [&] {
+            write_files(output, thesis);
+            is_written = true;
+        });
+    };
     // All are read before the first is measured. The camera's flags are the second's.
     std::vector<MeasuredScene> scenes = {load({}, "cornell-box", settings, has_pictures, reporter.messages())};
     if (const auto second = options.scene.empty() ? find_sibenik() : std::optional(options.scene)) {
@@ -231,11 +239,11 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
             attempts.attempt("pictures of " + scene.name,
                              [&] { add_pictures(queue, scene, settings, reporter.messages(), local, global); });
         }
-        attempts.attempt("files of " + scene.name, [&] { write_files(output, thesis); });
+        write_report("files of " + scene.name);
     }
     if (has_pictures && attempts.may_go_on()) {
         add_pictures_by_chapter(queue, settings, output, reporter, attempts, thesis);
-        attempts.attempt("files of the report", [&] { write_files(output, thesis); });
+        write_report("files of the report");
     }
     const bool cut_short = interrupted();
     std::vector<std::string> lacking;
@@ -248,7 +256,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));
-    if (has_pictures) {
+    if (is_written) {
         reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
     }
     for (const LabReport& report : thesis.scenes) fail_if_wrong(report);

@@ -1,6 +1,7 @@
 #include "base/json_text.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -24,6 +25,32 @@ std::size_t utf8_length(std::string_view text) {
     const bool bad_second = (first == 0xe0 && at(1) < 0xa0) || (first == 0xed && at(1) > 0x9f) ||
                             (first == 0xf0 && at(1) < 0x90) || (first == 0xf4 && at(1) > 0x8f);
     return bad_second ? 0 : length;
+}
+
+/// Parts of `text` between separators, each by `json_of`, as an array; nothing where that gives nothing for one.
+template <class JsonOf>
+std::optional<std::string> json_array(std::string_view text, char separator, const JsonOf& json_of) {
+    std::string list;
+    while (true) {
+        const std::size_t end = std::min(text.find(separator), text.size());
+        const std::optional<std::string> part = json_of(text.substr(0, end));
+        if (!part) return std::nullopt;
+        list += (list.empty() ? "" : ",") + *part;
+        if (end == text.size()) return "[" + list + "]";
+        text.remove_prefix(end + 1);
+    }
+}
+
+std::optional<std::string> exact_number(std::string_view text) {
+    double value = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value); // "-0" would be read as 0
+}
+
+std::optional<std::string> numbers_between_commas(std::string_view text) {
+    if (text.find(',') == std::string_view::npos) return std::nullopt;
+    return json_array(text, ',', exact_number);
 }
 
 } // namespace
@@ -62,6 +89,11 @@ std::string json_strings(const std::vector<std::string>& texts) {
     std::string list = "[";
     for (const std::string& text : texts) list += (list.size() > 1 ? "," : "") + json_string(text);
     return list + ']';
+}
+
+std::optional<std::string> json_vector(std::string_view text) {
+    if (text.find(' ') == std::string_view::npos) return numbers_between_commas(text);
+    return json_array(text, ' ', numbers_between_commas);
 }
 
 } // namespace pertev

@@ -2,6 +2,7 @@
 
 // Text and numbers as JSON wants them written, and text as every UTF-8 file does.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,5 +17,8 @@ std::string json_strings(const std::vector<std::string>& texts);
 std::string utf8_text(std::string_view text);
 /// A number in JSON, to 9 digits; null where it is not finite, which JSON has no word for.
 std::string json_number(double value);
+/// "1,0.5,-2", as flags have vectors, as a JSON array of these numbers, to all their digits; "1,0,0 0,1,0" as an array
+/// of such arrays. Nothing for a text that is anything else.
+std::optional<std::string> json_vector(std::string_view text);
 
 } // namespace pertev

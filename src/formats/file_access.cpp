@@ -121,19 +121,22 @@ std::optional<fs::path> FileAccess::find(const fs::path& from, const std::string
         return std::nullopt;
     }
     const std::string folder = folder_of(from).string();
-    if (found->filename() == name.filename()) {
+    const bool is_same_name = found->filename() == name.filename();
+    if (is_same_name && name.has_parent_path()) {
         const fs::path there = found->parent_path().lexically_relative(locate(folder_of(from)).path);
         messages.warn(fmt::format("{}: files named as in \"{}\", {}: those of the same name in {} are read", folder,
                                   shortened(name.parent_path().string()),
                                   wanted.is_allowed ? "which are not there" : "outside the scene's folder",
                                   there == "." ? "the folder itself" : "\"" + there.string() + "\""));
     } else if (listing_->may_name_another()) {
-        messages.warn(
-            fmt::format("{}: \"{}\" is not there: {} is read, whose name differs in upper and lower case alone",
-                        from.string(), shortened(reference), found->string()));
+        messages.warn(fmt::format("{}: \"{}\" is not there: {} is read, the only file of that name{}", from.string(),
+                                  shortened(reference), found->string(),
+                                  is_same_name ? "" : " but for upper and lower case"));
     } else {
         messages.warn(
-            fmt::format("{}: further files whose names differ in upper and lower case alone are read", folder));
+            fmt::format("{}: further files that are not there are read from the only file of that name but for "
+                        "upper and lower case",
+                        folder));
     }
     return found;
 }

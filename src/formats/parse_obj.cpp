@@ -6,13 +6,13 @@
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
+#include "formats/obj_pieces.h"
 #include "formats/obj_positions.h"
 #include "formats/obj_text.h"
 #include "formats/parse_number.h"
@@ -29,102 +29,13 @@ struct Face {
     uint32_t corner_count, line;
 };
 
-/// What faces belong to: the names of the last o, g and usemtl.
-struct GroupKey {
-    std::string_view object, group, material;
-    bool operator==(const GroupKey&) const = default;
-};
-
-struct GroupKeyHash {
-    std::size_t operator()(const GroupKey& key) const {
-        const std::hash<std::string_view> hash;
-        return (hash(key.object) * 31 + hash(key.group)) * 31 + hash(key.material);
-    }
-};
-
-using GroupNumbers = std::unordered_map<GroupKey, std::size_t, GroupKeyHash>;
-
-std::string name_of(const GroupKey& key) {
-    if (key.object.empty() || key.object == key.group) return std::string(key.group);
-    return key.group.empty() ? std::string(key.object) : fmt::format("{}/{}", key.object, key.group);
-}
-
 /// Faces of one object, group and material in one piece of the text.
 struct RawGroup {
-    GroupKey key;
+    ObjGroupKey key;
     uint32_t line = 0;              // of the first face
     std::vector<ObjCorner> corners; // of all faces, one after the other
     std::vector<Face> faces;
 };
-
-struct Counts {
-    std::size_t positions = 0, uvs = 0, normals = 0;
-};
-
-/// Whole statements, which one thread reads.
-struct Piece {
-    std::string_view text;
-    // What stands before it.
-    uint32_t line = 1; // the number of its first
-    Counts counts = {};
-    GroupKey key = {};
-};
-
-/// Of about so many bytes, cut where a line ends that cannot be joined with the next, be it a comment or not.
-std::vector<Piece> cut_into_pieces(std::string_view text, char end_of_line, std::size_t piece_bytes) {
-    std::vector<Piece> pieces;
-    for (std::size_t begin = 0; begin < text.size();) {
-        std::size_t end = text.find(end_of_line, std::min(begin + piece_bytes, text.size()));
-        while (end != text.npos && ObjLines::is_joined(text, begin, end)) end = text.find(end_of_line, end + 1);
-        const std::size_t count = end == text.npos ? text.size() - begin : end + 1 - begin;
-        pieces.push_back({text.substr(begin, count)});
-        begin += count;
-    }
-    return pieces;
-}
-
-/// What a piece adds to what stands before the next.
-struct Survey {
-    uint32_t lines = 0;
-    Counts counts = {};
-    std::optional<std::string_view> object = {}, group = {}, material = {}; // of its last o, g and usemtl
-};
-
-/// Counts what PieceParser::statement makes.
-Survey survey(std::string_view text, char end_of_line) {
-    Survey found;
-    ObjLines lines(text, end_of_line, 1);
-    for (std::string_view line; lines.next(line);) {
-        const std::string_view key = take_word(line);
-        if (key == "v") ++found.counts.positions;
-        if (key == "vt") ++found.counts.uvs;
-        if (key == "vn") ++found.counts.normals;
-        if (key == "o") found.object = rest_as_name(line);
-        if (key == "g") found.group = rest_as_name(line);
-        if (key == "usemtl") found.material = rest_as_name(line);
-    }
-    found.lines = lines.number_behind() - 1;
-    return found;
-}
-
-/// Says of each piece what stands before it. Returns the counts of all together.
-Counts count_before(std::vector<Piece>& pieces, char end_of_line) {
-    std::vector<Survey> found(pieces.size());
-    parallel_for(pieces.size(), 1, [&](uint64_t i) { found[i] = survey(pieces[i].text, end_of_line); });
-    Piece before;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        before.text = pieces[i].text;
-        pieces[i] = before;
-        before.line += found[i].lines;
-        before.counts.positions += found[i].counts.positions;
-        before.counts.uvs += found[i].counts.uvs;
-        before.counts.normals += found[i].counts.normals;
-        before.key.object = found[i].object.value_or(before.key.object);
-        before.key.group = found[i].group.value_or(before.key.group);
-        before.key.material = found[i].material.value_or(before.key.material);
-    }
-    return before.counts;
-}
 
 Error fault_at(const std::string& file, uint32_t line, const std::string& what) {
     return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file, line, what));
@@ -133,7 +44,7 @@ Error fault_at(const std::string& file, uint32_t line, const std::string& what) 
 /// Reads one piece: its vertices to their places in arrays that are as long as all will be.
 class PieceParser {
 public:
-    PieceParser(const Piece& piece, char end_of_line, const std::string& file, ObjData& data,
+    PieceParser(const ObjPiece& piece, char end_of_line, const std::string& file, ObjData& data,
                 const FoundMaterials* found_materials)
         : lines_(piece.text, end_of_line, piece.line), file_(file), before_(piece.counts), so_far_(piece.counts),
           data_(data), found_materials_(found_materials), key_(piece.key) {}
@@ -297,12 +208,12 @@ private:
 
     ObjLines lines_;
     const std::string& file_;
-    const Counts before_;
-    Counts so_far_;
+    const ObjCounts before_;
+    ObjCounts so_far_;
     ObjData& data_;
     const FoundMaterials* found_materials_; // null: nobody asks
-    GroupNumbers numbers_;
-    GroupKey key_;
+    ObjGroupNumbers numbers_;
+    ObjGroupKey key_;
     RawGroup* current_ = nullptr; // of key_; null until a face needs it
 };
 
@@ -310,7 +221,7 @@ class ObjParser {
 public:
     ObjParser(std::string_view text, const std::string& file, Messages& messages, std::size_t piece_bytes)
         : file_(file), messages_(messages), end_of_line_(ObjLines::end_of_line_of(text)),
-          pieces_(cut_into_pieces(text, end_of_line_, piece_bytes)) {}
+          pieces_(cut_into_obj_pieces(text, end_of_line_, piece_bytes)) {}
 
     ObjData run(const FoundMaterials& found_materials) {
         parse_pieces(found_materials);
@@ -371,7 +282,7 @@ private:
     }
 
     void parse_pieces(const FoundMaterials& found_materials) {
-        const Counts all = count_before(pieces_, end_of_line_);
+        const ObjCounts all = count_before(pieces_, end_of_line_);
         if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
             throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
         }
@@ -417,7 +328,7 @@ private:
 
     /// Puts the parts of each group together. Returns false where there are more than kMostObjGroups.
     bool join_groups(bool by_material_alone) {
-        GroupNumbers numbers;
+        ObjGroupNumbers numbers;
         groups_.clear();
         for (PieceParser& parser : parsers_) {
             for (RawGroup& group : parser.groups) {
@@ -496,7 +407,7 @@ private:
     const std::string& file_;
     Messages& messages_;
     const char end_of_line_;
-    std::vector<Piece> pieces_;
+    std::vector<ObjPiece> pieces_;
     std::deque<PieceParser> parsers_; // of the pieces
     ObjData data_;
     std::vector<Parts> groups_; // in the order of first use

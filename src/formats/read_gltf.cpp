@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "base/read_file.h"
 #include "formats/gltf/animations.h"
+#include "formats/gltf/choices.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/node_shapes.h"
@@ -23,7 +24,8 @@ Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes,
     Scene scene;
     const gltf::Document document(path, std::move(bytes), messages);
     gltf::Buffers buffers(document, access, messages);
-    gltf::NodeGraph nodes(document, messages);
+    gltf::choose(document, buffers, options, scene, messages);
+    gltf::NodeGraph nodes(document, scene.file_scene, messages);
 
     TextureLoader loader(access, messages);
     gltf::Textures textures(document, buffers, loader, messages);

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "formats/builtin_scenes.h"
+#include "formats/file_choices.h"
 #include "formats/read_gltf.h"
 #include "formats/read_obj.h"
 #include "formats/read_ply.h"
@@ -57,6 +58,11 @@ Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions&
 
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_file_or_builtin(path, options, messages);
+    // Formats that have neither, and files that have none.
+    if (scene.clips.empty() && !options.animation.empty()) choose_clips(path.string(), {}, options.animation);
+    if (scene.file_scenes.empty() && !options.file_scene.empty()) {
+        choose_file_scene(path.string(), {}, options.file_scene);
+    }
     if (!tells_space(path)) place_in_metres(options.space, scene);
     validate(scene, path.string(), messages);
     warn_of_invisible_materials(scene, path.string(), messages);

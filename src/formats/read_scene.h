@@ -19,10 +19,13 @@ struct ReadOptions {
     bool geometry_only = false;                       // skip textures and materials: every surface grey
     bool two_sided_lights = false;                    // surfaces emit from both faces, whatever the file says
     FileSpace space;                                  // of files that do not tell theirs; others are as they say
+    std::string animation;                            // plays: a name, a number from 0, or "all"; empty: the first
+    std::string file_scene; // is shown: a name or a number from 0 of the file's scenes; empty: the file's own choice
 };
 
 /// The scene in a file, or the one that is part of the program under this name (formats/builtin_scenes.h). Throws
-/// Error(BadInput) that names the file, the place in it and what would be right. What was left out or repaired is said
+/// Error(BadInput) that names the file, the place in it and what would be right; so it does for an animation or a scene
+/// that the file does not have, with the list of those that it has. What was left out or repaired is said
 /// in `messages`. The scene has been through validate().
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 

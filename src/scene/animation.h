@@ -38,13 +38,20 @@ struct AnimationChannel {
     std::vector<float> values;
 };
 
-/// All animations of a scene play at once, each from time 0, and hold their last value. Where two change the same part,
-/// the later one counts.
+/// All animations of a scene (Scene::animations) play at once, each from time 0, and hold their last value. Where two
+/// change the same part, the later one counts. A file may have more animations than the scene plays: see Clip.
 struct Animation {
     std::string name, origin;
     std::vector<AnimationChannel> channels;
 
     double end_s() const; // the last key's time, seconds; 0 without any
+};
+
+/// One animation of a file, whether or not it plays. Those that play are Scene::animations.
+struct Clip {
+    std::string name;
+    double end_s = 0; // the last key's time, seconds
+    bool plays = false;
 };
 
 /// Of each node, whether a time may come at which it stands elsewhere: an animation moves it or one above it.

@@ -1,8 +1,8 @@
 #pragma once
 
-// A scene at a time. All animations play at once from time 0 (scene/animation.h); what they place is written into the
-// scene: instances, the vertices of meshes, cameras, lights. The result is a function of the scene at rest and the time
-// alone, to the bit on every machine, whatever times came before.
+// A scene at a time. All of Scene::animations play at once from time 0 (scene/animation.h); what they place is written
+// into the scene: instances, the vertices of meshes, cameras, lights. The result is a function of the scene at rest and
+// the time alone, to the bit on every machine, whatever times came before.
 //
 // Vertices of skins and morph targets are made here, or left to whoever renders (render/deforming_meshes.h), who makes
 // the same. Left are, where the constructor is told to, those of a mesh that gives no light, unless at the time a joint

@@ -50,8 +50,11 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Node> nodes; // a glTF file's, by their numbers there; also those that hold nothing
     std::vector<Skin> skins;
-    std::vector<MeshShape> shapes; // of those meshes that morph targets or a skin can move
-    std::vector<Animation> animations;
+    std::vector<MeshShape> shapes;         // of those meshes that morph targets or a skin can move
+    std::vector<Animation> animations;     // those that play
+    std::vector<Clip> clips;               // all animations of the file, in its order
+    std::vector<std::string> file_scenes;  // the names of all scenes of the file, in its order
+    uint32_t file_scene = 0;               // index into file_scenes: the one that this is
     DoubleVec3 origin_in_file = {0, 0, 0}; // of all coordinates here, in those of the file, metres
     bool is_far = false;                   // it lies over 2^12 of the scene's own sizes from the file's origin
     std::string no_instances;              // where there are none: what the file has instead, and what would be right

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/message_text.h"
+#include "formats/file_choices.h"
 #include "formats/read_environment.h"
 #include "math/scalar.h"
 #include "session/photometry.h"
@@ -74,6 +76,32 @@ bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight l
     return false;
 }
 
+/// Texts of a list as a message repeats them, one after the other.
+std::string in_a_row(const std::vector<std::string>& list) {
+    constexpr std::size_t kMost = 8;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
+    return list.size() > kMost ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMost) : text;
+}
+
+/// Says which animation plays where the file has several and nobody has chosen one.
+void say_which_clip(const Scene& scene, const std::string& file, Messages& messages) {
+    if (scene.clips.size() < 2) return;
+    const std::vector<std::string> clips = list_clips(scene.clips);
+    messages.note(
+        fmt::format("{}: the file has {} animations, of which the first plays, {}; --animation NAME|N|all plays "
+                    "another or all of {}",
+                    file, clips.size(), shortened(clips.front()), in_a_row(clips)));
+}
+
+void say_which_scene(const Scene& scene, const std::string& file, Messages& messages) {
+    if (scene.file_scenes.size() < 2) return;
+    const std::vector<std::string> scenes = list_file_scenes(scene);
+    messages.note(
+        fmt::format("{}: the file has {} scenes, of which {} is shown; --file-scene NAME|N shows another of {}", file,
+                    scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes)));
+}
+
 } // namespace
 
 FileSpace file_space(const std::string& up_axis, const std::string& unit) {
@@ -99,6 +127,8 @@ ReadOptions read_options(const OpenOptions& options) {
     read.allowed_paths = options.allowed_paths;
     read.two_sided_lights = options.two_sided_lights;
     read.space = file_space(options.up_axis, options.unit);
+    read.animation = options.animation;
+    read.file_scene = options.file_scene;
     return read;
 }
 
@@ -110,6 +140,7 @@ std::string environment_text(const OpenOptions& options) {
 
 Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_scene(path, options, messages);
+    if (options.file_scene.empty()) say_which_scene(scene, path.string(), messages);
     if (!(options.space == FileSpace()) && tells_space(path)) {
         messages.warn(fmt::format("--up-axis, --unit: {} is in metres with y up; these flags are for .obj and .ply",
                                   path.string()));
@@ -120,6 +151,7 @@ Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions&
 
 Scene open_scene(const OpenOptions& options, Messages& messages) {
     Scene scene = read_scene_and_lamps(options.scene, read_options(options), messages);
+    if (options.animation.empty()) say_which_clip(scene, options.scene, messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         messages.warn("--two-sided-lights: no surface of the scene gives light");
     }

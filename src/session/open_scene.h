@@ -35,6 +35,8 @@ struct OpenOptions {
     double efficacy = 0;           // lumens of a watt, for lamps; 0: as the kind of file has it (photometry.h)
     bool two_sided_lights = false; // surfaces emit from both faces, whatever the file says
     bool show_back_faces = false;  // the camera sees backs that a glTF file hides
+    std::string animation;         // of the file, plays (formats/file_choices.h); empty: its first
+    std::string file_scene;        // of the file, is shown; empty: the file's own choice
 };
 
 /// How the file's coordinates are meant, by the words of --up-axis and --unit. Throws Error(BadInput) for others.
@@ -51,8 +53,9 @@ std::string environment_text(const OpenOptions& options);
 /// validate(). Throws Error.
 Scene open_scene(const OpenOptions& options, Messages& messages);
 
-/// What `formats/read_scene.h` reads, with nothing added, and what there is to say of its lamps in files that cannot
-/// tell which faces of a lamp shine (session/survey/lamp_fronts.h). Throws Error.
+/// What `formats/read_scene.h` reads, with nothing added. Says which scene of a file is shown that has several, and
+/// what there is to say of its lamps in files that cannot tell which faces of a lamp shine
+/// (session/survey/lamp_fronts.h). Throws Error.
 Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
 } // namespace pertev

@@ -7,6 +7,7 @@
 
 #include "base/json_text.h"
 #include "base/version.h"
+#include "formats/file_choices.h"
 #include "image/tone_map_image.h"
 #include "session/settings_text.h"
 #include "session/survey/ground.h"
@@ -79,6 +80,8 @@ SceneSource source_of(const OpenOptions& options, const Scene& scene) {
             .has_ground = has_ground(scene),
             .two_sided_lights = options.two_sided_lights,
             .show_back_faces = options.show_back_faces,
+            .animation = clip_choice(scene.clips),
+            .file_scene = file_scene_choice(scene),
             .position_origin = scene.is_far ? std::optional(scene.origin_in_file) : std::nullopt};
 }
 
@@ -185,6 +188,8 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
                           {"pertev.frame", static_cast<int32_t>(record.frame->number)},
                           {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
     }
+    if (!scene.animation.empty()) metadata.emplace_back("pertev.animation", scene.animation);
+    if (!scene.file_scene.empty()) metadata.emplace_back("pertev.file_scene", scene.file_scene);
     if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
     if (scene.shutter) {
         metadata.emplace_back("pertev.shutter", fmt::format("{},{}", scene.shutter->open_s, scene.shutter->close_s));

@@ -29,8 +29,9 @@ struct SceneSource {
     bool has_environment = false; // the scene has one: asked for, its own or the default
     bool has_ground = false;      // a made-up one
     bool two_sided_lights = false, show_back_faces = false;
-    std::optional<double> time_s;                  // that it is shown at; none: at rest
-    std::optional<Shutter> shutter;                // open at that time; none: it is of one moment
+    std::string animation, file_scene; // choices among the file's (formats/file_choices.h); empty: no others
+    std::optional<double> time_s;      // that it is shown at; none: at rest
+    std::optional<Shutter> shutter;    // open at that time; none: it is of one moment
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty: none are said
     std::vector<std::string> made_up, left_out;    // messages: for the scene; of what it has
     std::optional<DoubleVec3> position_origin;     // of a far scene: what positions are relative to; none: the file's

@@ -3,12 +3,13 @@
 import base64
 import json
 import os
+import resource
 import signal
 import struct
 import subprocess
 import time
 
-from cli_run import PROGRAM, CliTest, main, write
+from cli_run import PROGRAM, CliTest, as_flag, main, write
 
 TINY = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--exposure", "0"]
 
@@ -62,7 +63,7 @@ class MovingPictures(CliTest):
         self.succeed("render", "m.gltf", "-o", "x.exr", "--size", "8x8", "--spp", "1", "--device", "cpu", "--time", "1")
         info = self.info("x.exr")
         self.assertEqual(info["pertev.time"], 1)
-        self.assertEqual(info["pertev.eye"], "0,0.5,4")
+        self.assertEqual(info["pertev.eye"], [0, 0.5, 4])
 
     def test_what_moves_is_said_where_it_is_not_shown_and_the_other_way_round(self):
         said = self.succeed("render", "m.gltf", "-o", "x.png", *TINY)
@@ -124,7 +125,7 @@ class MovingPictures(CliTest):
         self.succeed("render", "m.gltf", "-o", "x.exr", "--size", "8x8", "--spp", "1", "--device", "cpu", "--time", "1",
                      "--shutter=-0.25,0.1")
         info = self.info("x.exr")
-        self.assertEqual(info["pertev.shutter"], "-0.25,0.1")
+        self.assertEqual(info["pertev.shutter"], [-0.25, 0.1])
         self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0.1")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-1", "--fps", "2", "--continue",
                     "--shutter", "0.2", says=["the frames there were made with", '--shutter "0,0.1"'])
@@ -208,6 +209,42 @@ class MovingPictures(CliTest):
         for k in range(40):
             self.assertEqual(self.read(f"f-{k:02}.png"), self.read(f"anew/f-{k:02}.png"), k)
 
+    def run_on_a_full_disk(self, limit, *arguments):
+        """The last object and that of the sequence where no file grows past `limit` bytes."""
+        outcome = self.run_pertev("render", "m.gltf", *arguments, "--json",
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual((outcome.status, outcome.events()[-1]["event"]), (6, "error"), outcome)
+        return outcome, outcome.events("sequence")[0]
+
+    def test_a_disk_that_fills_up_counts_the_frames_that_are_whole(self):
+        sequence = ["--frames", "0-2", "--fps", "1"]
+        outcome, end = self.run_on_a_full_disk(1024, "-o", "g-#.exr", "--size", "24x16", "--spp", "2", "--device", "cpu", *sequence)
+        self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (3, 0, 0, False))
+        self.assertEqual([event["written"] for event in outcome.events("output")], [False])
+        self.assertEqual((outcome.events("frame"), self.files()), ([], ["m.gltf"]))
+        # Of two files of a frame one fits: the frame is not whole.
+        outcome, end = self.run_on_a_full_disk(1024, "-o", "g-#.png", "-o", "g-#.exr", *TINY, *sequence)
+        self.assertEqual([event["written"] for event in outcome.events("output")], [True, False])
+        self.assertEqual((end["written"], self.files()), (0, ["g-0.png", "m.gltf"]))
+
+    def test_frames_count_whose_record_finds_no_room(self):
+        names = ["-o", "f-##.png", *TINY]
+        self.frames("--frames", "0-0", "--fps", "20", output="f-##.png")
+        limit = os.path.getsize(self.path("f-##.json")) + 500  # some frames' hashes
+        outcome, end = self.run_on_a_full_disk(limit, *names, "--frames", "0-39", "--fps", "20")
+        there = [name for name in self.files() if name.endswith(".png")]
+        self.assertEqual((end["frames"], end["written"], end["kept"]), (40, len(there), 0))
+        self.assertEqual(len(outcome.events("frame")), len(there))
+        self.assertGreater(len(there), 2)
+        self.assertLess(len(there), 20)
+        self.assertIn("f-##.json", outcome.error())
+        kept = len(there) - 1  # the last one is not in the record
+        outcome, end = self.run_on_a_full_disk(limit, *names, "--frames", "0-39", "--fps", "20", "--continue")
+        self.assertEqual((end["written"], end["kept"]), (1, kept))
+        said = self.run_pertev("render", "m.gltf", *names, "--frames", "0-39", "--fps", "20", "--continue",
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertIn(f"1 of 40 frames written, {kept} kept in", said.stderr)
+
     def test_a_path_leads_the_camera_through_its_keys(self):
         keys = [{"time": 0, "eye": [0, 0, 5], "target": [0, 0, 0], "fov": 50},
                 {"time": 1, "eye": [3, 0, 4], "target": [0, 1, 0], "fov": 40},
@@ -226,7 +263,7 @@ class MovingPictures(CliTest):
                      "--camera-path", "path.json", "--frames", "2-2", "--fps", "1")
         told = self.info("e-2.exr")
         words = [word for name in ["eye", "target", "up", "fov", "time"]
-                 for word in [f"--{name}={told['pertev.' + name]}"]]
+                 for word in [f"--{name}={as_flag(told['pertev.' + name])}"]]
         self.assertEqual(self.hash_at(*words), frames[2]["hash"])
 
     def test_a_path_that_is_wrong_says_where(self):

@@ -10,6 +10,14 @@ from cli_run import FLOOR, PROGRAM, CliTest, main, write
 NAMES = {2: "bad_input", 3: "over_limit", 6: "file_write", 75: "interrupted"}
 
 
+def is_number(text):
+    try:
+        float(text)
+        return True
+    except ValueError:
+        return False
+
+
 class Errors(CliTest):
     def fail_in_json(self, status, *arguments, **options):
         """The object that ends it, with nothing said anywhere else."""
@@ -109,8 +117,11 @@ class Objects(CliTest):
         self.assertEqual([scene[key] for key in ["scene", "triangles", "instances"]], ["floor.obj", 2, 1])
         self.assertEqual([picture[key] for key in ["width", "height", "spp"]], [16, 8, 2])
         self.assertEqual(picture["device"], done["device"])
-        self.assertEqual((camera["eye"], camera["projection"], camera["fov"]), ("0.3,2.1,4.7", "perspective", 33))
+        self.assertEqual((camera["eye"], camera["projection"], camera["fov"]), ([0.3, 2.1, 4.7], "perspective", 33))
         told = self.info("b.exr")
+        self.assertEqual((camera["target"], camera["up"]), ([0.1, 0.2, 0], [0, 1, 0]))
+        self.assertEqual([len(column) for column in camera["world_from_camera"]], [3, 3, 3, 3])
+        self.assertEqual(camera["world_from_camera"][3], camera["eye"])
         self.assertEqual({"pertev." + key: value for key, value in camera.items() if key != "event"},
                          {key: told[key] for key in told if key.startswith("pertev.") and key[7:] in camera})
         self.assertEqual((exposure["auto"], exposure["tone_map"]), (True, "agx"))  # its light is made up
@@ -120,6 +131,23 @@ class Objects(CliTest):
         again = self.render(*view, "--tone-map", "agx", "--exposure", exposure["stops"], scene="floor.obj", size="16x8", spp=2)
         self.assertEqual(again["hash"], done["hash"])
         self.assertEqual(self.info("picture.png")["hash"], self.info("a.png")["hash"])
+
+    def test_vectors_are_arrays_of_numbers_wherever_they_stand(self):
+        told = self.succeed("measure", "cornell-box", "--at", "0.3,1e-3,-0.25", "--normal", "0,3,1e-400", "--spp", "1",
+                            "--max-depth", "0", "--json").events("measure")[0]
+        self.assertEqual((told["at"], told["normal"][:2], len(told["irradiance_rgb"])), ([0.3, 1e-3, -0.25], [0, 3], 3))
+        self.assertEqual(float(told["normal"][2]), 0)
+        self.render("--integrator", "cast", "--ambient", "0.5,0.25,1", "--environment", "1,2,0.5", output="a.exr")
+        made = self.info("a.exr")
+        self.assertEqual((made["pertev.ambient"], made["pertev.environment"]), ([0.5, 0.25, 1], [1, 2, 0.5]))
+        write(self.path("floor.obj"), FLOOR)
+        self.render("--eye", "0,1,4", scene="floor.obj", output="b.exr")
+        made = self.info("b.exr")
+        self.assertEqual(made["pertev.environment"], "made up")  # which is no vector
+        self.assertEqual(self.info("floor.obj")["bounds_low"], [-1, 0, -1])
+        texts = [value for value in made.values() if isinstance(value, str)]
+        self.assertFalse([text for text in texts if text.replace(",", " ").split() and
+                          all(is_number(word) for word in text.replace(",", " ").split()) and "," in text])
 
     def test_a_picture_without_tones_has_no_exposure(self):
         outcome = self.succeed("render", "cornell-box", "-o", "b.exr", "--size", "8x8", "--spp", "1", "--json")

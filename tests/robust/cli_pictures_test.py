@@ -4,7 +4,7 @@ import json
 import math
 import re
 
-from cli_run import FLOOR, CliTest, gltf_with_cameras, main, read_exr, read_png, write
+from cli_run import FLOOR, CliTest, as_flag, gltf_with_cameras, main, read_exr, read_png, write
 
 # The floor, and a sheet upright behind its far edge.
 SHEET = FLOOR + "v -1 0 -1\nv 1 0 -1\nv 1 2 -1\nv -1 2 -1\nf 5 6 7 8\n"
@@ -132,7 +132,8 @@ class WhatHalfACameraSees(CliTest):
                     self.assertEqual(tuple(float(x) for x in flags[3].split(",")), middle)
                     self.assertEqual(self.hash_again(flags, scene), made)
                     told = self.info("x.exr")
-                    again = ["--eye", told["pertev.eye"], "--target", told["pertev.target"], "--up", told["pertev.up"]]
+                    again = [word for name in ["eye", "target", "up"]
+                             for word in ["--" + name, as_flag(told["pertev." + name])]]
                     self.assertEqual(self.hash_again(again, scene), made)
 
     def test_lab_aims_an_eye_alone_too(self):

@@ -155,6 +155,11 @@ def listen_to(leader):
     return listener, said
 
 
+def as_flag(value):
+    """What info says in JSON as a flag has it: vectors with commas."""
+    return ",".join(str(number) for number in value) if isinstance(value, list) else str(value)
+
+
 def write(path, text):
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)

@@ -10,6 +10,7 @@ import time
 
 from cli_run import FLOOR, PROGRAM, CliTest, listen_to, main, write
 
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SMALL = ["--size", "8x8", "--spp", "1", "--device", "cpu"]
 
 
@@ -77,13 +78,52 @@ class Flags(CliTest):
             self.assertEqual((outcome.stderr, outcome.events("error")[0]["status"]), ("", 2), outcome)
         self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: stands before bench"])
 
-    def test_a_list_of_outputs_is_told_how_pictures_are_asked_for(self):
-        outcome = self.succeed("render", "cornell-box", "-o", "a.png,b.exr", *SMALL)
-        self.assertIn("warning: -o a.png,b.exr: this is the name of one file; each picture has a -o of its own: -o a.png "
-                      "-o b.exr\n", outcome.stderr)
-        self.assertEqual(self.files(), ["a.png,b.exr"])
-        self.refuse(2, "render", "nowhere.obj", "-o", "a.png,b", says=["-o a.png,b: ", "-o a.png -o b\n"])
-        self.assertNotIn("warning", self.succeed("render", "cornell-box", "-o", "one,two.png", *SMALL).stderr)
+    def test_a_list_of_outputs_is_refused_and_told_how_pictures_are_asked_for(self):
+        for given, meant in [("a.png,b.exr", "-o a.png -o b.exr\n"), ("a.png,b", "-o a.png -o b\n"),
+                             ("x/a.png,b.exr,c.jpg", "-o x/a.png -o b.exr -o c.jpg\n")]:
+            self.refuse(2, "render", "nowhere.obj", "-o", given, says=[f"-o {given}: ", meant])
+        self.assertNotIn("-o", self.succeed("render", "cornell-box", "-o", "one,two.png", *SMALL).stderr)
+
+    def test_one_file_named_twice_is_refused_before_the_scene_is_read(self):
+        os.mkdir(self.path("f"))
+        os.symlink("b.png", self.path("link.png"))
+        for first, second in [("a.png", "a.png"), ("a.png", "./a.png"), ("f/../a.png", "a.png"), ("b.png", "link.png"),
+                              ("a.png", self.path("a.png"))]:
+            with self.subTest(first=first, second=second):
+                self.refuse(2, "render", "nowhere.obj", "-o", first, "-o", "c.exr", "-o", second, says=["-o " + first, "same file"])
+        frames = ["--frames", "0-10"]
+        self.refuse(2, "render", "nowhere.obj", "-o", "f-#.png", "-o", "f-##.png", *frames, says=["f-##.png", "frame 10"])
+        self.succeed("render", "cornell-box", "-o", "f-#.png", "-o", "f-##.png", *SMALL, "--exposure", "0", "--frames", "8-9")
+        self.succeed("render", "cornell-box", "-o", "a.png", "-o", "a.exr", "-o", "f/a.png", *SMALL)
+
+    def test_a_number_in_a_name_without_frames_is_told(self):
+        outcome = self.succeed("render", "cornell-box", "-o", "a-###.png", *SMALL)
+        self.assertIn("-o a-###.png: # stands for a frame's number with --frames", outcome.stderr)
+        self.assertEqual(self.files(), ["a-###.png"])
+        for name, flags in [("a.png", []), ("b-#.png", ["--frames", "0-0"]), ("c-#.png", ["--turntable", "1"])]:
+            self.assertNotIn("# stands", self.succeed("render", "cornell-box", "-o", name, *SMALL, *flags).stderr)
+
+    def test_help_and_readme_name_every_built_in_scene(self):
+        unknown = self.refuse(2, "render", "nothing", "-o", "x.png").stderr
+        names = re.search(r"built-in scene \(([^)]*)\)", unknown).group(1).split()
+        self.assertIn("cornell-box", names)
+        self.assertGreater(len(names), 5)
+        with open(os.path.join(ROOT, "README.md"), encoding="utf-8") as file:
+            readme = file.read()
+        for verb in [["render"], ["view"], ["info"], ["measure"], ["lab"], ["solve", "radiosity"], ["bench", "frames"]]:
+            text = self.succeed(*verb, "--help").stdout
+            for name in names:
+                self.assertRegex(text, rf"[ (]{name}[,;)\n]", f"{verb}")
+        for name in names:
+            self.assertIn(f"`{name}`", readme)
+
+    def test_the_first_command_of_the_readme_leaves_nothing_untracked(self):
+        with open(os.path.join(ROOT, "README.md"), encoding="utf-8") as file:
+            output = re.search(r"pertev render cornell-box -o (\S+)", file.read()).group(1)
+        git = subprocess.run(["git", "check-ignore", "-q", "--no-index", output], cwd=ROOT, check=False, stderr=subprocess.DEVNULL)
+        if git.returncode == 128:
+            self.skipTest("no repository")
+        self.assertEqual(git.returncode, 0, output)
 
 
 class Strictness(CliTest):
@@ -122,6 +162,27 @@ class Strictness(CliTest):
                 "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]}""")
         self.succeed("render", "m.gltf", "-o", "x.png", *SMALL)
         self.refuse(2, "render", "m.gltf", "-o", "y.png", "--strict", *SMALL, says=["gone.png"])
+
+
+class Pipes(CliTest):
+    def test_a_pipe_that_was_closed_is_no_error(self):
+        self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL)
+        for arguments in [["--help"], ["--version"], ["render", "--help"], ["info", "cornell-box"], ["info", "a.exr", "--json"],
+                          ["compare", "a.exr", "a.exr"], ["measure", "cornell-box", "--at", "0.3,0,0.3", "--normal", "0,1,0", "--spp", "1"]]:
+            with self.subTest(arguments=arguments):
+                reading, writing = os.pipe()
+                os.close(reading)
+                outcome = self.run_pertev(*arguments, stdout=writing)
+                os.close(writing)
+                self.assertEqual(outcome.status, 0, outcome)
+                self.assertNotIn("standard output", outcome.stderr)
+        reading, writing = os.pipe()
+        os.close(reading)
+        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # what went wrong is told, and counts
+        os.close(writing)
+        self.assertEqual(outcome.status, 2, outcome)
+        self.assertIn("nowhere.obj", outcome.stderr)
+        self.assertNotIn("standard output", outcome.stderr)
 
 
 class SignsOfLife(CliTest):

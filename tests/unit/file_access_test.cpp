@@ -85,6 +85,8 @@ TEST_CASE("a file named with a path of another machine is found beside the file 
     REQUIRE(messages.all().size() == 5);
     CHECK(messages.all()[2].text.find("\"C:/models/textures\", which are not there") != std::string::npos);
     CHECK(messages.all()[2].text.find("in \"textures\" are read") != std::string::npos);
+    CHECK(messages.all()[4].text.find("\"t.png\" is not there: " + (f.scene / "textures/t.png").string() +
+                                      " is read") != std::string::npos);
     for (const Message& message : messages.all()) CHECK(message.is_warning);
 }
 

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "formats/read_scene.h"
+#include "scene/scene_origin.h"
 #include "session/open_scene.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
@@ -43,6 +44,23 @@ TEST_CASE("coordinates of a file become metres with y up, without mirroring") {
         const Scene scene = read_scene(test::write_text(test::scratch_folder() / "a.obj", kCorner), options, messages);
         CHECK_FALSE(is_mirroring(scene.instances[0].world_from_local));
     }
+}
+
+TEST_CASE("coordinates far from the origin keep their digits when they are turned and scaled") {
+    Messages messages;
+    ReadOptions options;
+    options.space = {UpAxis::Z, 0.001};
+    const std::string text = "v 448262257.5 5411933125.25 12000\nv 448263257.5 5411933125.25 12000\n"
+                             "v 448262257.5 5411933125.25 13000\nf 1 2 3\n"; // millimetres of a survey
+    const Scene scene = read_scene(test::write_text(test::scratch_folder() / "a.obj", text), options, messages);
+    const Bounds3 box = bounds_of(scene);
+    const DoubleVec3 lo = in_file(scene, box.lo), hi = in_file(scene, box.hi);
+    CHECK(lo.x == doctest::Approx(448262.2575).epsilon(1e-10));
+    CHECK(lo.y == doctest::Approx(12).epsilon(1e-10));
+    CHECK(lo.z == doctest::Approx(-5411933.12525).epsilon(1e-10));
+    CHECK(hi.x - lo.x == doctest::Approx(1).epsilon(1e-6));
+    CHECK(hi.y - lo.y == doctest::Approx(1).epsilon(1e-6));
+    CHECK(hi.z - lo.z == doctest::Approx(0));
 }
 
 TEST_CASE("units have names or are metres, axes are x, y and z, and other words are refused") {

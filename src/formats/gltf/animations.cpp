@@ -235,7 +235,7 @@ std::vector<JsonValue> animations_of(const Document& document, Messages& message
 
 } // namespace
 
-std::set<uint32_t> nodes_with_animated_weights(const Document& document) {
+std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::span<const Clip> clips) {
     std::set<uint32_t> nodes;
     const auto look_at = [&](const JsonValue& channel) {
         const JsonValue target = channel.at("target");
@@ -247,7 +247,9 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document) {
         }
     };
     Messages unsaid; // read_animations tells what cannot be read
+    auto clip = clips.begin();
     for (const JsonValue& animation : animations_of(document, unsaid)) {
+        if (!(clip++)->plays) continue;
         for (const JsonValue& channel : elements_or_none(animation, "channels", unsaid)) {
             read_or_leave_out(channel, unsaid, [&] { look_at(channel); });
         }
@@ -255,11 +257,14 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document) {
     return nodes;
 }
 
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages) {
-    for (const JsonValue& source : animations_of(document, messages)) {
+void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& said) {
+    auto clip = scene.clips.begin();
+    Messages none; // what is wrong with the list was said when clips were chosen
+    for (const JsonValue& source : animations_of(document, none)) {
+        Messages unsaid; // of a clip that does not play
+        Messages& messages = clip->plays ? said : unsaid;
         Animation animation;
-        read_or_leave_out(fmt::format("the name of {}", source.pointer()), messages,
-                          [&] { animation.name = source.string_or("name", ""); });
+        animation.name = clip->name;
         animation.origin = source.pointer();
         buffers.charge(animation.name.size() + animation.origin.size(), source);
         const std::vector<JsonValue> samplers = elements_or_none(source, "samplers", messages);
@@ -296,7 +301,8 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, M
         for (const JsonValue& entry : elements_or_none(source, "channels", messages)) {
             read_or_leave_out(entry, messages, [&] { read_channel(entry); });
         }
-        scene.animations.push_back(std::move(animation));
+        clip->end_s = animation.end_s();
+        if ((clip++)->plays) scene.animations.push_back(std::move(animation));
     }
 }
 

@@ -26,7 +26,8 @@ std::string members_as_text(const JsonValue& object, std::initializer_list<std::
 Meshes::Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
                bool geometry_only, Messages& messages)
     : document_(document), buffers_(buffers), nodes_(nodes), materials_(materials), scene_(scene),
-      geometry_only_(geometry_only), messages_(messages), reshaped_nodes_(nodes_with_animated_weights(document)) {}
+      geometry_only_(geometry_only), messages_(messages),
+      reshaped_nodes_(nodes_with_animated_weights(document, scene.clips)) {}
 
 // Equal texts: equal parts at all times.
 std::string Meshes::use_key(uint32_t node) const {

@@ -27,11 +27,11 @@ std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node) {
 
 } // namespace
 
-NodeGraph::NodeGraph(const Document& document, Messages& messages) {
+NodeGraph::NodeGraph(const Document& document, uint32_t shown, Messages& messages) {
     read_children(document, messages);
     cut_cycles(document, messages);
     place_nodes(document, messages);
-    for_each_below(scene_roots(document, messages), [&](uint32_t node) { scene_nodes_.push_back(node); });
+    for_each_below(scene_roots(document, shown, messages), [&](uint32_t node) { scene_nodes_.push_back(node); });
 }
 
 void NodeGraph::read_children(const Document& document, Messages& messages) {
@@ -95,7 +95,7 @@ void NodeGraph::place_nodes(const Document& document, Messages& messages) {
     world_from_node_ = world_from_nodes(places_, {0, 0, 0});
 }
 
-std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages& messages) const {
+std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t shown, Messages& messages) const {
     const std::vector<JsonValue>& scenes = document.table("scenes");
     std::vector<uint32_t> roots;
     if (scenes.empty()) { // a library of parts: show all of it
@@ -104,12 +104,6 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages&
         }
         return roots;
     }
-    const std::optional<JsonValue> chosen = document.root().find("scene");
-    const uint32_t scene = chosen ? document.index_into("scenes", *chosen) : 0;
-    if (scenes.size() > 1) {
-        messages.note(
-            fmt::format("{}: the file has {} scenes; number {} is shown", document.file(), scenes.size(), scene));
-    }
     // Some exporters list children too. A child is shown once, where its parent puts it.
     std::vector<bool> is_listed(nodes_.size());
     const auto read_root = [&](const JsonValue& reference) {
@@ -117,8 +111,8 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages&
         if (!is_listed[node]) roots.push_back(node);
         is_listed[node] = true;
     };
-    read_or_leave_out(fmt::format("{}/nodes", scenes[scene].pointer()), messages, [&] {
-        for (const JsonValue& reference : scenes[scene].elements_of("nodes")) {
+    read_or_leave_out(fmt::format("{}/nodes", scenes[shown].pointer()), messages, [&] {
+        for (const JsonValue& reference : scenes[shown].elements_of("nodes")) {
             read_or_leave_out(reference, messages, [&] { read_root(reference); });
         }
     });
@@ -131,7 +125,7 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, Messages&
         if (!is_below[node]) return false;
         messages.warn(fmt::format("{}: node {}, which the scene lists, is below another one that it lists; it is shown "
                                   "once",
-                                  scenes[scene].place(), node));
+                                  scenes[shown].place(), node));
         return true;
     });
     return roots;

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/messages.h"
 #include "formats/gltf/document.h"
 #include "math/transform.h"
 #include "scene/node.h"
@@ -17,8 +16,9 @@ namespace pertev::gltf {
 
 class NodeGraph {
 public:
-    /// A cycle is cut, and of two parents the first counts, each with a warning.
-    NodeGraph(const Document& document, Messages& messages);
+    /// A cycle is cut, and of two parents the first counts, each with a warning. `shown`: number of the scene of the
+    /// document that is shown; without scenes all nodes are.
+    NodeGraph(const Document& document, uint32_t shown, Messages& messages);
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
@@ -33,7 +33,7 @@ private:
     void read_children(const Document& document, Messages& messages);
     void cut_cycles(const Document& document, Messages& messages);
     void place_nodes(const Document& document, Messages& messages);
-    std::vector<uint32_t> scene_roots(const Document& document, Messages& messages) const;
+    std::vector<uint32_t> scene_roots(const Document& document, uint32_t shown, Messages& messages) const;
     template <class Visit>
     void for_each_below(const std::vector<uint32_t>& roots, const Visit& visit) const;
 

@@ -14,14 +14,14 @@ namespace {
 constexpr uint64_t kGrain = 1 << 10;
 constexpr Vec4 kNoDirection = {1, 0, 0, 1};
 
-/// `v` without its part along the unit normal `n`, at unit length; zero where nothing is left.
+/// Projects `v` into the plane across the unit normal `n` and scales it to length 1; zero stays zero.
 Vec3 lay_across(Vec3 n, Vec3 v) {
     const Vec3 across = v - dot(n, v) * n;
     const bool is_something = is_not_zero(across.x) || is_not_zero(across.y) || is_not_zero(across.z);
     return is_something ? normalize(across) : across;
 }
 
-/// asin(y) = y + y^3 (1/2)/3 + y^5 (1 3)/(2 4)/5 + ...; for |y| <= 1/2 these terms are good to 2^-50.
+/// The series asin(y) = y + y^3 (1/2)/3 + y^5 (1 3)/(2 4)/5 + ...: for |y| <= 1/2 these terms are good to 2^-50.
 constexpr std::array<double, 24> kArcsine = [] {
     std::array<double, 24> terms = {};
     double product = 1;
@@ -39,8 +39,8 @@ double arcsine(double y) {
     return y * sum;
 }
 
-/// The arc cosine to the nearest float, of `x` in [-1, 1]. That of math/portable_math.h may be 2 ulp off, which shows
-/// where the directions round a vertex cancel: what is left of them then depends on the last bits of the angles.
+/// Returns the arc cosine of `x` in [-1, 1], rounded to the nearest float. The one of math/portable_math.h may be 2 ulp
+/// off. That shows where the directions round a vertex cancel, because their sum then depends on the angles' last bits.
 float angle_of_cosine(float x) {
     constexpr double pi = 3.14159265358979323846;
     const double size = static_cast<double>(abs(x));
@@ -49,11 +49,11 @@ float angle_of_cosine(float x) {
     return static_cast<float>(x > 0 ? angle : pi - angle);
 }
 
-/// What a triangle says at one of its corners.
+/// One triangle's part of the mean at one of its corners.
 struct Share {
     Vec3 along_u, along_v; // across the normal, unit or zero
     float angle;           // radians, between the triangle's edges as they lie across the normal
-    bool is_known;         // else it says nothing
+    bool is_known;         // else it adds nothing
 };
 
 Share share_of(const TangentMesh& mesh, const UvDirections& directions, uint32_t corner) {
@@ -66,13 +66,13 @@ Share share_of(const TangentMesh& mesh, const UvDirections& directions, uint32_t
             .is_known = directions.is_known};
 }
 
-/// Triangles of one group take part in each other's tangent unless both know theirs and these are opposite, by u or by
-/// v. (The method has an angle for this; a half turn is what everyone uses.)
+/// Triangles of one group take part in each other's tangent unless their directions of u or of v are opposite. (The
+/// method has a threshold angle for this; everyone uses its default, a half turn.)
 bool go_together(const Share& a, const Share& b) {
     return !a.is_known || !b.is_known || (dot(a.along_u, b.along_u) > -1 && dot(a.along_v, b.along_v) > -1);
 }
 
-/// Whether all go together for sure: no two are opposite where all lie within a quarter turn of their mean.
+/// Finds quickly that no two directions are opposite: all lie within a quarter turn of their mean.
 bool all_go_together(std::span<const Share> shares) {
     Vec3 sum_u, sum_v;
     for (const Share& share : shares) {
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    /// Every pair is compared: of more triangles round one vertex all take part.
+    /// Up to so many triangles of a group are compared pair by pair; in a larger group all take part.
     static constexpr std::size_t kMostCompared = 256;
     using Members = std::array<uint64_t, kMostCompared / 64>; // a bit for each
 

@@ -97,7 +97,8 @@ std::vector<Vec3> sum(const std::vector<Vec3>& values, const std::vector<Vec3>& 
     return sums;
 }
 
-/// What a morph target adds to tangents: those of the mesh that is moved to it, less those of the mesh.
+/// Returns the differences between the tangents of the mesh that is moved to a target and those at rest; empty if there
+/// are none.
 std::vector<Vec3> tangent_offsets(const std::vector<Vec4>& at_target, const std::vector<Vec4>& tangents) {
     std::vector<Vec3> offsets;
     offsets.reserve(tangents.size());
@@ -114,7 +115,7 @@ void wind_other_way(std::vector<uint32_t>& indices) {
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
 }
 
-/// `shape` is null where nothing moves the vertices; else the mesh's own tangents are to be made of the shape's.
+/// `shape` is null where nothing moves the vertices; else the caller makes the mesh's vertices of the shape's.
 void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
     const bool is_turned_over = shape != nullptr && shape->is_turned_over;
     if (is_turned_over) wind_other_way(mesh.indices);
@@ -156,7 +157,8 @@ void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
 
 constexpr uint32_t kNone = 0xffffffffu;
 
-/// Which mesh of the scene a mesh becomes for instances with a normal map over either set; kNone: it stays as it is.
+/// The mesh that instances with a normal map over either set of coordinates get in place of their own; kNone: there are
+/// none.
 using MeshBySet = std::array<uint32_t, 2>;
 
 /// Adds copies of meshes that need tangents over both sets, and points instances to theirs.

@@ -7,11 +7,11 @@
 
 namespace pertev {
 
-/// Of each mesh that an instance shows with a normal map, and that has texture coordinates for it and no tangents.
-/// Vertices are split where their corners differ: the mesh gets more of them, its triangles keep their order. A mesh
-/// whose instances have normal maps over both sets of coordinates becomes two. What a skin or morph targets move gets
-/// tangents of its vertices before any of that, and those move with it; so do those that each morph target adds. Every
-/// index of `scene` is in range and every number finite (validate() calls this).
+/// Gives tangents to each mesh that an instance shows with a normal map, if it has texture coordinates for that map and
+/// no tangents. Vertices are split where their corners differ; triangles keep their order. A mesh whose instances have
+/// normal maps over both sets of coordinates becomes two meshes. Tangents of a mesh that a skin or morph targets move
+/// are made of its vertices before both, and move with them; each morph target gets the difference to the tangents of
+/// the mesh that is moved to it. Every index of `scene` is in range and every number finite (validate() calls this).
 void make_tangents(Scene& scene);
 
 } // namespace pertev

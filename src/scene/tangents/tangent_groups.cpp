@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kNoCorner = 0xffffffffu;
 
-/// Equal for equal numbers: both zeros are one.
+/// Equal numbers have equal results: both zeros give one.
 uint32_t bits_of_number(float x) { return std::bit_cast<uint32_t>(x + 0.0f); }
 
 std::vector<uint32_t> weld(const TangentMesh& mesh) {
@@ -33,7 +33,7 @@ std::vector<uint32_t> weld(const TangentMesh& mesh) {
 
 enum class TriangleKind : uint8_t {
     TwoEqual, // two of its positions are the same: no triangle
-    Unknown,  // its texture coordinates say no direction
+    Unknown,  // its texture coordinates have no direction
     Known,
 };
 
@@ -58,13 +58,13 @@ Triangles sort_out(const TangentMesh& mesh) {
     return triangles;
 }
 
-/// One edge at its vertex of the lower number; `corner` is where its triangle begins it.
+/// An edge is listed at its vertex of the lower number; `corner` is where its triangle begins it.
 struct Edge {
     uint32_t higher, corner;
     auto operator<=>(const Edge&) const = default;
 };
 
-/// All edges of triangles, by their lower vertex: those of vertex i are [first[i], first[i + 1]).
+/// All edges of triangles, sorted by their lower vertex: vertex i has [first[i], first[i + 1]).
 struct EdgeLists {
     std::vector<std::size_t> first;
     std::vector<Edge> edges;
@@ -89,9 +89,9 @@ EdgeLists list_edges(const std::vector<uint32_t>& welded, const Triangles& trian
     return lists;
 }
 
-/// For each corner, the corner at which the triangle beyond the edge that begins here begins it, so the one at the
-/// edge's other end; or kNoCorner. Where more than two triangles share an edge, each takes the first by number that
-/// runs along it the other way and has no neighbour yet.
+/// Returns for each corner the neighbour across the edge that begins there: the corner at which the neighbour begins
+/// that edge, which is at its other end; or kNoCorner. Where more than two triangles share an edge, each takes the
+/// first by number that runs along it in the other direction and has no neighbour yet.
 std::vector<uint32_t> find_neighbours(const std::vector<uint32_t>& welded, const Triangles& triangles) {
     EdgeLists lists = list_edges(welded, triangles);
     std::vector<uint32_t> neighbour(welded.size(), kNoCorner);
@@ -116,7 +116,7 @@ std::vector<uint32_t> find_neighbours(const std::vector<uint32_t>& welded, const
     return neighbour;
 }
 
-/// Spreads groups over the corners that hang together.
+/// Spreads each group over the corners that are connected.
 class Grouping {
 public:
     Grouping(const std::vector<uint32_t>& neighbour, Triangles& triangles, TangentGroups& groups)
@@ -149,7 +149,7 @@ private:
         return triangles_.is_counter_clockwise[triangle] == way;
     }
 
-    /// The last that is pushed is looked at first: the neighbour over the edge that begins here.
+    /// The neighbour across the edge that begins here is pushed last, so that it is visited first.
     void take(uint32_t corner) {
         groups_.group[corner] = static_cast<uint32_t>(groups_.count() - 1);
         const uint32_t before = neighbour_[previous_corner(corner)], after = neighbour_[corner];

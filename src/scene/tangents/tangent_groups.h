@@ -1,12 +1,13 @@
 #pragma once
 
-// Which corners of a mesh share a tangent space by MikkTSpace's rule: those that meet in one vertex (equal position,
-// normal and texture coordinate), whose triangles hang together there by edges with two such vertices, and whose
-// textures lie the same way round. So a seam, a hard edge and the axis of a mirrored texture each end a group.
+// MikkTSpace puts the corners of a mesh into groups that share a tangent. The corners of a group meet in one vertex
+// (equal position, normal and texture coordinate), their triangles are connected there by edges between two such
+// vertices, and their texture coordinates have one orientation. Thus a seam, a hard edge and the axis of a mirrored
+// texture each end a group.
 //
-// Source: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008, chapter 4, and the rules by which his library
-// mikktspace treats triangles without area: one with two equal positions belongs to no group and breaks none; one whose
-// texture coordinates say no direction joins the first group that reaches it, and says nothing about its tangent.
+// Source: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008, chapter 4. His library mikktspace adds two
+// rules for degenerate triangles: one with two equal positions belongs to no group and has no neighbours; one whose
+// texture coordinates have no direction joins the first group that reaches it, and adds nothing to its tangent.
 
 #include <cstdint>
 #include <span>

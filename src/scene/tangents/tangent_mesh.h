@@ -1,6 +1,6 @@
 #pragma once
 
-// What tangents are made of: triangles with a normal and a texture coordinate at each vertex, and for each triangle the
+// The input of MikkTSpace: triangles with a normal and a texture coordinate at each vertex. Each triangle has two
 // directions along which its texture coordinates grow.
 //
 // Source: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008, section 2.
@@ -25,7 +25,7 @@ struct TangentMesh {
     Vec2 coordinate(std::size_t corner) const { return uv[indices[corner]]; }
 };
 
-/// The corners of a triangle before and after one of its corners.
+/// Both stay within the corner's triangle.
 inline std::size_t next_corner(std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 inline std::size_t previous_corner(std::size_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
 
@@ -38,7 +38,7 @@ struct UvDirections {
 /// Numbers below the least normal float count as zero.
 inline bool is_not_zero(float x) { return abs(x) > 0x1p-126f; }
 
-/// The derivatives of the position by u and by v, each scaled to length 1.
+/// Returns the derivatives of the position by u and by v, each scaled to length 1.
 inline UvDirections uv_directions(const TangentMesh& mesh, std::size_t triangle) {
     const std::size_t a = 3 * triangle;
     const Vec3 ab = mesh.position(a + 1) - mesh.position(a), ac = mesh.position(a + 2) - mesh.position(a);

@@ -1,0 +1,85 @@
+// What a file has several of: how one is chosen by a name or a number, and by which words it is told.
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "formats/file_choices.h"
+
+using namespace pertev;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// The only one that plays.
+std::size_t chosen(const Names& names, const std::string& choice) {
+    const std::vector<bool> plays = choose_clips("a.glb", names, choice);
+    REQUIRE(plays.size() == names.size());
+    REQUIRE(std::count(plays.begin(), plays.end(), true) == 1);
+    return static_cast<std::size_t>(std::find(plays.begin(), plays.end(), true) - plays.begin());
+}
+
+std::string refusal(const Names& names, const std::string& choice) {
+    try {
+        choose_clips("a.glb", names, choice);
+    } catch (const Error& error) {
+        CHECK(error.code() == ErrorCode::BadInput);
+        return error.what();
+    }
+    return "";
+}
+
+std::vector<Clip> clips(const Names& names, const std::vector<bool>& plays) {
+    std::vector<Clip> all;
+    for (std::size_t i = 0; i < names.size(); ++i) all.push_back({.name = names[i], .end_s = 1, .plays = plays[i]});
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("a name chooses before a number does, and the first plays without a choice") {
+    const Names names = {"walk", "run", "0", ""};
+    CHECK(chosen(names, "") == 0);
+    CHECK(chosen(names, "run") == 1);
+    CHECK(chosen(names, "1") == 1);
+    CHECK(chosen(names, "0") == 2); // it is called so
+    CHECK(chosen(names, "3") == 3);
+    CHECK(choose_file_scene("a.glb", names, "0") == 2);
+    CHECK(choose_clips("a.glb", names, "all") == std::vector<bool>(4, true));
+    CHECK(choose_clips("a.glb", {}, "").empty());
+    CHECK(chosen({"walk", "all"}, "1") == 1); // "all" is every one, also where one is called so
+    CHECK(choose_clips("a.glb", Names{"walk", "all"}, "all") == std::vector<bool>(2, true));
+    CHECK(choose_file_scene("a.glb", Names{"walk", "all"}, "all") == 1);
+}
+
+TEST_CASE("a choice that stands for none, or for two, is an error that lists what there is") {
+    CHECK(refusal({"walk", "run"}, "jump") == "a.glb: no animation \"jump\"; the file has:\n  walk\n  run");
+    CHECK(refusal({"walk", "", "walk"}, "walk") ==
+          "a.glb: 2 animations are called \"walk\"; choose one by its number:\n  0 (walk)\n  1\n  2 (walk)");
+    CHECK(refusal({}, "all") == "a.glb: no animation \"all\"; the file has no animations");
+    for (const char* choice : {"2", "-1", "1.0", " 1", "+1", "99999999999999999999"})
+        CHECK(!refusal({"a", "b"}, choice).empty());
+    CHECK_THROWS_WITH_AS(choose_file_scene("a.glb", {}, "x"), "a.glb: no scene \"x\"; the file has no scenes", Error);
+}
+
+TEST_CASE("what plays and what is shown are told by words that choose them again") {
+    const Names names = {"walk", "twin", "twin", "", "all"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::vector<bool> plays(names.size());
+        plays[i] = true;
+        CHECK(chosen(names, clip_choice(clips(names, plays))) == i);
+    }
+    CHECK(clip_choice(clips(names, std::vector<bool>(5, true))) == "all");
+    CHECK(clip_choice(clips({"walk"}, {true})).empty()); // nothing to choose from
+    CHECK(clip_choice({}).empty());
+    CHECK(list_clips(clips(names, std::vector<bool>(5))) == Names{"walk", "1 (twin)", "2 (twin)", "3", "4 (all)"});
+
+    Scene scene;
+    CHECK(file_scene_choice(scene).empty());
+    scene.file_scenes = {"hall", "hall", "all"};
+    scene.file_scene = 1;
+    CHECK(file_scene_choice(scene) == "1");
+    CHECK(list_file_scenes(scene) == Names{"0 (hall)", "1 (hall)", "all"});
+}
