@@ -53,8 +53,11 @@ DoubleVec3 centre_of(const DoubleBounds3& box) {
 }
 
 DoubleVec3 origin_for(const DoubleBounds3& box) {
+    constexpr double kMovedSizes = 64;
     const DoubleVec3 centre = centre_of(box);
-    return largest(centre) <= static_cast<double>(kMaxCoordinate) ? centre : DoubleVec3{0, 0, 0};
+    const double away = largest(centre);
+    const bool is_moved = away > kMovedSizes * longest_side(box) && away <= static_cast<double>(kMaxCoordinate);
+    return is_moved ? centre : DoubleVec3{0, 0, 0};
 }
 
 void set_origin(const DoubleBounds3& box, Scene& scene) {
