@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/limits.h"
+#include "scene/position_bounds.h"
 #include "scene/shape_mesh.h"
 
 namespace pertev {
@@ -40,6 +41,18 @@ void place_anew(Scene& scene) {
     }
 }
 
+/// Of some of what the scene shows.
+Bounds3 sample_of(const Scene& scene) {
+    Bounds3 sample;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (instance.is_hidden || mesh.indices.empty()) continue;
+        for (const std::size_t i : {std::size_t(0), mesh.indices.size() / 2, mesh.indices.size() - 1})
+            sample.extend(transform_point(instance.world_from_local, mesh.positions[mesh.indices[i]]));
+    }
+    return sample;
+}
+
 } // namespace
 
 DoubleVec3 centre_of(const DoubleBounds3& box) {
@@ -66,7 +79,10 @@ void set_origin(const DoubleBounds3& box, Scene& scene) {
 }
 
 void take_off_centre(Scene& scene) {
-    for (Instance& instance : scene.instances) instance.is_hidden = is_singular(instance.world_from_local);
+    for (Instance& instance : scene.instances) {
+        if (is_singular(instance.world_from_local)) instance.is_hidden = true;
+    }
+    if (surely_stays(sample_of(scene))) return;
     // Far away the first box is one of rounded places, and the second one is exact.
     for (int step = 0; step < 2; ++step) {
         const DoubleVec3 before = scene.origin_in_file;

@@ -13,6 +13,7 @@
 #include "formats/read_scene.h"
 #include "render/place_meshes.h"
 #include "scene/posed_scene.h"
+#include "scene/position_bounds.h"
 #include "session/measure_irradiance.h"
 #include "session/moving_camera.h"
 #include "session/picture_metadata.h"
@@ -110,6 +111,17 @@ TEST_CASE("the origin is 0 for a scene about the file's, else the middle of its 
     set_origin({{4094, 0, 0}, {4095, 1, 1}}, scene);
     CHECK(scene.origin_in_file == DoubleVec3{4095, 1, 1});
     CHECK(!scene.is_far);
+}
+
+TEST_CASE("a sample of a scene's points tells only of boxes that stay that they do") {
+    CHECK(surely_stays({{-1, 0, 0}, {1, 2, 0}}));
+    CHECK(surely_stays({{61, 0, 0}, {62, 1, 0}}));
+    CHECK(!surely_stays({{62, 0, 0}, {63, 1, 0}}));
+    CHECK(!surely_stays({}));
+    for (float side = 1; side < 8; side += 0.37f) { // the box of the sample and of others
+        const Bounds3 box = {{62 - side, -side, 0}, {62, 1, 0}};
+        if (surely_stays({{61, 0, 0}, {62, 1, 0}})) CHECK(origin_for(double_box_of(box)) == DoubleVec3{0, 0, 0});
+    }
 }
 
 TEST_CASE("an OBJ file far from the origin keeps its digits, and a near one is as it was") {
