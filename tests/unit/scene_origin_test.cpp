@@ -324,7 +324,7 @@ TEST_CASE("positions of a picture are in the file's coordinates, and of a far sc
         const CameraChoice choice = {.eye = DoubleVec3{c.x + 0.5, c.y + 0.5, 3},
                                      .target = DoubleVec3{c.x + 0.5, c.y + 0.5, 0},
                                      .projection = Projection::Orthographic,
-                                     .view_height = 0.5f};
+                                     .view_height = 1e-4f};
         RenderSettings settings;
         settings.width = settings.height = 1;
         settings.samples = 1;
