@@ -28,7 +28,7 @@ int cuda_index(const std::string& name) {
     return index;
 }
 
-[[noreturn]] void refuse(const std::string& name, const std::string& reason) {
+[[noreturn]] void refuse_device(const std::string& name, const std::string& reason) {
     throw Error(ErrorCode::BadInput, fmt::format("--device {}: {}", name, reason));
 }
 
@@ -63,7 +63,7 @@ ComingMachine::ComingMachine(const MachineFlags& flags, Messages& messages) : na
     }
     const bool is_auto = name_ == "auto";
     const int index = is_auto ? 0 : cuda_index(name_);
-    if (!is_auto && !may_have_cuda()) refuse(name_, why_no_cuda(index));
+    if (!is_auto && !may_have_cuda()) refuse_device(name_, why_no_cuda(index));
     std::promise<std::string> why_no_gpu;
     why_no_gpu_ = why_no_gpu.get_future();
     coming_ = std::async(std::launch::async, [index, why_no_gpu = std::move(why_no_gpu)]() mutable {
@@ -83,7 +83,7 @@ bool ComingMachine::is_cuda() {
     if (!is_cuda_) {
         const std::string reason = why_no_gpu_.get();
         is_cuda_ = reason.empty();
-        if (!reason.empty() && name_ != "auto") refuse(name_, reason);
+        if (!reason.empty() && name_ != "auto") refuse_device(name_, reason);
         if (!reason.empty()) messages_.note(fmt::format("using the CPU: {}", reason));
     }
     return *is_cuda_;

@@ -67,7 +67,7 @@ TEST_CASE("a place in a picture of irradiance is what the light meter says of it
         render_picture(queue, prepared, test::camera_down(place + Vec3{0, 0.5f, 0}, 0.001f), settings);
     RenderSettings meter;
     meter.samples = static_cast<uint32_t>(test::effort(4, 64));
-    const Irradiance measured = measure_irradiance(queue, prepared, {place, {0, 1, 0}}, meter);
+    const Irradiance measured = measure_irradiance(queue, prepared, {to_double(place), {0, 1, 0}}, meter);
     for (int c = 0; c < 3; ++c) {
         CAPTURE(c);
         CHECK(static_cast<double>(result.picture.pixels[static_cast<std::size_t>(c)]) ==

@@ -17,7 +17,7 @@ namespace {
 /// Accessors: 0 positions, 1 times 0 2, 2 times 0 5, 3 two VEC3, 4 two scalars, 5 times that fall. Nodes 0 and 1 show
 /// the mesh, which has a morph target, node 2 is a lamp. Clips: "walk" moves node 0, "bend" reshapes node 1, "dim" is
 /// the lamp's, "broken" has a channel that means nothing.
-GltfBuilder numbers() {
+GltfBuilder key_numbers() {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("SCALAR", std::vector<float>{0, 2});
@@ -34,7 +34,7 @@ std::string clip(const char* name, int times, int values, const std::string& tar
 }
 
 Scene read(const ReadOptions& options, Messages& messages, const std::string& scenes = "") {
-    const std::string document = numbers().json(
+    const std::string document = key_numbers().json(
         R"("extensionsUsed":["KHR_lights_punctual","KHR_animation_pointer"],"extensions":{"KHR_lights_punctual":)"
         R"({"lights":[{"type":"point"}]}},"meshes":[{"primitives":[{"attributes":{"POSITION":0},"targets":)"
         R"([{"POSITION":0}]}]}],"nodes":[{"mesh":0,"name":"a"},{"mesh":0,"name":"b"},)"

@@ -29,11 +29,11 @@ GltfBuilder triangle() {
 
 constexpr const char* kMesh = R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)";
 
-std::string with_triangle(const std::string& members) { return triangle().json(kMesh + members); }
+std::string triangle_with(const std::string& members) { return triangle().json(kMesh + members); }
 
 Light lamp(const std::string& members) {
     const Scene scene = test::read_gltf_text(
-        with_triangle(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)" + members +
+        triangle_with(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)" + members +
                       R"(}]}},"nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}])"));
     return scene.lights.at(0);
 }
@@ -76,7 +76,7 @@ void set_u32(std::vector<std::byte>& bytes, std::size_t at, std::size_t value) {
 TEST_CASE("a member that is null is one that is not there") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
-        with_triangle(
+        triangle_with(
             R"("extensionsUsed":null,"extensionsRequired":null,"animations":null,"skins":null,"scene":null,)"
             R"("extensions":null,"cameras":[null],"materials":[{"name":null,"pbrMetallicRoughness":null,)"
             R"("normalTexture":null,"alphaMode":null,"alphaCutoff":null,"extensions":null}],"nodes":[)"
@@ -91,7 +91,7 @@ TEST_CASE("a member that is null is one that is not there") {
 TEST_CASE("an element that is null counts as an object without members, and nothing else is lost") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
-        with_triangle(R"("nodes":[null,{"mesh":0,"children":[null,0]}],"animations":[{"channels":[null]},null])"),
+        triangle_with(R"("nodes":[null,{"mesh":0,"children":[null,0]}],"animations":[{"channels":[null]},null])"),
         messages);
     CHECK(scene.instances.size() == 1);
     CHECK(scene.nodes[0].parent == 1);
@@ -111,7 +111,7 @@ TEST_CASE("a number beyond the largest float is the largest, and a range of that
 TEST_CASE("what lies out of all bounds is left out, and the rest is shown") {
     Messages messages;
     Scene scene = test::read_gltf_text(
-        with_triangle(R"("cameras":[{"type":"perspective","perspective":{"yfov":1}}],"nodes":[{"mesh":0},)"
+        triangle_with(R"("cameras":[{"type":"perspective","perspective":{"yfov":1}}],"nodes":[{"mesh":0},)"
                       R"({"mesh":0,"translation":[1e300,0,0]},{"camera":0,"translation":[0,-1e39,0]},)"
                       R"({"mesh":0,"scale":[1e300,1,1],"children":[4]},{"mesh":0,"scale":[1e300,1,1]}])"),
         messages);

@@ -27,13 +27,13 @@ std::vector<float> scales(double full_s, float shown, bool has_whole) {
     return all;
 }
 
-struct Watched {
+struct WatchedGrowth {
     Queue queue = test::queue_asked_for();
     Messages messages;
     MovingScene scene{test::make_mixed_scene(), std::nullopt, {}, messages};
     FrameRequest request;
 
-    Watched() {
+    WatchedGrowth() {
         request.camera = test::mixed_scene_camera();
         RenderSettings& picture = request.view.picture;
         picture.width = 48, picture.height = 32;
@@ -97,7 +97,7 @@ TEST_CASE("a picture takes the window's shape, with no more pixels than were ask
 }
 
 TEST_CASE("pictures that grow come before the samples of a view that is new, and the film is as if they had not been") {
-    Watched watched;
+    WatchedGrowth watched;
     FrameRequest& request = watched.request;
     request.budget_s = 100;
     const std::string at_rest = watched.hash_alone();
@@ -138,7 +138,7 @@ TEST_CASE("pictures that grow come before the samples of a view that is new, and
 }
 
 TEST_CASE("who waits for another exposure waits for no sample, and no whole sample is lost") {
-    Watched watched;
+    WatchedGrowth watched;
     if (watched.queue.is_cuda()) return; // a GPU's samples are short
     FrameRequest& request = watched.request;
     const std::string at_rest = watched.hash_alone();
