@@ -108,7 +108,7 @@ class FirstView(CliTest):
         self.assertEqual(self.info("f01.exr")["pertev.environment"], "made up")
         self.assertEqual(self.measured("body.gltf"), 0)
         self.seen("body.gltf", "--environment", "0,0,0")
-        self.assertEqual(self.info("x.exr")["pertev.environment"], "0,0,0")
+        self.assertEqual(self.info("x.exr")["pertev.environment"], [0, 0, 0])
 
     def test_a_ground_is_the_background_in_all_layers(self):
         write(self.path("body.gltf"), gltf([(box(0.5, (7, 9, 0)), GREY)]))
