@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
@@ -22,6 +23,7 @@
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "formats/file_choices.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
 #include "scene/scene_origin.h"
@@ -104,6 +106,18 @@ CameraSource turned_camera(const ReadyScene& ready, double time_s) {
     source.target = in_file(ready.scene(), pose.target);
     source.up = pose.up;
     return source;
+}
+
+/// Says in the panel which animation plays and which scene is shown, where the file has several, and by which words the
+/// others are chosen.
+void tell_choices(const Scene& scene, ViewerStart& start) {
+    const auto tell = [&](const char* label, const std::string& chosen, const std::vector<std::string>& all,
+                          const char* flag) {
+        if (chosen.empty()) return;
+        start.about.emplace_back(label, fmt::format("{} of {} ({})", chosen, fmt::join(all, ", "), flag));
+    };
+    tell("animation", clip_choice(scene.clips), list_clips(scene.clips), "--animation");
+    tell("scene of the file", file_scene_choice(scene), list_file_scenes(scene), "--file-scene");
 }
 
 /// What time does to the camera, and when all of it is over.
@@ -237,6 +251,7 @@ int view(const ViewFlags& flags) {
     const float size = length(bounds_of(ready->scene()).size());
     start.speed = 0.12f * size;
     start.camera.pose = start_pose(start.record, ready->scene(), source, size);
+    tell_choices(ready->scene(), start);
     let_time_move(flags, *ready, start);
     if (!start.why_still.empty()) {
         reporter.messages().note(fmt::format("{}: the scene {}; --time S shows it at another, --integrator path moving",

@@ -126,9 +126,6 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     append(rows, row_json("Stages", "pack",
                           fmt::format("{:.1f} ms, {} KiB", numbers.pack_ms, (numbers.packed_bytes + 1023) / 1024)));
     append(rows, row_json("Stages", "packed by", numbers.encoder));
-    if (numbers.scene == nullptr) return rows;
-    for (const std::string& text : numbers.scene->made_up) append(rows, row_json("Scene", "made up", text));
-    for (const std::string& text : numbers.scene->left_out) append(rows, row_json("Scene", "left out", text));
     return rows;
 }
 
@@ -165,6 +162,11 @@ std::string welcome_text(const ViewerStart& start) {
     std::string about = row_json("Scene", "file", name);
     append(about, row_json("Scene", "rendered by", start.record.device));
     for (const auto& [label, value] : start.about) append(about, row_json("Scene", label, value));
+    const SceneSource& scene = start.record.scene;
+    for (const auto& [label, list] : {std::pair{"made up", &scene.made_up}, {"left out", &scene.left_out}}) {
+        for (const std::string& text : *list)
+            append(about, row_json("Scene", label, without_folder(text, scene.scene)));
+    }
     return fmt::format(
         R"({{"type":"welcome","scene":{},"device":{},"width":{},"height":{},"cameras":[{}],"about":[{}],"settings":[{}]}})",
         json_string(name), json_string(start.record.device), start.view.picture.width, start.view.picture.height,

@@ -19,14 +19,13 @@ struct ViewNumbers {
     double made_share = 1; // of what is made before the next picture's samples
     double pack_ms = 0;
     std::size_t packed_bytes = 0;
-    const char* encoder = "";           // that packed them
-    std::string phase;                  // "moving", "gathering", "done"
-    std::string flags;                  // of the camera and the time
-    uint32_t input = 0, steerer = 0;    // the last input that all this knows of, and the client that it came from
-    SceneClock clock;                   // end_s is 0 where time changes nothing
-    const CameraPath* path = nullptr;   // that is recorded; null: none
-    std::string why_still;              // ViewerStart's
-    const SceneSource* scene = nullptr; // for what was made up and left out; null: nothing is told
+    const char* encoder = "";         // that packed them
+    std::string phase;                // "moving", "gathering", "done"
+    std::string flags;                // of the camera and the time
+    uint32_t input = 0, steerer = 0;  // the last input that all this knows of, and the client that it came from
+    SceneClock clock;                 // end_s is 0 where time changes nothing
+    const CameraPath* path = nullptr; // that is recorded; null: none
+    std::string why_still;            // ViewerStart's
 };
 
 std::string state_text(const ViewState& view, const ViewNumbers& numbers);

@@ -305,6 +305,9 @@ void RenderLoop::show_next() {
 PictureRecord RenderLoop::record() const {
     PictureRecord record = start_.record;
     // Where the files lie is nobody's business but the machine's.
+    for (std::vector<std::string>* list : {&record.scene.made_up, &record.scene.left_out}) {
+        for (std::string& text : *list) text = without_folder(std::move(text), record.scene.scene);
+    }
     record.scene.scene = file_name(record.scene.scene);
     record.scene.environment = file_name(record.scene.environment);
     if (start_.is_animated) record.scene.time_s = clock_.time_s;
@@ -353,7 +356,6 @@ void RenderLoop::tell_state() {
         numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
     }
     numbers.why_still = start_.why_still;
-    numbers.scene = &start_.record.scene;
     numbers.input = input_;
     numbers.steerer = steerer_;
     numbers.clock = clock_;

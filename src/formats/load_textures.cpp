@@ -13,8 +13,8 @@
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "image/decode_image.h"
-#include "image/picture_primaries.h"
 #include "image/image_format.h"
+#include "image/picture_primaries.h"
 #include "image/srgb.h"
 
 namespace fs = std::filesystem;

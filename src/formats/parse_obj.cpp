@@ -12,12 +12,14 @@
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
+#include "formats/move_positions.h"
 #include "formats/obj_pieces.h"
 #include "formats/obj_positions.h"
 #include "formats/obj_text.h"
 #include "formats/parse_number.h"
 #include "formats/triangulate_polygon.h"
 #include "formats/vertex_colors.h"
+#include "scene/position_bounds.h"
 #include "scene/scene_origin.h"
 
 namespace pertev {
@@ -295,25 +297,27 @@ private:
         parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
     }
 
-    /// Round the positions that faces name. `position_at(i)`: of number i.
-    template <class PositionAt>
-    DoubleBounds3 box_of_faces(const PositionAt& position_at) const {
-        std::vector<DoubleBounds3> boxes(parsers_.size());
+    /// Round the positions that faces name.
+    Bounds3 bounds_of_faces() const {
+        std::vector<Bounds3> boxes(parsers_.size());
+        const std::span<const Vec3> positions = data_.positions;
         parallel_for(parsers_.size(), 1, [&](uint64_t i) {
+            Bounds3 box; // of its own, so that it stays in registers
             for (const RawGroup& group : parsers_[i].groups) {
                 for (const ObjCorner& corner : group.corners) {
-                    if (corner.position < data_.positions.size()) boxes[i].extend(position_at(corner.position));
+                    if (corner.position < positions.size()) box.extend(positions[corner.position]);
                 }
             }
+            boxes[i] = box;
         });
-        DoubleBounds3 box;
-        for (const DoubleBounds3& of_piece : boxes) box.extend(of_piece);
+        Bounds3 box;
+        for (const Bounds3& of_piece : boxes) box.extend(of_piece);
         return box;
     }
 
     /// Where the faces lie away from 0, reads the positions in double and takes off what lies between.
     void move_to_origin() {
-        data_.box = box_of_faces([&](uint32_t i) { return to_double(data_.positions[i]); });
+        data_.box = double_box_of(bounds_of_faces());
         if (origin_for(data_.box) == DoubleVec3{0, 0, 0}) return;
         std::vector<DoubleVec3> exact(data_.positions.size());
         parallel_for(pieces_.size(), 1, [&](uint64_t i) {
@@ -321,9 +325,7 @@ private:
             const std::size_t end = i + 1 < pieces_.size() ? pieces_[i + 1].counts.positions : exact.size();
             read_obj_positions(pieces_[i].text, end_of_line_, std::span(exact).subspan(begin, end - begin));
         });
-        data_.box = box_of_faces([&](uint32_t i) { return exact[i]; });
-        const DoubleVec3 origin = origin_for(data_.box);
-        parallel_for(exact.size(), 4096, [&](uint64_t i) { data_.positions[i] = to_float(exact[i] - origin); });
+        data_.box = move_positions(data_.box, exact, data_.positions, [&] { return bounds_of_faces(); });
     }
 
     /// Puts the parts of each group together. Returns false where there are more than kMostObjGroups.

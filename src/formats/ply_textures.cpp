@@ -98,8 +98,8 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
     const std::string name = mesh.name;
     const bool has_uv = !mesh.uv[0].empty();
     if (!header.textures.empty() && !has_uv) {
-        messages.warn(fmt::format("{}:{}: {} left out: neither vertices nor faces have texture coordinates", file,
-                                  header.textures.front().line, counted(header.textures.size(), "texture")));
+        messages.leave_out(fmt::format("{}:{}: {} left out: neither vertices nor faces have texture coordinates", file,
+                                       header.textures.front().line, counted(header.textures.size(), "texture")));
     }
     for (Part& part : split_by_texture(std::move(mesh), sizes, of_faces.textures, header.textures.size())) {
         Material& material = scene.materials.emplace_back();
@@ -125,7 +125,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
         has_colors_beside = true;
     }
     if (has_colors_beside) {
-        messages.warn(
+        messages.leave_out(
             fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
     }
     return scene;

@@ -61,7 +61,8 @@ void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages
         ++dropped;
     }
     if (dropped == 0) return;
-    messages.warn(fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
+    messages.leave_out(
+        fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
 }
 
 Mesh make_mesh(const ObjGroup& group, const ObjData& data) {

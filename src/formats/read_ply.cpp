@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <mutex>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -13,9 +12,9 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/message_text.h"
-#include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "formats/load_textures.h"
+#include "formats/move_positions.h"
 #include "formats/ply_body.h"
 #include "formats/ply_header.h"
 #include "formats/ply_slots.h"
@@ -23,6 +22,7 @@
 #include "formats/triangulate_polygon.h"
 #include "formats/vertex_colors.h"
 #include "image/srgb.h"
+#include "scene/position_bounds.h"
 #include "scene/scene_origin.h"
 
 namespace fs = std::filesystem;
@@ -139,6 +139,26 @@ private:
         }
     }
 
+    using VertexValues = std::array<double, kSlots + 1>; // by slot
+
+    /// What reads the vertices once more.
+    struct VertexReader {
+        PlyBody body; // at the first of them
+        const PlyElement& element;
+        std::vector<std::size_t> slots; // of its properties
+    };
+
+    static void read_values(PlyBody& body, const PlyElement& element, const std::vector<std::size_t>& slots,
+                            VertexValues& values) {
+        for (std::size_t k = 0; k < slots.size(); ++k) {
+            if (slots[k] == kSlots) {
+                body.skip(element.properties[k]);
+            } else {
+                values[slots[k]] = body.value(element.properties[k].type);
+            }
+        }
+    }
+
     void vertices(const PlyElement& element) {
         if (element.count > std::numeric_limits<uint32_t>::max()) {
             throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
@@ -159,30 +179,20 @@ private:
         const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
         const auto count = static_cast<std::size_t>(element.count);
         mesh_.positions.resize(count);
-        const auto is_exact = [&](PlySlot slot) { return body_.is_binary() && types[slot] == PlyType::Float32; };
-        const bool is_rounded = !(is_exact(kX) && is_exact(kY) && is_exact(kZ)); // by a mesh's positions
-        if (is_rounded) exact_.reserve(count);
+        vertices_.emplace(VertexReader{body_, element, slots});
         if (has_normal) mesh_.normals.resize(count);
         if (has_colour) mesh_.colors.resize(count);
         if (has_uv) mesh_.uv[0].resize(count);
         has_float_colors_ = has_colour && is_float(types[kRed]) && is_float(types[kGreen]) && is_float(types[kBlue]);
 
-        std::array<double, kSlots + 1> values = {};
+        VertexValues values = {};
         values[kAlpha] = 1;
         const auto number = [&](PlySlot slot) { return static_cast<float>(values[slot]); };
         const auto channel = [&](PlySlot slot) { return colour(values[slot], types[slot], slot == kAlpha); };
         for (std::size_t i = 0; i < count; ++i) {
             body_.set_number(i);
-            for (std::size_t k = 0; k < slots.size(); ++k) {
-                if (slots[k] == kSlots) {
-                    body_.skip(element.properties[k]);
-                } else {
-                    values[slots[k]] = body_.value(element.properties[k].type);
-                }
-            }
-            const DoubleVec3 position = {values[kX], values[kY], values[kZ]};
-            mesh_.positions[i] = to_float(position);
-            if (is_rounded) exact_.push_back(position);
+            read_values(body_, element, slots, values);
+            mesh_.positions[i] = {number(kX), number(kY), number(kZ)};
             if (has_normal) mesh_.normals[i] = {number(kNormalX), number(kNormalY), number(kNormalZ)};
             if (has_colour) {
                 mesh_.colors[i] = {channel(kRed), channel(kGreen), channel(kBlue),
@@ -311,20 +321,17 @@ private:
 
     /// Takes off in double what lies between the file's origin and the faces.
     void move_to_origin() {
-        const auto position = [&](std::size_t i) { return exact_.empty() ? to_double(mesh_.positions[i]) : exact_[i]; };
-        std::mutex guard;
-        parallel_for_ranges(corners_.size(), 1 << 14, [&](uint64_t begin, uint64_t end) {
-            DoubleBounds3 box;
-            for (uint64_t i = begin; i < end; ++i) box.extend(position(corners_[i]));
-            const std::lock_guard lock(guard);
-            box_.extend(box);
-        });
-        const DoubleVec3 origin = origin_for(box_);
-        if (!(origin == DoubleVec3{0, 0, 0})) {
-            for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
-                mesh_.positions[i] = to_float(position(i) - origin);
+        box_ = double_box_of(bounds_of(mesh_.positions, corners_));
+        if (origin_for(box_) == DoubleVec3{0, 0, 0}) return;
+        std::vector<DoubleVec3> exact; // they are read once more, so that other files are read no slower
+        exact.reserve(mesh_.positions.size());
+        VertexValues values = {};
+        while (exact.size() < mesh_.positions.size()) {
+            read_values(vertices_->body, vertices_->element, vertices_->slots, values);
+            exact.push_back({values[kX], values[kY], values[kZ]});
+            vertices_->body.end_element();
         }
-        exact_ = {};
+        box_ = move_positions(box_, exact, mesh_.positions, [&] { return bounds_of(mesh_.positions, corners_); });
     }
 
     void triangulate() {
@@ -357,7 +364,7 @@ private:
     const std::string& file_;
     uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
     Mesh mesh_;
-    std::vector<DoubleVec3> exact_; // positions, where the file has more digits than floats
+    std::optional<VertexReader> vertices_;
     DoubleBounds3 box_;
     std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
     PlyFaceTextures of_faces_;

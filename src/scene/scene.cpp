@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "base/limits.h"
+#include "scene/position_bounds.h"
 
 namespace pertev {
 namespace {
@@ -24,6 +25,7 @@ std::string origin_of(const Instance& instance) {
 }
 
 Bounds3 bounds_of(const Mesh& mesh) {
+    if (mesh.indices.size() >= 1 << 16) return bounds_of(mesh.positions, mesh.indices);
     Bounds3 bounds;
     for (const uint32_t index : mesh.indices) bounds.extend(mesh.positions[index]);
     return bounds;

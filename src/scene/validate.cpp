@@ -173,6 +173,12 @@ private:
             }
             const bool drops = is_singular(instance.world_from_local) && !moves_[number];
             if (drops && dropped++ == 0) first_singular_ = place_of(number, instance);
+            if (drops && is_flat(instance.world_from_local)) {
+                messages_.leave_out(
+                    fmt::format("{}: {} is squeezed flat by its transform, such as by one scale of 0: it "
+                                "is left out",
+                                file_, place_of(number, instance)));
+            }
             return drops;
         });
         for (Instance& instance : scene_.instances) {
@@ -183,6 +189,12 @@ private:
         if (dropped == 0) return;
         messages_.warn(fmt::format("{}: {} with a singular transform, such as a scale of 0: left out; the first is {}",
                                    file_, counted(dropped, "instance"), first_singular_));
+    }
+
+    /// Whether a surface would be left of what is placed so.
+    static bool is_flat(const Transform& m) {
+        const Vec3 a = column(m, 0), b = column(m, 1), c = column(m, 2);
+        return max_component(abs(cross(a, b)) + abs(cross(b, c)) + abs(cross(c, a))) > 0;
     }
 
     /// Empty where it can be placed so.

@@ -72,13 +72,13 @@ class Far(CliTest):
         told = self.info("far.obj")
         for got, wanted in zip(told["bounds_low"] + told["bounds_high"], [EAST, NORTH, 0, EAST + 1, NORTH + 0.875, 0]):
             self.assertAlmostEqual(got, wanted, delta=1e-6)
-        # Between two slats, facing along them: the upper one hides a quarter of what the lower one does not.
+        # The point is 5 cm behind a gap and faces the fence, which hides a part of the sky.
         numbers = []
         for scene, x, y in [("near.obj", 0, 0), ("far.obj", EAST, NORTH)]:
-            outcome = self.succeed("measure", scene, "--at", f"{x + .5!r},{y + .1875!r},0.01", "--normal", "0,0,-1", "--spp",
+            outcome = self.succeed("measure", scene, "--at", f"{x + .5!r},{y + .1875!r},0.05", "--normal", "0,0,-1", "--spp",
                                    "4", "--max-depth", "0", "--environment", "1,1,1", "--device", "cpu", "--json")
             numbers.append(outcome.events("measure")[0]["irradiance"]["value"])
-        self.assertLess(numbers[0], 0.99 * math.pi)
+        self.assertLess(numbers[0], 0.95 * math.pi)
         self.assertAlmostEqual(numbers[0], numbers[1], delta=0.02)
 
 

@@ -5,6 +5,7 @@ import json
 import math
 import time
 
+from cli_clips_test import CLIPS, gltf
 from cli_frames_test import moving_gltf
 from cli_run import CliTest, main, write
 from viewer_client import Client, Viewer
@@ -51,6 +52,17 @@ class Times(CliTest):
             self.assertEqual(stands["hash"], self.rendered("--time", words[-1]))  # its camera goes along by itself
             again = client.text("state", timeout=5)  # it does stand
             self.assertEqual(again["clock"]["at"], stands["clock"]["at"])
+
+    def test_the_panel_lists_the_animations_and_scenes_of_the_file_and_which_is_shown(self):
+        write(self.path("clips.gltf"), gltf(CLIPS, (("one", [0, 1, 2]), ("two", [3, 1, 2]))))
+        for flags, plays, shows, end, alone in [([], "go", "one", 2, "go"), (["--animation", "4", "--file-scene", "two"], "4", "two", 3, "4")]:
+            with self.view("--time", "0.5", *flags, scene="clips.gltf") as viewer, Client(viewer) as client:
+                told = dict(row[1:] for row in client.text("welcome")["about"])
+                self.assertTrue(told["animation"].startswith(f"{plays} of go, rise, 2 (twin), 3 (twin), 4, 1, dim"), told)
+                self.assertTrue(told["scene of the file"].startswith(f"{shows} of one, two"), told)
+                state = client.done()
+                self.assertEqual(state["clock"]["end"], end)
+                self.assertEqual(state["hash"], self.rendered("--time", "0.5", "--animation", alone, *flags[2:], scene="clips.gltf"))
 
     def test_a_time_that_is_gone_to_is_shown_whatever_was_before(self):
         with self.view("--time", "0.75") as viewer, Client(viewer) as client:

@@ -144,19 +144,20 @@ TEST_CASE("numbers that are not there or cannot be read become NaN, with a warni
     CHECK(l.said("a.obj:3: 2 lines with a number"));
 }
 
-TEST_CASE("a vertex index that leads nowhere is an error that names the line") {
-    for (const std::string face :
-         {"f 1 2 4", "f 1 2 -4", "f 0 1 2", "f 1 2 99999999999999999999", "f 1 2 4294967296"}) {
+TEST_CASE("a face with a vertex that does not exist is left out with its line, and the others are read") {
+    for (const std::string face : {"f 1 2 4", "f 1 2 -4", "f 0 1 2", "f 1 2 99999999999999999999", "f 1 2 4294967296",
+                                   "f 1 2 c", "f 1/1/1/1 2 3", "f 1.5 2 3", "f / 2 3"}) {
         CAPTURE(face);
-        const auto error = test::thrown_error([&] { load_text(kTriangle + "f 1 2 3\n" + face + "\n"); });
-        REQUIRE(error);
-        CHECK(error->code() == ErrorCode::BadInput);
-        CHECK(test::says(error, "a.obj:5: vertex index"));
+        const Loaded l = load_text(kTriangle + "f 1 2 3\n" + face + "\n" + face + " 1\nf 3 2 1\n");
+        REQUIRE(l.scene.meshes.size() == 1);
+        CHECK(l.scene.meshes[0].triangle_count() == 2);
+        REQUIRE(l.messages.left_out().size() == 1);
+        CHECK(l.messages.left_out()[0].find("a.obj:5: ") != std::string::npos);
+        CHECK(l.messages.left_out()[0].find("2 ") != std::string::npos);
     }
-    for (const std::string face : {"f 1 2 c", "f 1/1/1/1 2 3", "f 1.5 2 3", "f / 2 3"}) {
-        CAPTURE(face);
-        CHECK(test::says(test::thrown_error([&] { load_text(kTriangle + face); }), "a.obj:4: a face's corner"));
-    }
+    const Loaded none = load_text(kTriangle + "f 1 2 4\n");
+    CHECK(none.scene.instances.empty());
+    CHECK(none.scene.no_instances.find("a.obj:4: ") != std::string::npos);
 }
 
 TEST_CASE("an index may lead to a vertex further down, one of a texture coordinate to none") {
@@ -248,15 +249,18 @@ TEST_CASE("mtl: what a Phong material is converted to") {
     CHECK(material_of("Kd 0 0 0\nKe 17 12 4").emission == Rgb{17, 12, 4});
 }
 
-TEST_CASE("mtl: a number that is missing, is none or is not finite is an error with file and line") {
+TEST_CASE("mtl: a line with a number that is missing, is none or is not finite is left out with file and line") {
     for (const std::string line : {"Kd oops 1 1", "Kd nan 0 0", "Kd 1e999 0 0", "Kd", "Kd 1 1", "Kd 1 1 # 1",
                                    "Ks 1,1,1", "illum xx", "d foo", "Tr", "Ns zzz", "Ni inf", "Pr -nan", "aniso x",
                                    "map_Kd -bm x t.png", "map_Kd -clamp maybe t.png", "map_Kd -s 1e99 1 t.png"}) {
         CAPTURE(line);
-        const auto error = test::thrown_error([&] { (void)material_of("# a comment\n" + line); });
-        REQUIRE(error);
-        CHECK(error->code() == ErrorCode::BadInput);
-        CHECK(test::says(error, "a.mtl:3: "));
+        const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
+                                   "newmtl m\n# a comment\n" + line + "\nKe 1 2 3\n");
+        REQUIRE(l.messages.left_out().size() == 1);
+        CHECK(l.said("a.mtl:3: "));
+        CHECK(l.said("the line is left out"));
+        CHECK(l.material("m").base_color == grey(0.5f));
+        CHECK(l.material("m").emission == Rgb{1, 2, 3});
     }
 }
 
@@ -435,12 +439,10 @@ TEST_CASE("mtl: several files, read beside the geometry or behind it, say all th
         Messages said;
         const fs::path bad =
             test::write_text(folder / "bad.obj", before + "mtllib gone.mtl\nmtllib bad.mtl\n" + kTriangle);
-        const auto error = test::thrown_error([&] { read_obj(bad, FileAccess(bad, {}), {}, said); });
-        CHECK(test::says(error, "bad.mtl:2"));
-        REQUIRE(said.all().size() == 1);
-        CHECK(said.all()[0].text.find("gone.mtl") != std::string::npos);
-        const auto of_geometry = test::thrown_error([&] { load_with(before + "mtllib bad.mtl\nf 1 2 3\n"); });
-        CHECK(test::says(of_geometry, "vertex index"));
+        read_obj(bad, FileAccess(bad, {}), {}, said);
+        REQUIRE(said.left_out().size() == 2);
+        CHECK(said.left_out()[0].find("gone.mtl") != std::string::npos);
+        CHECK(said.left_out()[1].find("bad.mtl:2") != std::string::npos);
     }
     const Loaded at_once = load_with("mtllib a.mtl\n" + kTriangle + faces);
     set_thread_count(1);
@@ -450,20 +452,25 @@ TEST_CASE("mtl: several files, read beside the geometry or behind it, say all th
     CHECK(in_turns.messages.all().size() == at_once.messages.all().size());
 }
 
-TEST_CASE("mtl: a texture or material file outside the scene's folder is refused unless allowed") {
+TEST_CASE("mtl: a texture or material file outside the scene's folder is left out unless allowed") {
     const fs::path folder = test::scratch_folder();
     fs::create_directories(folder / "in");
     test::write_text(folder / "out.mtl", "newmtl x\nKd 1 0 0\n");
     const fs::path path =
         test::write_text(folder / "in" / "a.obj", "mtllib ../out.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
-    CHECK(test::says(test::thrown_error([&] { load(path); }), "--allow-path"));
-    CHECK(test::says(test::thrown_error([&] { load(path); }), "a.obj:1: refers to \"../out.mtl\""));
+    const Loaded without = load(path);
+    CHECK(without.said("--allow-path"));
+    CHECK(without.said("a.obj:1: refers to \"../out.mtl\""));
+    CHECK(without.messages.left_out().size() == 2); // the file, and the material
     CHECK(load(path, {.allowed_paths = {folder}}).scene.materials[0].base_color == Rgb{1, 0, 0});
 
     test::write_text(folder / "in" / "b.mtl", "newmtl x\nmap_Kd /etc/passwd\n");
     const fs::path b = test::write_text(folder / "in" / "b.obj", "mtllib b.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
-    CHECK(test::says(test::thrown_error([&] { load(b); }), "--allow-path"));
-    CHECK(test::says(test::thrown_error([&] { load(b); }), "b.mtl:2: refers to"));
+    const Loaded outside = load(b);
+    CHECK(outside.said("--allow-path"));
+    CHECK(outside.said("b.mtl:2: refers to"));
+    CHECK(outside.messages.left_out().size() == 1);
+    CHECK(outside.scene.images.empty());
 }
 
 TEST_CASE("Sponza comes in by material, its leaves and chains cut out") {

@@ -134,14 +134,31 @@ TEST_CASE("ply: what is wrong is said with the place") {
     CHECK(test::says(error_of("ply\nformat ascii 1.0\nproperty int x\n"), "a.ply:3:"));
     CHECK(test::says(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"), "a.ply:4: \"quad\""));
     CHECK(test::says(error_of(ascii(kVertices, kSquare)), "no faces"));
-    CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "3 0 1 4\n")),
-                     "face 0: vertex index 4 is out of range; there are 4"));
-    CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "3 0 1 -1\n")), "index -1"));
     CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, kSquare + "-3 0 1 2\n")), "count"));
     CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, "0 0 zero\n" + kSquare)), "\"zero\""));
     CHECK(test::says(error_of(ascii(kVertices + "element face 1\n" + kFaces, "0 0 0\n\n1 x 0\n" + kSquare)),
                      "a.ply:12: vertex 1:"));
     CHECK(test::says(error_of(ascii("element vertex 9\nelement face 1\n" + kFaces, "3 0 1 2\n")), "x, y and z"));
+}
+
+TEST_CASE(
+    "ply: a face with an index that is no vertex is left out with the place, and so is what a cut leaves unread") {
+    const auto left_out = [](int faces, const std::string& lines, std::size_t triangles) {
+        Messages messages;
+        const std::string header = kVertices + "element face " + std::to_string(faces) + "\n" + kFaces;
+        const Scene scene = load(ascii(header, kSquare + lines), messages);
+        CHECK(scene.meshes.at(0).triangle_count() == triangles);
+        REQUIRE(messages.left_out().size() == 1);
+        return messages.left_out()[0];
+    };
+    const auto says = [](const std::string& text, const std::string& part) {
+        return text.find(part) != std::string::npos;
+    };
+    CHECK(says(left_out(2, "3 0 1 2\n3 0 1 4\n", 1), "face 1: vertex index 4 is out of range; there are 4"));
+    CHECK(says(left_out(2, "3 0 1 -1\n4 0 1 2 3\n", 2), "index -1"));
+    CHECK(says(left_out(3, "3 0 1 2\n3 0 1\n", 1), "the file ends here"));
+    CHECK(says(left_out(3, "3 0 1 2\n", 1), "what follows is left out"));
+    CHECK(says(left_out(1, "3 0 1 9\n", 0), "index 9"));
 }
 
 TEST_CASE("ply: what of a header is harmless is taken") {

@@ -137,6 +137,22 @@ TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where
                   });
 }
 
+TEST_CASE("an instance that is out of bounds or squeezed flat is left out where others remain") {
+    const auto add = [](Scene& scene, const Transform& place) {
+        scene.instances.push_back({.name = "odd", .mesh = 0, .material = 0, .world_from_local = place});
+    };
+    for (const Transform& place : {make_scale({1e30f, 1, 1}), make_scale({kInfinity, 1, 1}), make_scale({1, 0, 1})}) {
+        const Result result = validated([&](Scene& scene) { add(scene, place); });
+        REQUIRE(!result.error);
+        CHECK(result.scene.instances.size() == 1);
+        REQUIRE(result.messages.left_out().size() == 1);
+        CHECK(result.messages.left_out()[0].find("odd") != std::string::npos);
+    }
+    const Result hidden = validated([&](Scene& scene) { add(scene, make_scale({0, 0, 1})); });
+    CHECK(hidden.scene.instances.size() == 1);
+    CHECK(hidden.messages.left_out().empty());
+}
+
 TEST_CASE("without geometry the error says what there is instead") {
     check_refused("1 instance of meshes that lost all their triangles, the first of them mesh 0 square; expected",
                   ErrorCode::BadInput, [](Scene& scene) {

@@ -117,7 +117,8 @@ TEST_CASE("texts to the page are JSON") {
     ViewerStart start;
     start.scene = &scene;
     start.record.scene.scene = "/home/a user/scene\n.gltf";
-    start.about = {{"made up", "a \"light\""}};
+    start.about = {{"animation", "a \"walk\""}};
+    start.record.scene.left_out = {"/home/a user/scene\n.gltf: /home/a user/b.png"};
     ShownFrame frame;
     frame.hash = "0123";
     frame.stages = {{"render", 1.5}};

@@ -167,9 +167,8 @@ TEST_CASE("a view that is made up is made up again for another shape of the wind
     StartCamera start;
     start.framed = [](float aspect) {
         CameraSource source;
-        source.target = Vec3{0, 0, 0};
-        source.camera.world_from_camera =
-            look_at({0, 0, 4 / aspect}, *source.target, {0, 1, 0}); // narrow: further away
+        source.target = {0, 0, 0};
+        source.camera.world_from_camera = look_at({0, 0, 4 / aspect}, {0, 0, 0}, {0, 1, 0}); // narrow: further away
         return source;
     };
     start.camera = start.framed(2).camera;

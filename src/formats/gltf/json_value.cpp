@@ -110,18 +110,14 @@ uint64_t JsonValue::to_unsigned() const {
     throw error(fmt::format("{}; expected a whole number", type_name(element_)));
 }
 
-float JsonValue::to_float() const {
+double JsonValue::to_double() const {
     double number = 0;
     if (element_.get(number)) throw error(fmt::format("{}; expected a number", type_name(element_)));
     constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
-    return static_cast<float>(std::clamp(number, -largest, largest));
+    return std::clamp(number, -largest, largest);
 }
 
-double JsonValue::to_double() const {
-    to_float(); // throws for what no float can hold
-    double number = 0;
-    return element_.get(number) ? 0 : number;
-}
+float JsonValue::to_float() const { return static_cast<float>(to_double()); }
 
 bool JsonValue::to_bool() const {
     bool value = false;

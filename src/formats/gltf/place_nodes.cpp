@@ -86,7 +86,11 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : node_from_local) {
             const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.place(index), m, {0, 0, 0});
-            if (!is_near(world_from_local)) throw node.error("the mesh lies further out than 2^40 metres");
+            if (!is_near(world_from_local)) {
+                messages.leave_out(
+                    fmt::format("{}: the mesh lies further out than 2^40 metres; it is left out", node.place()));
+                continue;
+            }
             for (const Meshes::Part& part : parts) {
                 scene.instances.push_back({.name = name,
                                            .mesh = part.mesh,

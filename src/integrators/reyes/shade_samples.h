@@ -61,7 +61,8 @@ struct Micropolygon {
         const double length = ::sqrt(dot(across, across));
         const Vec3 normal = length > 0 ? sign * to_float(across / length) : s.geometric_normal;
         const double u = static_cast<double>(inside.x), v = static_cast<double>(inside.y);
-        s.position = to_float({a.x + u * ab.x + v * ac.x, a.y + u * ab.y + v * ac.y, a.z + u * ab.z + v * ac.z});
+        s.position =
+            to_float(DoubleVec3{a.x + u * ab.x + v * ac.x, a.y + u * ab.y + v * ac.y, a.z + u * ab.z + v * ac.z});
         s.frame = make_frame(normalize_or(normal + (s.frame.normal - s.geometric_normal), normal));
         s.geometric_normal = normal;
         s.tilt = 0;

@@ -8,7 +8,6 @@ namespace {
 
 constexpr uint32_t kSpokes = 64;
 constexpr int kFadingRings = 12;
-constexpr float kWhite = 1.49f;         // radiance of a white surface that faces up in the studio, W/(sr m2)
 constexpr float kShadowOfHeight = 1.5f; // the key light stands 39 degrees high
 constexpr float kRim = 2.4f;            // radius of the disc over that of its opaque part
 constexpr float kGap = 0x1p-11f;        // of the thing's size: a face that lies on the ground is not in it
@@ -44,7 +43,8 @@ Mesh make_disc(float opaque_radius) {
 Material make_material() {
     Material material;
     material.name = "ground";
-    material.base_color = (1 / kWhite) * kStudioFloor;
+    material.base_color = {kStudioFloor.r / kStudioWhite.r, kStudioFloor.g / kStudioWhite.g,
+                           kStudioFloor.b / kStudioWhite.b};
     material.alpha_mode = AlphaMode::Blend;
     material.double_sided = false;
     return material;

@@ -35,15 +35,17 @@ float share_of(const SoftBox& box, Vec3 d) {
     return smoothstep(2 * (1.25f - out));
 }
 
+// Of the studio's light a seventh comes from the key. More of it, darker walls or narrower boxes would show in mirrors
+// better, and cost noise: it was chosen so that relMSE is that under the clear sky (over seven of Khronos' models at 16
+// spp, as the geometric mean 0.98 times; 0.65 times on metal, 1.2 times on what is diffuse).
 struct Studio {
-    SoftBox key = make_soft_box({-0.45f, 0.62f, 0.62f}, 0.55f, 0.42f, {6.4f, 6.2f, 5.85f});
-    SoftBox fill = make_soft_box({0.95f, 0.22f, 0.20f}, 0.22f, 0.75f, {2.3f, 2.45f, 2.6f});
-    SoftBox rim = make_soft_box({0.25f, 0.55f, -0.80f}, 0.75f, 0.22f, {3.6f, 3.6f, 3.6f});
+    SoftBox key = make_soft_box({-0.45f, 0.62f, 0.62f}, 0.22f, 0.19f, {8.0f, 7.7f, 7.2f});
+    SoftBox fill = make_soft_box({0.95f, 0.22f, 0.20f}, 0.30f, 0.80f, {1.30f, 1.35f, 1.42f});
+    SoftBox rim = make_soft_box({0.25f, 0.55f, -0.80f}, 0.75f, 0.22f, {2.0f, 2.0f, 2.0f});
 
     Rgb operator()(Vec3 d) const {
-        const Rgb ceiling = {0.20f, 0.205f, 0.215f}, wall = {0.62f, 0.63f, 0.65f};
-        Rgb radiance =
-            d.y >= 0 ? lerp(wall, ceiling, d.y * (2 - d.y)) : lerp(wall, kStudioFloor, smoothstep(-10 * d.y));
+        const Rgb wall = {0.80f, 0.82f, 0.85f};
+        Rgb radiance = lerp(wall, kStudioFloor, smoothstep(-10 * d.y));
         for (const SoftBox* box : {&key, &fill, &rim}) radiance = lerp(radiance, box->radiance, share_of(*box, d));
         return radiance;
     }
