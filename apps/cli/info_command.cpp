@@ -39,7 +39,7 @@ public:
     void add(const std::string& name, const std::string& text) { facts_.push_back({name, text, json_string(text)}); }
     void add(const std::string& name, DoubleVec3 v) {
         facts_.push_back({name, fmt::format("{:.12g} {:.12g} {:.12g}", v.x, v.y, v.z),
-                          fmt::format("[{},{},{}]", json_number(v.x), json_number(v.y), json_number(v.z))});
+                          fmt::format("[{},{},{}]", v.x, v.y, v.z)}); // to all their digits
     }
     template <std::integral Whole>
     void add(const std::string& name, Whole number) {

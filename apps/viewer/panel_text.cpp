@@ -1,5 +1,7 @@
 #include "apps/viewer/panel_text.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "apps/viewer/file_name.h"
@@ -129,8 +131,10 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     return rows;
 }
 
+/// To all their digits, because places may be far from the origin.
 std::string json_of(DoubleVec3 v) {
-    return fmt::format("[{},{},{}]", json_number(v.x), json_number(v.y), json_number(v.z));
+    const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : "null"; };
+    return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z));
 }
 
 std::string clock_json(const SceneClock& clock) {

@@ -297,15 +297,16 @@ private:
         parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
     }
 
-    /// Round the positions that faces name.
-    Bounds3 bounds_of_faces() const {
+    /// Round the positions that faces name, of every so many of their corners.
+    Bounds3 bounds_of_faces(std::size_t apart = 1) const {
         std::vector<Bounds3> boxes(parsers_.size());
         const std::span<const Vec3> positions = data_.positions;
         parallel_for(parsers_.size(), 1, [&](uint64_t i) {
             Bounds3 box; // of its own, so that it stays in registers
             for (const RawGroup& group : parsers_[i].groups) {
-                for (const ObjCorner& corner : group.corners) {
-                    if (corner.position < positions.size()) box.extend(positions[corner.position]);
+                for (std::size_t k = 0; k < group.corners.size(); k += apart) {
+                    const uint32_t position = group.corners[k].position;
+                    if (position < positions.size()) box.extend(positions[position]);
                 }
             }
             boxes[i] = box;
@@ -317,6 +318,7 @@ private:
 
     /// Where the faces lie away from 0, reads the positions in double and takes off what lies between.
     void move_to_origin() {
+        if (surely_stays(bounds_of_faces(kCornersApart))) return;
         data_.box = double_box_of(bounds_of_faces());
         if (origin_for(data_.box) == DoubleVec3{0, 0, 0}) return;
         std::vector<DoubleVec3> exact(data_.positions.size());

@@ -321,6 +321,9 @@ private:
 
     /// Takes off in double what lies between the file's origin and the faces.
     void move_to_origin() {
+        Bounds3 sample;
+        for (std::size_t i = 0; i < corners_.size(); i += kCornersApart) sample.extend(mesh_.positions[corners_[i]]);
+        if (surely_stays(sample)) return;
         box_ = double_box_of(bounds_of(mesh_.positions, corners_));
         if (origin_for(box_) == DoubleVec3{0, 0, 0}) return;
         std::vector<DoubleVec3> exact; // they are read once more, so that other files are read no slower

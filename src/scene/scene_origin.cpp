@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/limits.h"
+#include "scene/position_bounds.h"
 #include "scene/shape_mesh.h"
 
 namespace pertev {
@@ -40,6 +41,18 @@ void place_anew(Scene& scene) {
     }
 }
 
+/// Of some of what the scene shows.
+Bounds3 sample_of(const Scene& scene) {
+    Bounds3 sample;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (instance.is_hidden || mesh.indices.empty()) continue;
+        for (const std::size_t i : {std::size_t(0), mesh.indices.size() / 2, mesh.indices.size() - 1})
+            sample.extend(transform_point(instance.world_from_local, mesh.positions[mesh.indices[i]]));
+    }
+    return sample;
+}
+
 } // namespace
 
 DoubleVec3 centre_of(const DoubleBounds3& box) {
@@ -53,8 +66,11 @@ DoubleVec3 centre_of(const DoubleBounds3& box) {
 }
 
 DoubleVec3 origin_for(const DoubleBounds3& box) {
+    constexpr double kMovedSizes = 64;
     const DoubleVec3 centre = centre_of(box);
-    return largest(centre) <= static_cast<double>(kMaxCoordinate) ? centre : DoubleVec3{0, 0, 0};
+    const double away = largest(centre);
+    const bool is_moved = away > kMovedSizes * longest_side(box) && away <= static_cast<double>(kMaxCoordinate);
+    return is_moved ? centre : DoubleVec3{0, 0, 0};
 }
 
 void set_origin(const DoubleBounds3& box, Scene& scene) {
@@ -63,7 +79,10 @@ void set_origin(const DoubleBounds3& box, Scene& scene) {
 }
 
 void take_off_centre(Scene& scene) {
-    for (Instance& instance : scene.instances) instance.is_hidden = is_singular(instance.world_from_local);
+    for (Instance& instance : scene.instances) {
+        if (is_singular(instance.world_from_local)) instance.is_hidden = true;
+    }
+    if (surely_stays(sample_of(scene))) return;
     // Far away the first box is one of rounded places, and the second one is exact.
     for (int step = 0; step < 2; ++step) {
         const DoubleVec3 before = scene.origin_in_file;

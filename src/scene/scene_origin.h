@@ -17,8 +17,9 @@ inline constexpr double kFarSizes = 4096;
 /// any bits: the difference of a coordinate from a multiple of g is exact but near 0. 0 for an empty box.
 DoubleVec3 centre_of(const DoubleBounds3& box);
 
-/// What a reader takes off the coordinates of a file whose scene lies in `box`: centre_of(box), but 0 where that lies
-/// beyond kMaxCoordinate, so that validate() refuses the scene.
+/// What a reader takes off the coordinates of a file whose scene lies in `box`: centre_of(box) where that is over 64
+/// times the box's longest side from 0, else 0: nearer, floats tell places to 2^-18 of that side and better, and
+/// prepare_scene() moves the world. 0 also beyond kMaxCoordinate, so that validate() refuses the scene.
 DoubleVec3 origin_for(const DoubleBounds3& box);
 /// Writes origin_for(box), which the reader has taken off, into the scene, and whether it is far.
 void set_origin(const DoubleBounds3& box, Scene& scene);

@@ -49,7 +49,7 @@ class Meshes(CliTest):
             done = self.render("--eye", "0.5,1.5,9", "--target", "0.5,1.5,0", *flags, scene=f"{axis}.obj", output="x.exr")
             pictures.add(done["hash"])
             made = self.info("x.exr")
-            self.assertEqual((made["pertev.up_axis"], made["pertev.unit"], made["pertev.eye"]), (axis, "mm", "0.5,1.5,9"))
+            self.assertEqual((made["pertev.up_axis"], made["pertev.unit"], made["pertev.eye"]), (axis, "mm", [0.5, 1.5, 9]))
             of_scene = self.succeed("info", f"{axis}.obj", *flags, "--json").events("info")[0]
             self.assert_near(of_scene["bounds_high"], (1, 3, 0), 1e-5)
             self.assert_near(of_scene["bounds_low"], (0, 0, 0), 1e-5)
@@ -61,7 +61,7 @@ class Meshes(CliTest):
     def test_frames_of_another_unit_are_refused_and_gltf_keeps_its_own(self):
         write(self.path("y.obj"), STEPS["y"] + STEP)
         frames = ["render", "y.obj", "-o", "f-#.png", "--size", "8x8", "--spp", "1", "--exposure", "0", "--turntable", "2",
-                  "--frames", "0-1", "--device", "cpu"]
+                  "--frames", "0-1", "--device", "cpu", "--eye", "0.5,1.5,9", "--target", "0.5,1.5,0"]
         self.succeed(*frames, "--unit", "mm")
         self.succeed(*frames, "--unit", "mm", "--continue")
         self.refuse(2, *frames, "--unit", "cm", "--continue", says=["--unit"])

@@ -232,14 +232,18 @@ TEST_CASE("records have no blotches of the lamps that later bounces see by way o
     };
     const std::vector<double> reference = medians({0.25f, 16384, 16, 48}, 100);
     double most = 0, least = kInfinity;
+    uint32_t lit = 0; // blocks that show no edge of the room, where half of a block may be empty
     for (uint32_t seed = 0; seed < 3; ++seed) {
         const std::vector<double> found = medians({0.25f, 256, 16, 48}, seed);
         for (std::size_t i = 0; i < found.size(); ++i) {
+            if (reference[i] < 0.04) continue;
+            ++lit;
             most = std::max(most, found[i] / reference[i]);
             least = std::min(least, found[i] / reference[i]);
         }
     }
     MESSAGE("blocks have ", least, " to ", most, " of the light that many rays find");
-    CHECK(most < 1.2);
-    CHECK(least > 0.8);
+    CHECK(lit > 3 * 25);
+    CHECK(most < 1.12);
+    CHECK(least > 0.88);
 }

@@ -84,7 +84,7 @@ TEST_CASE("a member that is null is one that is not there") {
             R"("translation":null,"rotation":null,"weights":null,"extensions":{"KHR_lights_punctual":null}}])"),
         messages);
     CHECK(scene.instances.size() == 1);
-    CHECK(scene.instances.at(0).world_from_local == Transform());
+    CHECK(scene.nodes.at(0).parent == kNoNode);
     CHECK(messages.all().empty());
 }
 

@@ -34,14 +34,14 @@ std::vector<std::string> names_of_instances(const std::string& text) {
 
 using Texts = std::vector<std::string>;
 
-const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string kThreeCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string kFace = "f 1 2 3\n";
 
 } // namespace
 
 TEST_CASE("obj: objects and groups are instances with their names, each for each material, which they share") {
     Messages messages;
-    const Scene scene = load("mtllib a.mtl\n" + kCorners + "o table\nusemtl wood\n" + kFace + "usemtl iron\n" + kFace +
+    const Scene scene = load("mtllib a.mtl\n" + kThreeCorners + "o table\nusemtl wood\n" + kFace + "usemtl iron\n" + kFace +
                                  "o chair\n" + kFace + "usemtl wood\n" + kFace + "o table\n" + kFace,
                              "newmtl wood\nKd 1 0 0\nnewmtl iron\nKd 0 0 1\n", messages);
     REQUIRE(scene.instances.size() == 4);
@@ -60,19 +60,19 @@ TEST_CASE("obj: objects and groups are instances with their names, each for each
 }
 
 TEST_CASE("obj: an instance has the name of its object and group, or of its material where it has neither") {
-    CHECK(names_of_instances(kCorners + kFace) == Texts{""});
-    CHECK(names_of_instances(kCorners + "usemtl red\n" + kFace) == Texts{"red"});
-    CHECK(names_of_instances(kCorners + "g left side # a note\nusemtl red\n" + kFace) == Texts{"left side"});
-    CHECK(names_of_instances(kCorners + "o car\ng wheel\n" + kFace + "g door\n" + kFace) ==
+    CHECK(names_of_instances(kThreeCorners + kFace) == Texts{""});
+    CHECK(names_of_instances(kThreeCorners + "usemtl red\n" + kFace) == Texts{"red"});
+    CHECK(names_of_instances(kThreeCorners + "g left side # a note\nusemtl red\n" + kFace) == Texts{"left side"});
+    CHECK(names_of_instances(kThreeCorners + "o car\ng wheel\n" + kFace + "g door\n" + kFace) ==
           Texts{"car/wheel", "car/door"});
-    CHECK(names_of_instances(kCorners + "g car\no car\n" + kFace) == Texts{"car"});
-    CHECK(names_of_instances(kCorners + "g a\n" + kFace + "g\n" + kFace + "g a\n" + kFace) == Texts{"a", ""});
-    CHECK(names_of_instances(kCorners + "o unused\no used\n" + kFace) == Texts{"used"});
+    CHECK(names_of_instances(kThreeCorners + "g car\no car\n" + kFace) == Texts{"car"});
+    CHECK(names_of_instances(kThreeCorners + "g a\n" + kFace + "g\n" + kFace + "g a\n" + kFace) == Texts{"a", ""});
+    CHECK(names_of_instances(kThreeCorners + "o unused\no used\n" + kFace) == Texts{"used"});
 }
 
 TEST_CASE("obj: thousands of groups are thousands of instances, and a group for each face is grouped by material") {
     const auto text = [](std::size_t groups) {
-        std::string lines = kCorners;
+        std::string lines = kThreeCorners;
         for (std::size_t i = 0; i < groups; ++i) lines += "g n" + std::to_string(i) + "\n" + kFace;
         return lines;
     };

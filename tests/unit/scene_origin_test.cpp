@@ -13,6 +13,7 @@
 #include "formats/read_scene.h"
 #include "render/place_meshes.h"
 #include "scene/posed_scene.h"
+#include "scene/position_bounds.h"
 #include "session/measure_irradiance.h"
 #include "session/moving_camera.h"
 #include "session/picture_metadata.h"
@@ -112,6 +113,17 @@ TEST_CASE("the origin is 0 for a scene about the file's, else the middle of its 
     CHECK(!scene.is_far);
 }
 
+TEST_CASE("a sample of a scene's points tells only of boxes that stay that they do") {
+    CHECK(surely_stays({{-1, 0, 0}, {1, 2, 0}}));
+    CHECK(surely_stays({{61, 0, 0}, {62, 1, 0}}));
+    CHECK(!surely_stays({{62, 0, 0}, {63, 1, 0}}));
+    CHECK(!surely_stays({}));
+    for (float side = 1; side < 8; side += 0.37f) { // the box of the sample and of others
+        const Bounds3 box = {{62 - side, -side, 0}, {62, 1, 0}};
+        if (surely_stays({{61, 0, 0}, {62, 1, 0}})) CHECK(origin_for(double_box_of(box)) == DoubleVec3{0, 0, 0});
+    }
+}
+
 TEST_CASE("an OBJ file far from the origin keeps its digits, and a near one is as it was") {
     const Scene far = load("far.obj", square_obj(kEast, kNorth, "v 0 0 0\n")); // a vertex without a face says nothing
     CHECK(far.is_far);
@@ -123,10 +135,10 @@ TEST_CASE("an OBJ file far from the origin keeps its digits, and a near one is a
     CHECK(near.origin_in_file == DoubleVec3{0, 0, 0});
     CHECK(!near.is_far);
     CHECK(near.meshes[0].positions[0] == Vec3{0.3f, -0.7f, 0});
-    const Scene between = load("between.obj", square_obj(100.2, 0));
+    const Scene between = load("between.obj", square_obj(100.25, 0));
     CHECK(between.origin_in_file == DoubleVec3{101, 1, 0});
     CHECK(!between.is_far);
-    CHECK(placed(between, 0, 0).x == static_cast<float>(100.2 - 101));
+    CHECK(placed(between, 0, 0).x == -0.75f);
 }
 
 TEST_CASE("far positions of an OBJ file do not depend on how its text is cut among threads") {
@@ -312,7 +324,7 @@ TEST_CASE("positions of a picture are in the file's coordinates, and of a far sc
         const CameraChoice choice = {.eye = DoubleVec3{c.x + 0.5, c.y + 0.5, 3},
                                      .target = DoubleVec3{c.x + 0.5, c.y + 0.5, 0},
                                      .projection = Projection::Orthographic,
-                                     .view_height = 0.5f};
+                                     .view_height = 1e-4f};
         RenderSettings settings;
         settings.width = settings.height = 1;
         settings.samples = 1;
