@@ -12,7 +12,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace viewer_growth_test { // tests are compiled several files at once
 
 /// The scales that a picture goes through on a machine whose samples take `full_s`.
 std::vector<float> scales(double full_s, float shown, bool has_whole) {
@@ -48,8 +48,6 @@ struct WatchedGrowth {
         return picture_hash(plain.picture()).hex();
     }
 };
-
-} // namespace
 
 TEST_CASE("on a slow machine a picture at rest grows through middle sizes, and on a fast one samples gather at once") {
     CHECK(scales(0.4, 0, true).empty());
@@ -170,3 +168,5 @@ TEST_CASE("who waits for another exposure waits for no sample, and no whole samp
     frames.hurry() = false;
     CHECK(frames.next(request).has_value());
 }
+
+} // namespace viewer_growth_test

@@ -9,7 +9,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace viewer_wishes_test { // tests are compiled several files at once
 
 Steer setting(const char* name, const std::variant<double, std::string>& value) {
     Steer steer;
@@ -44,8 +44,6 @@ std::string texts_for(Audience& audience, uint32_t client) {
 }
 
 constexpr const char* kOrbit = R"({"type":"orbit","n":1,"dx":0.1,"dy":0})";
-
-} // namespace
 
 TEST_CASE("commands that move the camera raise the flags until they are taken, and a closed inbox takes none") {
     std::atomic<bool> abandon{false}, hurry{false};
@@ -155,3 +153,5 @@ TEST_CASE("every message that steers has words for a wish") {
         CHECK(wish_text(message).empty() != steers);
     }
 }
+
+} // namespace viewer_wishes_test
