@@ -5,13 +5,14 @@
 
 #include "device/queue.h"
 #include "scene/posed_scene.h"
+#include "session/meter_exposure.h"
 #include "session/session.h"
 #include "session/survey/default_camera.h"
 
 namespace pertev {
 namespace {
 
-constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16;
+constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16, kDepth = 6;
 constexpr float kVisible = 0.18f / 16;                      // four stops below middle grey
 constexpr float kBurnt = 16;                                // agx makes white of it
 constexpr double kShareToSeeBy = 0.75, kMostBurnt = 0.0625; // of the surfaces in the picture
@@ -25,10 +26,19 @@ SeenShares look_from(const Camera& camera, const Scene& scene) {
     settings.tracers = default_tracers(false, TreeBuild::Fast); // the trees of so few rays must be there soon
     Messages unsaid;
     const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), unsaid);
+    settings.path.max_depth = kDepth;
     Session session(queue, prepared, camera, settings);
     session.render(kSamples);
-    const float scale = exposure_scale(session.meter(ToneMap::Agx));
     const Image picture = session.picture();
+    // The meter asks for the same light, and for what lamps alone show of it: pictures of this size are enough here.
+    const float scale = exposure_scale(meter_exposure(settings, ToneMap::Agx, [&](RenderSettings asked) {
+        asked.width = kWidth, asked.height = kHeight;
+        if (asked.path.max_depth > 0 && asked.transparent) return picture;
+        session.set_settings(asked);
+        session.cut();
+        session.render(asked.samples);
+        return session.picture();
+    }));
     // Means of blocks, since single pixels of so few samples are dark by chance.
     double lit = 0, burnt = 0, all = 0;
     for (uint32_t top = 0; top < kHeight; top += kBlock) {
