@@ -55,11 +55,17 @@ void refuse_list(const std::string& output) {
         fmt::format("-o {}: this is the name of one file; each picture has a -o of its own: -o {}", output, each));
 }
 
-/// The file that is written, however it is named: without links, "." and "..".
+/// The file that is written, however it is named: without links, also one to a file that is not there yet, "." and
+/// "..".
 std::filesystem::path place_of(const std::string& file) {
-    std::error_code fault; // then the name as it is
-    const std::filesystem::path place = std::filesystem::weakly_canonical(file, fault);
-    return fault ? std::filesystem::path(file) : place;
+    constexpr int kMostLinks = 40; // as many as Linux follows
+    std::error_code fault;         // then the place as far as it is known
+    std::filesystem::path place = std::filesystem::absolute(file, fault);
+    for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(place, fault); ++i) {
+        place = place.parent_path() / std::filesystem::read_symlink(place, fault);
+    }
+    const std::filesystem::path known = std::filesystem::weakly_canonical(place, fault);
+    return fault ? place : known;
 }
 
 /// Throws Error(BadInput) where two outputs are one file, of which the second picture would replace the first; of a

@@ -41,10 +41,18 @@ std::optional<std::string> json_array(std::string_view text, char separator, con
     }
 }
 
+/// A number other than 0 that no double holds: whether it is too small, and not too large.
+bool is_too_small(std::string_view text) {
+    const std::size_t e = text.find_first_of("eE");
+    return e == std::string_view::npos ? text.find('.') < 3 : text.substr(e + 1).starts_with('-');
+}
+
 std::optional<std::string> exact_number(std::string_view text) {
     double value = 0;
     const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    const bool is_zero = fault == std::errc::result_out_of_range && is_too_small(text); // to a double
+    if ((fault != std::errc() && !is_zero) || !std::isfinite(value)) return std::nullopt;
+    if (end != text.data() + text.size()) return std::nullopt;
     return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value); // "-0" would be read as 0
 }
 

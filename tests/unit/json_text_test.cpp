@@ -11,6 +11,8 @@ TEST_CASE("numbers between commas are a JSON array, to all their digits") {
     CHECK(json_vector("0.3,2.1,-4.7") == "[0.3,2.1,-4.7]");
     CHECK(json_vector("448262.257,5411933.125,1e-07") == "[448262.257,5411933.125,1e-07]");
     CHECK(json_vector("0,-0") == "[0,-0.0]"); // whose sign readers of JSON keep
+    CHECK(json_vector("0,1e-400,0.5") == "[0,0,0.5]");
+    CHECK(!json_vector("0,1e400"));
     CHECK(json_vector("1,0,0 0,1,0 0,0,1 4,5,6") == "[[1,0,0],[0,1,0],[0,0,1],[4,5,6]]");
     for (const char* other :
          {"", "1", "a", "1,", ",1", "1,,2", "1,2 3", "1,2 ", "nan,1", "1,inf", "1;2", "made up", "1, 2"}) {
