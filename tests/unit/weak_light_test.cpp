@@ -69,7 +69,7 @@ void add_emission_texture(Scene& scene, uint8_t value) {
 
 TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and in nothing else") {
     const Scene scene = make_body_with_lamp();
-    CHECK(share_lit(scene) < 0.01);
+    CHECK(shares_seen(scene).lit < 0.01);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
     CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
@@ -77,7 +77,7 @@ TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and 
 
 TEST_CASE("a lamp that lights what is seen gets no sky, with an emission texture or without") {
     Scene scene = make_lit_floor();
-    CHECK(share_lit(scene) > 0.9);
+    CHECK(shares_seen(scene).lit > 0.9);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
     add_emission_texture(scene, 200);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
@@ -112,6 +112,24 @@ TEST_CASE("an animation decides as it stands at time 0") {
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
     scene.animations[0].channels[0].values = {0, 0, 0, 1, 1, 1}; // it is not there at first
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+}
+
+TEST_CASE("labels that glow past a thing do not light it; lamps of boxes light these") {
+    struct Expected {
+        const char* path;
+        DefaultLight added;
+    };
+    for (const Expected& expected : {Expected{"gltf/TransmissionTest/TransmissionTest.glb", DefaultLight::Sky},
+                                     Expected{"gltf/DamagedHelmet/DamagedHelmet.glb", DefaultLight::Sky},
+                                     Expected{"gltf/ClearCoatTest/ClearCoatTest.glb", DefaultLight::Sky},
+                                     Expected{"cornell-box-mcguire/CornellBox-Sphere.obj", DefaultLight::None},
+                                     Expected{"cornell-box-mcguire/CornellBox-Water.obj", DefaultLight::None}}) {
+        const auto path = test::test_scene(expected.path);
+        if (!path) continue;
+        CAPTURE(expected.path);
+        Messages messages;
+        CHECK(light_added(read_scene(*path, {}, messages), SceneUse::Picture) == expected.added);
+    }
 }
 
 TEST_CASE("benchmarks keep the sky that their figures were measured under") {
