@@ -94,7 +94,7 @@ TEST_CASE("a setting that is refused, or that is so already, costs no sample") {
     // What the renderer has made of it counts, and what waits since.
     flagged.inbox.expect(view);
     CHECK(flagged.put(shape) == "");
-    CHECK(flagged.inbox.take(std::chrono::milliseconds(0)).size() == 13);
+    CHECK(flagged.inbox.take(std::chrono::milliseconds(0)).size() == 14);
     flagged.inbox.expect(view);
     CHECK(flagged.put(shape) == "hurry abandon");
 }
@@ -119,7 +119,7 @@ TEST_CASE("whoever does not steer is told why nothing happens, and who steers se
     CHECK(told.find("viewer 1 steers") != std::string::npos);
     CHECK(told.find("viewer 1 steers", told.find("viewer 1 steers") + 1) == std::string::npos); // once for the drag
     CHECK(seen.find(R"("id":2,"asks":false,"wish":"turn the view")") != std::string::npos);
-    CHECK(audience.said(2, R"({"type":"set","n":1,"name":"exposure","value":2})", 10) == "");
+    CHECK(audience.said(2, R"({"type":"set","n":1,"name":"exposure","value":2})", 2) == ""); // another wish, at once
     CHECK(texts_for(audience, 1).find(R"("wish":"set \"Stops\" to 2")") != std::string::npos);
     audience.look(40); // it is an old wish now
     CHECK(texts_for(audience, 1).find(R"("wish":"")") != std::string::npos);
