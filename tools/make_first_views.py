@@ -4,7 +4,8 @@
     tools/make_first_views.py build/bin/pertev ../shared/scenes/gltf docs/pictures/first_views.jpg
 
 A model is a .gltf or .glb file; of a folder that holds several, the first by name. The sheet shows what a person sees who
-opens a file: the view, the light, the ground and the exposure that are made up where the file has none. Needs Pillow.
+opens a file: the view, the light, the ground and the exposure that are made up where the file has none. What cannot be
+rendered is left out, and the status is then 1. Needs Pillow.
 """
 import argparse
 import pathlib
@@ -58,19 +59,18 @@ def main():
     if args.only:
         paths = [path for path in paths if any(word in str(path) for word in args.only.split(','))]
     label = 14
-    rows = (len(paths) + args.columns - 1) // args.columns
+    views = [(path, render(args.pertev, path, (width, height), args.spp, args.more.split())) for path in paths]
+    failed = sum(view is None for _, view in views)
+    views = [(path, view) for path, view in views if view is not None]
+    rows = (len(views) + args.columns - 1) // args.columns
     sheet = Image.new('RGB', (args.columns * width, rows * (height + label)), 'white')
     draw = ImageDraw.Draw(sheet)
-    failed = 0
-    for number, path in enumerate(paths):
+    for number, (path, view) in enumerate(views):
         x, y = number % args.columns * width, number // args.columns * (height + label)
-        view = render(args.pertev, path, (width, height), args.spp, args.more.split())
-        failed += view is None
-        if view is not None:
-            sheet.paste(view, (x, y))
+        sheet.paste(view, (x, y))
         draw.text((x + 3, y + height + 1), path.stem[:32], fill='black')
     sheet.save(args.sheet, quality=args.quality, optimize=True)
-    print('%s: %d views, %d failed' % (args.sheet, len(paths), failed))
+    print('%s: %d views, %d failed' % (args.sheet, len(views), failed))
     return 1 if failed else 0
 
 

@@ -12,6 +12,15 @@
 namespace pertev {
 namespace {
 
+/// "1.50" as "1.5", and "-0.00" as "0".
+std::string without_idle_zeros(std::string number) {
+    if (number.find('.') != std::string::npos) {
+        number.erase(number.find_last_not_of('0') + 1);
+        if (number.back() == '.') number.pop_back();
+    }
+    return number == "-0" ? "0" : number;
+}
+
 std::array<std::string, 3> numbers_of(const Scene& scene, Vec3 p, int digits) {
     if (scene.origin_in_file == DoubleVec3{0, 0, 0}) {
         const auto text = [&](float x) { return fmt::format("{:.{}g}", x, digits); };
@@ -22,7 +31,7 @@ std::array<std::string, 3> numbers_of(const Scene& scene, Vec3 p, int digits) {
     const double above = size > 0 ? std::floor(std::log10(static_cast<double>(size))) + 1 : 1; // the point
     const int decimals = std::clamp(digits - static_cast<int>(above), 0, 15);
     const DoubleVec3 place = in_file(scene, p);
-    const auto text = [&](double x) { return fmt::format("{:.{}f}", x, decimals); };
+    const auto text = [&](double x) { return without_idle_zeros(fmt::format("{:.{}f}", x, decimals)); };
     return {text(place.x), text(place.y), text(place.z)};
 }
 

@@ -4,7 +4,8 @@ import json
 
 from cli_run import CliTest, gltf_with_cameras, main, read_exr, write
 
-SMALL = ["--size", "8x8", "--spp", "1", "--exposure", "0", "--device", "cpu"]
+SMALL_EXR = ["--size", "8x8", "--spp", "1", "--device", "cpu"]
+SMALL = [*SMALL_EXR, "--exposure", "0"]
 SQUARE = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\n"
 
 
@@ -66,7 +67,7 @@ class LeftOut(CliTest):
 
     def test_metadata_and_info_have_the_lists(self):
         scene = self.model(extensionsUsed=["EXT_new"])
-        done = self.succeed("render", scene, "-o", "x.exr", "--json", *SMALL).events("done")[0]
+        done = self.succeed("render", scene, "-o", "x.exr", "--json", *SMALL_EXR).events("done")[0]
         info = self.succeed("info", "x.exr", "--json").events("info")[0]
         self.assertEqual(json.loads(info["pertev.left_out"]), done["left_out"])
         self.assertEqual(json.loads(info["pertev.made_up"]), done["made_up"])
@@ -94,13 +95,13 @@ class LeftOut(CliTest):
         for scene, place in [("bad.mtl.obj", "m.mtl:2: Kd"), ("past.obj", "past.obj:6: "), ("word.obj", "word.obj:6: "),
                              ("past.ply", "past.ply:"), ("cut.ply", "cut.ply:")]:
             with self.subTest(scene=scene):
-                done = self.succeed("render", scene, "-o", "x.exr", "--json", *SMALL).events("done")[0]
+                done = self.succeed("render", scene, "-o", "x.exr", "--json", *SMALL_EXR).events("done")[0]
                 self.assertEqual(len(done["left_out"]), 1, done)
                 self.assertIn(place, done["left_out"][0])
                 self.assertTrue(read_exr(self.path("x.exr")))
-                self.refuse(2, "render", scene, "-o", "y.exr", "--strict", *SMALL, says=["--strict: ", place])
+                self.refuse(2, "render", scene, "-o", "y.exr", "--strict", *SMALL_EXR, says=["--strict: ", place])
         write(self.path("none.obj"), SQUARE + "f 1 2 9\n")
-        self.refuse(2, "render", "none.obj", "-o", "x.exr", *SMALL, says=["no face"])
+        self.refuse(2, "render", "none.obj", "-o", "x.exr", *SMALL_EXR, says=["no face"])
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ FLAGS = {
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
-              "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction --animation --file-scene",
+              "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction --animation --file-scene --ground",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
@@ -313,7 +313,7 @@ class WhatIsRendered(CliTest):
                 self.assertEqual(self.render(*again, scene=scene)["hash"], made["hash"], again)
         self.render(scene="floor.obj", output="x.exr")  # a view that is made up: as near as its numbers go
         told = self.info("x.exr")
-        same = [word for name in ["eye", "target", "up", "fov"] for word in ["--" + name, as_flag(told["pertev." + name])]]
+        same = [word for name in ["eye", "target", "up", "fov", "ground"] for word in ["--" + name, as_flag(told["pertev." + name])]]
         near = self.render(*same, scene="floor.obj", output="y.exr")
         self.assertGreater(near["samples"], 0)
         self.assertLess(self.succeed("compare", "x.exr", "y.exr", "--json").events("compare")[0]["flip"], 0.01)

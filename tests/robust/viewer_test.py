@@ -362,8 +362,9 @@ class Pictures(CliTest):
                 header, data = client.picture(lambda h, n=number: h["input"] >= n)
                 self.assertEqual(data[:2] + data[-2:], b"\xff\xd8\xff\xd9")
                 self.assertEqual((header["full_width"], header["full_height"]), (640, 480))
-            self.assertLess(time.monotonic() - began, 2)
-            self.assertLess(header["width"], 640)
+            waited = time.monotonic() - began
+            self.assertLess(waited, 2)
+            self.assertTrue(header["width"] < 640 or waited < 0.25, (header, waited))  # a fast machine keeps the rate at full size
             said = client.text("state", lambda s: s["input"] >= number)["rows"]
             self.assertIn(["Frames", "size chosen for", "8 a second"], said)
             # Input comes faster than pictures: these come all the same, five a second where the machine has a moment for

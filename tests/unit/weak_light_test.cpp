@@ -13,7 +13,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace weak_light_test { // tests are compiled several files at once
 
 /// A quad of half size `half` about `middle`, whose front points along the unit `front`.
 void add_quad(Scene& scene, Vec3 middle, Vec3 front, float half, uint32_t material) {
@@ -67,11 +67,9 @@ void add_emission_texture(Scene& scene, uint8_t value) {
     scene.materials[1].emission_texture.image = 0;
 }
 
-} // namespace
-
 TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and in nothing else") {
     const Scene scene = make_body_with_lamp();
-    CHECK(share_lit(scene) < 0.01);
+    CHECK(shares_seen(scene).lit < 0.01);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
     CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
@@ -79,7 +77,7 @@ TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and 
 
 TEST_CASE("a lamp that lights what is seen gets no sky, with an emission texture or without") {
     Scene scene = make_lit_floor();
-    CHECK(share_lit(scene) > 0.9);
+    CHECK(shares_seen(scene).lit > 0.9);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
     add_emission_texture(scene, 200);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
@@ -116,6 +114,24 @@ TEST_CASE("an animation decides as it stands at time 0") {
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
 }
 
+TEST_CASE("labels that glow past a thing do not light it; lamps of boxes light these") {
+    struct Expected {
+        const char* path;
+        DefaultLight added;
+    };
+    for (const Expected& expected : {Expected{"gltf/TransmissionTest/TransmissionTest.glb", DefaultLight::Sky},
+                                     Expected{"gltf/DamagedHelmet/DamagedHelmet.glb", DefaultLight::Sky},
+                                     Expected{"gltf/ClearCoatTest/ClearCoatTest.glb", DefaultLight::Sky},
+                                     Expected{"cornell-box-mcguire/CornellBox-Sphere.obj", DefaultLight::None},
+                                     Expected{"cornell-box-mcguire/CornellBox-Water.obj", DefaultLight::None}}) {
+        const auto path = test::test_scene(expected.path);
+        if (!path) continue;
+        CAPTURE(expected.path);
+        Messages messages;
+        CHECK(light_added(read_scene(*path, {}, messages), SceneUse::Picture) == expected.added);
+    }
+}
+
 TEST_CASE("benchmarks keep the sky that their figures were measured under") {
     Scene studio, clear;
     for (Scene* scene : {&studio, &clear}) {
@@ -144,3 +160,5 @@ TEST_CASE("benchmarks keep the sky that their figures were measured under") {
     CHECK(largest(clear) > 30);
     CHECK(largest(studio) < 9); // so it is found with less noise
 }
+
+} // namespace weak_light_test

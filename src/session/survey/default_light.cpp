@@ -82,7 +82,9 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages) {
         messages.make_up(fmt::format("{}, a closed room: it gets a row of lamps", why));
         return DefaultLight::Lamps;
     }
-    scene.environment = use == SceneUse::Benchmark ? make_clear_sky() : make_studio();
+    // Through the openings of a room the clear sky's narrow sun shows more than soft boxes do.
+    const bool is_thing = around.kind == SurroundingsKind::Object && use != SceneUse::Benchmark;
+    scene.environment = is_thing ? make_studio() : make_clear_sky();
     messages.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (--environment 0,0,0: none)" : ""));
     return DefaultLight::Sky;
 }

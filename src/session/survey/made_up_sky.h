@@ -16,8 +16,8 @@ inline constexpr Rgb kStudioWhite = {1.275f, 1.289f, 1.308f};
 /// before pale walls, over a grey floor. Their edges are soft.
 Environment make_studio();
 
-/// Blue above, with a broad warm sun to the upper left front. Recorded figures of `bench` and `lab` were measured under
-/// it, so it stays as it is.
+/// Blue above, with a broad warm sun to the upper left front: for rooms that are open to it. Recorded figures of
+/// `bench` and `lab` were measured under it, so it stays as it is.
 Environment make_clear_sky();
 
 } // namespace pertev

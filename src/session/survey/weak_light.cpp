@@ -5,17 +5,19 @@
 
 #include "device/queue.h"
 #include "scene/posed_scene.h"
+#include "session/meter_exposure.h"
 #include "session/session.h"
 #include "session/survey/default_camera.h"
 
 namespace pertev {
 namespace {
 
-constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16;
-constexpr float kVisible = 0.18f / 16; // four stops below middle grey
-constexpr double kShareToSeeBy = 0.75; // of the surfaces in the picture
+constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16, kDepth = 6;
+constexpr float kVisible = 0.18f / 16;                      // four stops below middle grey
+constexpr float kBurnt = 16;                                // agx makes white of it
+constexpr double kShareToSeeBy = 0.75, kMostBurnt = 0.0625; // of the surfaces in the picture
 
-double share_lit_from(const Camera& camera, const Scene& scene) {
+SeenShares look_from(const Camera& camera, const Scene& scene) {
     Queue queue = Queue::make_cpu();
     RenderSettings settings;
     settings.width = kWidth, settings.height = kHeight, settings.samples = kSamples;
@@ -24,20 +26,31 @@ double share_lit_from(const Camera& camera, const Scene& scene) {
     settings.tracers = default_tracers(false, TreeBuild::Fast); // the trees of so few rays must be there soon
     Messages unsaid;
     const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), unsaid);
+    settings.path.max_depth = kDepth;
     Session session(queue, prepared, camera, settings);
     session.render(kSamples);
-    const float scale = exposure_scale(session.meter(ToneMap::Agx));
     const Image picture = session.picture();
+    // The meter asks for the same light, and for what lamps alone show of it: pictures of this size are enough here.
+    const float scale = exposure_scale(meter_exposure(settings, ToneMap::Agx, [&](RenderSettings asked) {
+        asked.width = kWidth, asked.height = kHeight;
+        if (asked.path.max_depth > 0 && asked.transparent) return picture;
+        session.set_settings(asked);
+        session.cut();
+        session.render(asked.samples);
+        return session.picture();
+    }));
     // Means of blocks, since single pixels of so few samples are dark by chance.
-    double lit = 0, all = 0;
+    double lit = 0, burnt = 0, all = 0;
     for (uint32_t top = 0; top < kHeight; top += kBlock) {
         for (uint32_t left = 0; left < kWidth; left += kBlock) {
             float light = 0, covered = 0;
             for (uint32_t y = top; y < top + kBlock; ++y) {
                 for (uint32_t x = left; x < left + kBlock; ++x) {
                     const float* pixel = picture.at(x, y);
-                    light += luminance({pixel[0], pixel[1], pixel[2]});
+                    const float own = luminance({pixel[0], pixel[1], pixel[2]});
+                    light += own;
                     covered += pixel[3];
+                    if (scale * own >= kBurnt) burnt += static_cast<double>(pixel[3]);
                 }
             }
             if (!(covered > 0)) continue;
@@ -45,23 +58,26 @@ double share_lit_from(const Camera& camera, const Scene& scene) {
             if (scale * light >= kVisible * covered) lit += static_cast<double>(covered);
         }
     }
-    return all > 0 ? lit / all : 1;
+    return all > 0 ? SeenShares{lit / all, burnt / all} : SeenShares{1, 0};
 }
 
 } // namespace
 
-double share_lit(const Scene& scene) {
+SeenShares shares_seen(const Scene& scene) {
     const bool has_camera = !scene.cameras.empty();
     Messages unsaid;
     const Camera made_up =
         has_camera ? Camera() : make_default_camera(scene, static_cast<float>(kWidth) / kHeight, unsaid);
-    const auto look = [&](const Scene& now) { return share_lit_from(has_camera ? now.cameras.front() : made_up, now); };
+    const auto look = [&](const Scene& now) { return look_from(has_camera ? now.cameras.front() : made_up, now); };
     if (scene.animations.empty()) return look(scene);
     PosedScene posed(scene);
     posed.set_time(0);
     return look(posed.scene());
 }
 
-bool is_light_too_weak(const Scene& scene) { return share_lit(scene) < kShareToSeeBy; }
+bool is_light_too_weak(const Scene& scene) {
+    const SeenShares seen = shares_seen(scene);
+    return seen.lit < kShareToSeeBy || seen.burnt > kMostBurnt;
+}
 
 } // namespace pertev
