@@ -11,6 +11,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
+#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "device/device_timer.h"
@@ -193,6 +194,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->check(whole_between(1, kMaxSamplesPerPixel));
     verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
     add_machine_flags(verb, flags->render.machine);
+    add_strict_flag(verb, flags->render.strict);
     add_report_flags(verb, flags->render.report);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

@@ -9,6 +9,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
+#include "apps/cli/strictness.h"
 #include "base/limits.h"
 #include "image/metrics.h"
 #include "session/session.h"
@@ -148,6 +149,7 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
         ->check(number_above_zero(100))
         ->capture_default_str();
     add_machine_flags(verb, flags->render.machine);
+    add_strict_flag(verb, flags->render.strict);
     add_report_flags(verb, flags->render.report);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

@@ -6,6 +6,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/parse_values.h"
+#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
@@ -47,6 +48,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
     reporter.say_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     benched->scene = load_scene(flags.scene, SceneUse::Benchmark, messages);
+    if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
     check_light(settings, benched->scene, messages);
     benched->camera = choose_camera(flags.scene, benched->scene, aspect_of(settings.width, settings.height), messages);

@@ -14,6 +14,7 @@
 #include "apps/cli/pfm_file.h"
 #include "apps/cli/ready_scene.h"
 #include "apps/cli/render_frames.h"
+#include "apps/cli/strictness.h"
 #include "base/limits.h"
 #include "image/flip.h"
 #include "image/picture_hash.h"
@@ -242,6 +243,7 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
                     "folder")
         ->type_name("FOLDER");
     add_machine_flags(verb, flags->render.machine);
+    add_strict_flag(verb, flags->render.strict);
     add_report_flags(verb, flags->render.report);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

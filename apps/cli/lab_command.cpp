@@ -15,6 +15,7 @@
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/strictness.h"
 #include "apps/cli/thesis_command.h"
 #include "apps/cli/transport_command.h"
 #include "base/error.h"
@@ -35,7 +36,7 @@ struct LabFlags {
     std::string order = "on", persistent = "both", size, depths;
     std::string output;
     uint32_t runs = 20, count = 0;
-    bool no_heat_maps = false, thesis = false, transport = false;
+    bool no_heat_maps = false, thesis = false, transport = false, strict = false;
     TransportFlags of_transport;
     MachineFlags machine;
     ReportFlags report;
@@ -152,6 +153,7 @@ int run(const LabFlags& flags) {
     if (flags.thesis) return run_thesis(*queue, flags.scene, settings, flags.output, reporter);
 
     const Scene scene = read_lab_scene(flags.scene, messages);
+    if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     const Camera camera = choose_camera(flags.scene, scene, aspect_of(settings.width, settings.height), messages);
     check_any_can_run(list_combinations(settings, queue->is_cuda())); // before a folder is made
     if (!flags.output.empty()) check_lab_folder(flags.output);
@@ -257,6 +259,8 @@ void add_lab_command(CLI::App& app, int& status) {
                 "pictures, thesis-1 and -2.csv and .json;\nwith --transport transport.html, .csv and .json")
             ->type_name("DIR");
     add_machine_flags(verb, flags->machine);
+    add_strict_flag(verb, flags->strict);
+    for (CLI::Option* many : {thesis, transport}) many->excludes(verb.get_option("--strict")); // their scenes are known
     add_report_flags(verb, flags->report);
     verb.callback([flags, output, &status] {
         if (output->count() > 0 && flags->output.empty()) {

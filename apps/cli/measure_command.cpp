@@ -13,6 +13,7 @@
 #include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "session/measure_irradiance.h"
@@ -27,7 +28,7 @@ struct MeasureFlags {
     uint32_t samples = 64, max_depth = PathSettings{}.max_depth, seed = 0;
     std::optional<double> time_s;
     MachineFlags machine;
-    bool no_cache = false;
+    bool no_cache = false, strict = false;
     ReportFlags report;
 };
 
@@ -86,6 +87,7 @@ int measure(const MeasureFlags& flags) {
     settings.path.max_depth = flags.max_depth;
     settings.path.seed = flags.seed;
     Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
+    if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = true;
@@ -139,6 +141,7 @@ void add_measure_command(CLI::App& app, int& status) {
     add_light_options(verb, flags->scene);
     add_machine_flags(verb, flags->machine, "Machine");
     verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");
+    add_strict_flag(verb, flags->strict);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = measure(*flags); });
 }

@@ -7,6 +7,7 @@
 #include "accel/bvh/bvh_cache.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/render_frames.h"
+#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
@@ -17,16 +18,6 @@
 
 namespace pertev {
 namespace {
-
-/// Throws Error(BadInput) that repeats the first warning of something left out (--strict).
-void refuse_what_is_left_out(const Messages& messages) {
-    const std::vector<std::string> left_out = messages.left_out();
-    if (left_out.empty()) return;
-    const std::size_t others = left_out.size() - 1;
-    throw Error(ErrorCode::BadInput,
-                fmt::format("--strict: {}{}; nothing is rendered", left_out.front(),
-                            others > 0 ? fmt::format(" (and {} like it)", counted(others, "warning")) : ""));
-}
 
 /// Auto where the view is made up, too, and shows a background: an alpha channel leaves it out, and integrators that
 /// find a part of the light alone show a ground that differs from the studio's floor.
@@ -76,7 +67,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     OpenOptions open = open_options(flags.scene);
     open.ground = ground_of(flags);
     Scene scene = open_scene(open, messages);
-    if (flags.strict) refuse_what_is_left_out(messages);
+    if (flags.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings& settings = ready->settings;
     settings = render_settings(flags, scene);
     settings.tracers = tracers;

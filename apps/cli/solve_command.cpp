@@ -14,6 +14,7 @@
 #include "apps/cli/radiosity_flags.h"
 #include "apps/cli/report_result.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
@@ -31,7 +32,7 @@ struct SolveFlags {
     RadiosityFlags radiosity;
     std::optional<double> time_s;
     uint32_t seed = 0, threads = 0;
-    bool no_cache = false;
+    bool no_cache = false, strict = false;
     ReportFlags report;
 };
 
@@ -54,6 +55,7 @@ int solve(const SolveFlags& flags) {
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
+    if (flags.strict) refuse_what_is_left_out(messages, "nothing is solved");
     RenderSettings shown;
     shown.integrator = IntegratorKind::Radiosity;
     check_light(shown, scene, messages);
@@ -107,6 +109,7 @@ void add_solve_command(CLI::App& app, int& status) {
         ->check(whole_between(1, 4096))
         ->group("Machine");
     verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");
+    add_strict_flag(verb, flags->strict);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = solve(*flags); });
 }

@@ -19,6 +19,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
 #include "apps/cli/render_frames.h"
+#include "apps/cli/strictness.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
@@ -300,6 +301,7 @@ void add_view_command(CLI::App& app, int& status) {
         ->group(moving);
     add_reconstruction_flags(verb, flags->render.reconstruction, moving);
     add_time_flags(verb, flags->render, true);
+    add_strict_flag(verb, flags->render.strict);
     add_report_flags(verb, flags->render.report);
     verb.callback([flags, &verb, &status] {
         flags->has_depth = verb.count("--max-depth") > 0;

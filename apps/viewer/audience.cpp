@@ -98,7 +98,9 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
 void Audience::note_wish(uint32_t id, Client& client, const ClientMessage& message, double now_s) {
     if (message.kind == MessageKind::Pick && message.use == PickUse::Show) return; // is free
     const std::string wish = wish_text(message);
-    if (wish.empty() || !wheel_.wish(id, wish, now_s)) return;
+    const Wheel::Wish is = wish.empty() ? Wheel::Wish::None : wheel_.wish(id, wish, now_s);
+    if (is == Wheel::Wish::None) return;
+    if (is == Wheel::Wish::New) people_changed();
     if (now_s - client.told_why_s < kTellWhyEvery) return; // a drag is many messages
     client.told_why_s = now_s;
     const std::string why =
@@ -108,7 +110,7 @@ void Audience::note_wish(uint32_t id, Client& client, const ClientMessage& messa
                   wheel_.holder(), wish, wheel_.holder())
             : "whoever steered has left, and the wheel waits a moment for them. \"ask to steer\" takes it";
     put_text(client, notice_text("why", why));
-    people_changed();
+    changed_.notify_one();
 }
 
 void Audience::put_text(Client& client, std::string text) {

@@ -294,8 +294,8 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     const double reconstruction_s = session_.frame().seconds(), sharing_s = session_.sharing_seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
-    if (is_growing && !shows_layer) {
-        meter_still(request, true);
+    if (is_growing) { // smaller ones keep the exposure: the meter takes longer than they do
+        if (scale == 1 && !shows_layer) meter_still(request, false);
     } else if (request.view.finds_exposure && !shows_layer) {
         exposure_.next(session_.frame_tones(), request.view.display.tone_map);
         metered_.is_there = false;
@@ -446,7 +446,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     if (competes && frame.samples < wanted && !beats_reconstruction(request)) return std::nullopt;
     shows_reconstruction_ = false;
     // A frame that moves and is none of a sequence keeps the exposure of the one before.
-    if (!request.is_moving && is_beauty(request.view.layer)) meter_still(request, is_small);
+    if (!request.is_moving && !is_growing && is_beauty(request.view.layer)) meter_still(request, is_small);
     expose(request, frame);
     const Stopwatch display;
     frame.image = show(request, frame);

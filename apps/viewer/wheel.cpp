@@ -1,6 +1,7 @@
 #include "apps/viewer/wheel.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pertev {
 
@@ -51,13 +52,12 @@ bool Wheel::hand(uint32_t from, uint32_t to, double now_s) {
     return true;
 }
 
-bool Wheel::wish(uint32_t client, const std::string& what, double now_s) {
+Wheel::Wish Wheel::wish(uint32_t client, const std::string& what, double now_s) {
     const auto seat = std::ranges::find(seats_, client, &Seat::client);
-    if (seat == seats_.end() || steers(client)) return false;
-    if (client == handed_by_ && now_s - handed_s_ < kHandingOver) return false;
-    seat->wish = what;
+    if (seat == seats_.end() || steers(client)) return Wish::None;
+    if (client == handed_by_ && now_s - handed_s_ < kHandingOver) return Wish::None;
     seat->wished_s = now_s;
-    return true;
+    return std::exchange(seat->wish, what) == what ? Wish::Known : Wish::New;
 }
 
 bool Wheel::look(double now_s) {

@@ -29,8 +29,9 @@ public:
     void ask(uint32_t client);
     /// False, and nothing is done, unless `from` steers and `to` is there.
     bool hand(uint32_t from, uint32_t to, double now_s = 0);
-    /// A client that does not steer has tried to. Returns false where that is no wish: it steered a moment ago.
-    bool wish(uint32_t client, const std::string& what, double now_s);
+    enum class Wish : uint8_t { None, Known, New };
+    /// A client that does not steer has tried to. None: it steered a moment ago, and may not know better.
+    Wish wish(uint32_t client, const std::string& what, double now_s);
     /// To be called now and then: the wheel does not wait for ever, nor does a wish stay. Returns whether anything is
     /// other than before.
     bool look(double now_s);

@@ -25,6 +25,21 @@ class LeftOut(CliTest):
         self.refuse(2, "render", scene, "-o", "y.png", "--strict", *SMALL,
                     says=["--strict: ", "/extensionsRequired/0", "EXT_new", "nothing is rendered"])
 
+    def test_strict_is_a_flag_of_every_verb_that_reads_a_scene_to_render_or_measure(self):
+        scene = self.model(extensionsUsed=["EXT_new"])
+        lines = [["measure", scene, "--at", "0,0,-1", "--normal", "0,0,1", "--spp", "1", "--device", "cpu"],
+                 ["solve", "radiosity", scene, "-o", "x.rad", "--patch-rays", "16"],
+                 ["lab", scene, "--structures", "binned", "--walks", "if-if", "--runs", "1", "--device", "cpu", "--size", "16x12"],
+                 ["bench", "frames", scene, "--frames", "1", "--size", "16x12", "--device", "cpu"],
+                 ["bench", "sequence", scene, "--turntable", "2", "--size", "16x12", "--device", "cpu"]]
+        for line in lines:
+            with self.subTest(line=line):
+                outcome = self.refuse(2, *line, "--strict", says=["--strict: ", "EXT_new", "nothing is "])
+                self.assertEqual(outcome.stdout, "")
+        self.refuse(2, "view", scene, "--strict", "--no-browser", "--port", "0", "--device", "cpu", says=["--strict: ", "EXT_new"])
+        self.succeed(*lines[0])
+        self.succeed("measure", self.model("whole.gltf"), *lines[0][2:], "--strict")
+
     def test_of_several_things_left_out_strict_names_the_first_and_their_number(self):
         scene = self.model(extensionsUsed=["EXT_new", "EXT_newer", "EXT_newest"])
         self.refuse(2, "render", scene, "-o", "y.png", "--strict", "--json", *SMALL,

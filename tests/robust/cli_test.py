@@ -25,10 +25,10 @@ FLAGS = {
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
               "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction --animation --file-scene --ground",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
-               "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --quiet -q --json",
+               "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
                        "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --environment-rotation "
-                       "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --quiet -q --json",
+                       "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
     "info": "--file-scene --allow-path --up-axis --unit --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",

@@ -297,7 +297,7 @@ class Page(unittest.TestCase):
         page.value("document.querySelector('#key-time').value = '9'; " + add)
         page.until("document.querySelectorAll('#keys .key').length == 3")
         page.value("document.querySelector('#key-remove-2').click()")
-        page.until("document.querySelectorAll('#keys .key').length == 2 && document.querySelector('#keys').innerText.includes('1.5 s')")
+        page.until("document.querySelectorAll('#keys .key').length == 2 && document.querySelector('#keys').textContent.includes('1.5 s')")
         page.value("document.querySelector('#path-download').click()")
         file = os.path.join(page.downloads, "camera-path.json")
         page.wait(lambda: os.path.exists(file))

@@ -17,7 +17,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace {
+namespace color_primaries_test { // tests are compiled several files at once
 
 constexpr ColorPrimaries kAcesCg = {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
 constexpr ColorPrimaries kP3 = {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, {0.3127, 0.3290}};
@@ -76,8 +76,6 @@ void check_pixel(const Image& image, std::array<double, 3> right) {
 /// Rec. 709's (.5, .25, .125) in ACEScg.
 const Image kPicture = {2, 1, 3, {0.39735f, 0.26587f, 0.14643f, 0.39735f, 0.26587f, 0.14643f}};
 constexpr std::array<double, 3> kRight = {0.5, 0.25, 0.125};
-
-} // namespace
 
 TEST_CASE("matrices of ACEScg, P3, ACES 2065-1 and XYZ are those that are published, with Bradford's adaptation") {
     check_matrix(kAcesCg,
@@ -182,3 +180,5 @@ TEST_CASE("of textures colours are converted by an EXR's chromaticities and data
     check_pixel(scene.images[1].rgba_float, kRight);
     CHECK(scene.images[2].rgba_float.pixels[0] == kPicture.pixels[0]);
 }
+
+} // namespace color_primaries_test

@@ -20,7 +20,7 @@
 using namespace pertev;
 using namespace pertev::test;
 
-namespace {
+namespace corner_tangents_test { // tests are compiled several files at once
 
 struct Case {
     std::string name;
@@ -69,8 +69,6 @@ std::vector<T> take(const std::vector<std::byte>& bytes, std::size_t& at, std::s
     at += count * sizeof(T);
     return values;
 }
-
-} // namespace
 
 TEST_CASE("tangents of stored meshes are MikkTSpace's, and the same corners share them") {
     for (const Case& stored : kStored) {
@@ -172,3 +170,5 @@ TEST_CASE("tangents of any numbers are unit and finite") {
         }
     }
 }
+
+} // namespace corner_tangents_test

@@ -9,7 +9,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace file_choices_test { // tests are compiled several files at once
 
 using Names = std::vector<std::string>;
 
@@ -36,8 +36,6 @@ std::vector<Clip> clips(const Names& names, const std::vector<bool>& plays) {
     for (std::size_t i = 0; i < names.size(); ++i) all.push_back({.name = names[i], .end_s = 1, .plays = plays[i]});
     return all;
 }
-
-} // namespace
 
 TEST_CASE("a name chooses before a number does, and the first plays without a choice") {
     const Names names = {"walk", "run", "0", ""};
@@ -83,3 +81,5 @@ TEST_CASE("what plays and what is shown are told by words that choose them again
     CHECK(file_scene_choice(scene) == "1");
     CHECK(list_file_scenes(scene) == Names{"0 (hall)", "1 (hall)", "all"});
 }
+
+} // namespace file_choices_test

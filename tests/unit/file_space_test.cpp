@@ -10,7 +10,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace {
+namespace file_space_test { // tests are compiled several files at once
 
 const std::string kCorner = "v 0 0 0\nv 1000 0 0\nv 0 2000 0\nv 0 0 4000\nf 1 2 3\nf 1 3 4\n";
 
@@ -28,8 +28,6 @@ void check_box(const Bounds3& box, Vec3 lo, Vec3 hi) {
     CHECK(max_component(abs(box.lo - lo)) < 1e-6f);
     CHECK(max_component(abs(box.hi - hi)) < 1e-6f);
 }
-
-} // namespace
 
 TEST_CASE("coordinates of a file become metres with y up, without mirroring") {
     check_box(bounds_in({}), {0, 0, 0}, {1000, 2000, 4000});
@@ -95,3 +93,5 @@ TEST_CASE("files that tell their unit and their axis keep both, with a warning")
     CHECK(box == bounds_of(read_scene_and_lamps("cornell-box", {}, none)));
     CHECK(none.all().empty());
 }
+
+} // namespace file_space_test

@@ -4,7 +4,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace invisible_materials_test { // tests are compiled several files at once
 
 /// A triangle of one material.
 struct Case {
@@ -36,8 +36,6 @@ struct Case {
     }
 };
 
-} // namespace
-
 TEST_CASE("a material whose alpha lets all light through is named, by its own, its texture's or its vertices' alpha") {
     CHECK(Case(AlphaMode::Blend, 0).is_named());
     CHECK(Case(AlphaMode::Mask, 0.4f).is_named());
@@ -65,3 +63,5 @@ TEST_CASE("a material of which anything can be seen is not named") {
     shared.scene.instances.push_back({.name = "j", .mesh = 1, .material = 0});
     CHECK_FALSE(shared.is_named());
 }
+
+} // namespace invisible_materials_test

@@ -21,7 +21,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace make_tangents_test { // tests are compiled several files at once
 
 Vec3 xyz(Vec4 v) { return {v.x, v.y, v.z}; }
 bool close(Vec3 a, Vec3 b) { return length(a - b) < 1e-5f; }
@@ -80,8 +80,6 @@ void validate_quietly(Scene& scene) {
     validate(scene, "test", messages);
     for (const Message& message : messages.all()) CHECK_MESSAGE(false, message.text);
 }
-
-} // namespace
 
 TEST_CASE("a mesh with a normal map gets tangents, and more vertices where its texture is mirrored") {
     Scene scene = scene_of(mirrored_squares(), {with_normal_map()});
@@ -253,3 +251,5 @@ TEST_CASE("a normal map of an OBJ file has tangents, x to the right and y up") {
     REQUIRE(scene.materials.at(0).normal_texture.has_image());
     CHECK(scene.meshes.at(0).tangents == std::vector<Vec4>(4, Vec4{1, 0, 0, 1}));
 }
+
+} // namespace make_tangents_test

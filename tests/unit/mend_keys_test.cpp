@@ -13,7 +13,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace mend_keys_test { // tests are compiled several files at once
 
 /// Of three numbers a key, of which the first is `x`.
 AnimationChannel channel_of(std::vector<float> times, const std::vector<float>& x,
@@ -38,8 +38,6 @@ AnimationChannel mended(AnimationChannel channel, bool is_told) {
     CHECK(fault_of(channel, scene).empty());
     return channel;
 }
-
-} // namespace
 
 TEST_CASE("keys in order stay as they are") {
     const AnimationChannel good = mended(channel_of({0, 1, 2}, {1, 2, 3}), false);
@@ -111,3 +109,5 @@ TEST_CASE("a glTF file's keys are mended as it is read, with a warning that name
     CHECK(test::has_warning(messages, {"/animations/0/channels/0", "in the order of their times"}));
     CHECK(messages.left_out().empty());
 }
+
+} // namespace mend_keys_test

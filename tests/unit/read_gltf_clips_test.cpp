@@ -12,7 +12,7 @@
 using namespace pertev;
 using test::GltfBuilder;
 
-namespace {
+namespace read_gltf_clips_test { // tests are compiled several files at once
 
 /// Accessors: 0 positions, 1 times 0 2, 2 times 0 5, 3 two VEC3, 4 two scalars, 5 times that fall. Nodes 0 and 1 show
 /// the mesh, which has a morph target, node 2 is a lamp. Clips: "walk" moves node 0, "bend" reshapes node 1, "dim" is
@@ -54,8 +54,6 @@ Scene read(const ReadOptions& options = {}) {
     Messages messages;
     return read(options, messages);
 }
-
-} // namespace
 
 TEST_CASE("the scene plays the animation that is chosen, and knows of the others by name and end") {
     const Scene first = read();
@@ -121,3 +119,5 @@ TEST_CASE("a scene of the file is chosen before the file's own choice") {
     CHECK(left.lights.empty());
     CHECK_THROWS_AS(read({.file_scene = "right"}, messages, scenes), Error);
 }
+
+} // namespace read_gltf_clips_test

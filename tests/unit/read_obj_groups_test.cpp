@@ -12,7 +12,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace {
+namespace read_obj_groups_test { // tests are compiled several files at once
 
 Scene load(const std::string& obj, const std::string& mtl, Messages& messages) {
     const fs::path folder = test::scratch_folder();
@@ -37,12 +37,10 @@ using Texts = std::vector<std::string>;
 const std::string kThreeCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string kFace = "f 1 2 3\n";
 
-} // namespace
-
 TEST_CASE("obj: objects and groups are instances with their names, each for each material, which they share") {
     Messages messages;
-    const Scene scene = load("mtllib a.mtl\n" + kThreeCorners + "o table\nusemtl wood\n" + kFace + "usemtl iron\n" + kFace +
-                                 "o chair\n" + kFace + "usemtl wood\n" + kFace + "o table\n" + kFace,
+    const Scene scene = load("mtllib a.mtl\n" + kThreeCorners + "o table\nusemtl wood\n" + kFace + "usemtl iron\n" +
+                                 kFace + "o chair\n" + kFace + "usemtl wood\n" + kFace + "o table\n" + kFace,
                              "newmtl wood\nKd 1 0 0\nnewmtl iron\nKd 0 0 1\n", messages);
     REQUIRE(scene.instances.size() == 4);
     REQUIRE(scene.meshes.size() == 4);
@@ -91,3 +89,5 @@ TEST_CASE("obj: thousands of groups are thousands of instances, and a group for 
     REQUIRE(messages.all().size() == 1);
     CHECK(messages.all()[0].text.find("65536 objects and groups") != std::string::npos);
 }
+
+} // namespace read_obj_groups_test

@@ -9,7 +9,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace {
+namespace read_ply_textures_test { // tests are compiled several files at once
 
 struct Loaded {
     Scene scene;
@@ -50,8 +50,6 @@ const std::string kVertexUv = "property float texture_u\nproperty float texture_
 const std::string kSquareUv = "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 0.75\n0 1 0 0 0.75\n";
 const std::string kList = "property list uchar int vertex_indices\n";
 const std::string kFaceUv = "property list uchar float texcoord\n";
-
-} // namespace
 
 TEST_CASE("ply: a comment TextureFile is the texture of vertices with texture coordinates") {
     for (const std::string comment : {"comment TextureFile red.png\n", "comment TextureFile  red.png \r\n",
@@ -156,3 +154,5 @@ TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment 
     CHECK(l.said("a.ply:3: a header line that is not understood"));
     CHECK_THROWS_AS(load(kStart + kVertices + "Created by nobody\n" + rest), Error); // it could be a property
 }
+
+} // namespace read_ply_textures_test

@@ -25,7 +25,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace scene_origin_test { // tests are compiled several files at once
 
 constexpr double kEast = 448262.257, kNorth = 5411933.125; // metres of UTM
 
@@ -97,8 +97,6 @@ Camera told_again(const CameraSource& source, const Scene& scene) {
     Messages messages;
     return choose_camera(choice, scene, 1, messages);
 }
-
-} // namespace
 
 TEST_CASE("the origin is 0 for a scene about the file's, else the middle of its box on a grid of its size") {
     CHECK(origin_for({}) == DoubleVec3{0, 0, 0});
@@ -347,3 +345,5 @@ TEST_CASE("what lies beyond 2^40 m is refused wherever its scene is") {
     const std::string beyond = "v 4e12 0 0\nv 4.1e12 0 0\nv 4e12 1e11 0\nf 1 2 3\n";
     CHECK(test::says(test::thrown_error([&] { load("beyond.obj", beyond); }), "further out"));
 }
+
+} // namespace scene_origin_test

@@ -11,7 +11,7 @@
 using namespace pertev;
 using gltf::SpecularGlossiness;
 
-namespace {
+namespace specular_glossiness_test { // tests are compiled several files at once
 
 Material material_of(const std::string& members, Messages& messages, Scene* scene = nullptr) {
     test::GltfBuilder builder;
@@ -27,8 +27,6 @@ Material material_of(const std::string& members, Messages& messages, Scene* scen
     if (scene != nullptr) *scene = read;
     return read.materials.at(0);
 }
-
-} // namespace
 
 TEST_CASE("a grey and low specular colour is an index of refraction, and nothing is lost") {
     bool is_exact = false;
@@ -90,3 +88,5 @@ TEST_CASE("a specular-glossiness texture is converted texel by texel, and what i
     CHECK(messages.left_out()[0].find("/materials/0/extensions/KHR_materials_pbrSpecularGlossiness") !=
           std::string::npos);
 }
+
+} // namespace specular_glossiness_test

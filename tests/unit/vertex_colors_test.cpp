@@ -10,7 +10,7 @@
 namespace fs = std::filesystem;
 using namespace pertev;
 
-namespace {
+namespace vertex_colors_test { // tests are compiled several files at once
 
 struct Loaded {
     Scene scene;
@@ -46,8 +46,6 @@ void check_color(const Loaded& l, Vec4 right) {
     CHECK(c.z == doctest::Approx(right.z).epsilon(1e-5));
     CHECK(c.w == doctest::Approx(right.w).epsilon(1e-5));
 }
-
-} // namespace
 
 TEST_CASE("obj: vertex colours are read as sRGB, and the material is white") {
     const Loaded l = load_obj("1 0.5 0", "0 1 0", "0 0 1");
@@ -101,3 +99,5 @@ TEST_CASE("vertex colours beside a texture are left out with a warning, and coun
     CHECK(scene.meshes[2].colors.size() == 3);
     CHECK(messages.all().size() == 2); // of the colours, and of the file that is no picture
 }
+
+} // namespace vertex_colors_test

@@ -12,7 +12,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace viewer_growth_test { // tests are compiled several files at once
 
 /// The scales that a picture goes through on a machine whose samples take `full_s`.
 std::vector<float> scales(double full_s, float shown, bool has_whole) {
@@ -37,7 +37,7 @@ struct WatchedGrowth {
         request.camera = test::mixed_scene_camera();
         RenderSettings& picture = request.view.picture;
         picture.width = 48, picture.height = 32;
-        picture.samples = 16;
+        picture.samples = 12; // too few for a frame of full size before them
         picture.path.max_depth = 3;
         request.view.lens = request.camera;
     }
@@ -48,8 +48,6 @@ struct WatchedGrowth {
         return picture_hash(plain.picture()).hex();
     }
 };
-
-} // namespace
 
 TEST_CASE("on a slow machine a picture at rest grows through middle sizes, and on a fast one samples gather at once") {
     CHECK(scales(0.4, 0, true).empty());
@@ -131,9 +129,9 @@ TEST_CASE("pictures that grow come before the samples of a view that is new, and
         CHECK(gather().first >= 2); // a new setting is seen as a small picture first
         request.view.picture.path.max_depth = 3;
         CHECK(gather().second == hash);
-        request.view.picture.samples = 20; // more samples of the same picture need none
+        request.view.picture.samples = 15; // more samples of the same picture need none
         CHECK(gather().first == 1);
-        request.view.picture.samples = 16;
+        request.view.picture.samples = 12; // too few for a frame of full size before them
     }
 }
 
@@ -170,3 +168,5 @@ TEST_CASE("who waits for another exposure waits for no sample, and no whole samp
     frames.hurry() = false;
     CHECK(frames.next(request).has_value());
 }
+
+} // namespace viewer_growth_test

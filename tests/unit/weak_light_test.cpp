@@ -13,7 +13,7 @@
 
 using namespace pertev;
 
-namespace {
+namespace weak_light_test { // tests are compiled several files at once
 
 /// A quad of half size `half` about `middle`, whose front points along the unit `front`.
 void add_quad(Scene& scene, Vec3 middle, Vec3 front, float half, uint32_t material) {
@@ -66,8 +66,6 @@ void add_emission_texture(Scene& scene, uint8_t value) {
     scene.images.push_back(std::move(image));
     scene.materials[1].emission_texture.image = 0;
 }
-
-} // namespace
 
 TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and in nothing else") {
     const Scene scene = make_body_with_lamp();
@@ -162,3 +160,5 @@ TEST_CASE("benchmarks keep the sky that their figures were measured under") {
     CHECK(largest(clear) > 30);
     CHECK(largest(studio) < 9); // so it is found with less noise
 }
+
+} // namespace weak_light_test

@@ -1,0 +1,20 @@
+#pragma once
+
+// The flag --strict: what a scene lacks after it was read ends the verb instead of being left out.
+
+#include "base/messages.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pertev {
+
+/// --strict of verbs that fail before they render or measure, and for no other reason.
+void add_strict_flag(CLI::App& verb, bool& strict);
+
+/// Throws Error(BadInput) that repeats the first warning of something left out. `outcome` ends the message, as "nothing
+/// is rendered".
+void refuse_what_is_left_out(const Messages& messages, const char* outcome);
+
+} // namespace pertev
