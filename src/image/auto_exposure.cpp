@@ -7,10 +7,10 @@ namespace pertev {
 namespace {
 
 constexpr float kMiddleGrey = 0.18f;
-constexpr double kBurntShare =
-    0.005;                           // of what counts: half of what is promised, for what a small picture averages away
-constexpr double kBrightShare = 0.1; // likewise
-constexpr float kBright = 0.8f;      // as shown: 1 is white
+// Of what counts: half of what is promised, for what a small picture averages away.
+constexpr double kBurntShare = 0.005;
+constexpr double kBrightShare = 0.1;  // likewise
+constexpr float kBright = 0.8f;       // as shown: 1 is white
 constexpr double kTrimmedShare = 0.1; // at either end of the mean
 constexpr int kMostHundredths = 6000; // of a stop
 
