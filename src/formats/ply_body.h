@@ -98,7 +98,7 @@ public:
     void warn_of_long_lines(Messages& messages) const {
         if (long_lines_ == 0) return;
         messages.leave_out(fmt::format("{}:{}: {} with more numbers than the header says: the rest left out", file_,
-                                  first_long_line_, counted(long_lines_, "line")));
+                                       first_long_line_, counted(long_lines_, "line")));
     }
 
 private:

@@ -41,7 +41,7 @@ std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, con
         if (std::optional<ColorMatrix> matrix = rec709_from(*found.primaries)) return matrix;
     }
     if (messages != nullptr) {
-        messages->warn(
+        messages->leave_out(
             fmt::format("{}: its chromaticities are no primaries of colours: left out, its colours are taken "
                         "as Rec. 709",
                         name));

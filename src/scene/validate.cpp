@@ -187,7 +187,7 @@ private:
             instance.world_from_local = {};
         }
         if (dropped == 0) return;
-        messages_.warn(fmt::format("{}: {} with a singular transform, such as a scale of 0: left out; the first is {}",
+        messages_.warn(fmt::format("{}: {} with a singular transform, such as a scale of 0: hidden; the first is {}",
                                    file_, counted(dropped, "instance"), first_singular_));
     }
 

@@ -160,7 +160,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     const DefaultLight light = add_default_light(scene, options.use, messages);
     if (wants_ground(options, scene, light)) {
         add_ground(scene);
-        messages.make_up("a made-up ground catches the shadow (--ground on; off: none)");
+        messages.make_up("a made-up ground catches the shadow; --ground off leaves it out");
     }
     turn_and_scale(options, scene, messages);
     set_lamps(scene, options.lamps, lumens_per_watt(options.scene, options.efficacy));

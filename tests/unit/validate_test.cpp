@@ -124,7 +124,7 @@ TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where
     CHECK(result.scene.instances[1].name == "last");
     REQUIRE(result.messages.all().size() == 1);
     CHECK(result.messages.all()[0].text ==
-          "file: 2 instances with a singular transform, such as a scale of 0: left out; "
+          "file: 2 instances with a singular transform, such as a scale of 0: hidden; "
           "the first is /nodes/5 hidden");
 
     check_refused("file: no geometry, not one triangle to see: 1 instance with a singular transform, the first of them "
