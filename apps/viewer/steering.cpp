@@ -9,7 +9,6 @@
 namespace pertev {
 namespace {
 
-constexpr float kRadiansPerDegree = kPi / 180.0f;
 constexpr float kSteepest = 1.55334f; // radians above the horizon: 89 degrees
 constexpr float kPixelFov = 1e-3f;    // radians; of the camera that looks through one place
 
@@ -132,18 +131,6 @@ float metres_of(const ClientMessage& message, float speed) {
         return 0.2f * speed * message.seconds;
     }
     return 0;
-}
-
-float degrees_for(float radians) {
-    const float near = radians * (180 / kPi);
-    float below = near, above = near;
-    for (int i = 0; i < 16; ++i) {
-        if (below * kRadiansPerDegree == radians) return below;
-        if (above * kRadiansPerDegree == radians) return above;
-        below = std::nextafter(below, 0.0f);
-        above = std::nextafter(above, 360.0f);
-    }
-    return near;
 }
 
 std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name, DoubleVec3 origin) {

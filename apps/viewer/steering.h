@@ -11,6 +11,7 @@
 #include "apps/viewer/client_message.h"
 #include "math/double_vec3.h"
 #include "scene/camera.h"
+#include "session/field_of_view.h"
 
 namespace pertev {
 
@@ -47,8 +48,6 @@ std::string camera_flags(const Pose& pose, const Camera& camera, const std::stri
                          DoubleVec3 origin = {0, 0, 0});
 /// The same of the scene's camera `name`, where it stands, with the lens of `camera`.
 std::string scene_camera_flags(const Camera& camera, const std::string& name);
-/// Degrees that the command line makes this angle of, to the bit where there are such.
-float degrees_for(float radians);
 
 /// A camera of one pixel that looks through the place (x, y) of the picture of `camera`, [0, 1] each from the upper
 /// left: without a lens. Its depth is the distance along that ray.

@@ -9,6 +9,7 @@
 #include "base/version.h"
 #include "formats/file_choices.h"
 #include "image/tone_map_image.h"
+#include "session/field_of_view.h"
 #include "session/settings_text.h"
 #include "session/survey/ground.h"
 
@@ -119,7 +120,7 @@ ExrMetadata camera_metadata(const CameraSource& source) {
     if (camera.projection == Projection::Orthographic) {
         append(metadata, {{"pertev.projection", "orthographic"}, {"pertev.view_height", camera.ortho_height}});
     } else {
-        const float fov_deg = source.fov_deg > 0 ? source.fov_deg : camera.fov_y * (180 / kPi);
+        const float fov_deg = source.fov_deg > 0 ? source.fov_deg : degrees_for(camera.fov_y);
         append(metadata, {{"pertev.projection", "perspective"}, {"pertev.fov", fov_deg}});
     }
     return metadata;

@@ -1,0 +1,27 @@
+#pragma once
+
+// Angles of view as a flag gives them: --fov is in degrees, a camera has radians, and not each angle has degrees that
+// lead back to it unless they are looked for.
+
+#include <bit>
+#include <cstdint>
+#include <initializer_list>
+
+#include "math/scalar.h"
+
+namespace pertev {
+
+/// Returns the degrees, in (0, 360), that choose_camera() makes `radians` of, to the bit where there are such.
+inline float degrees_for(float radians) {
+    const float near = radians * (180 / kPi);
+    const auto bits = std::bit_cast<uint32_t>(near); // those of the next floats are one more and one less
+    for (uint32_t i = 0; i < 16; ++i) {
+        for (const uint32_t candidate : {bits - i, bits + i}) {
+            const auto degrees = std::bit_cast<float>(candidate);
+            if (degrees * (kPi / 180.0f) == radians) return degrees;
+        }
+    }
+    return near;
+}
+
+} // namespace pertev
