@@ -41,14 +41,16 @@ void place_anew(Scene& scene) {
     }
 }
 
-/// Of some of what the scene shows.
+/// Of some of what the scene shows. Its meshes have not been through validate(): their indices may be out of range.
 Bounds3 sample_of(const Scene& scene) {
     Bounds3 sample;
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
         if (instance.is_hidden || mesh.indices.empty()) continue;
-        for (const std::size_t i : {std::size_t(0), mesh.indices.size() / 2, mesh.indices.size() - 1})
+        for (const std::size_t i : {std::size_t(0), mesh.indices.size() / 2, mesh.indices.size() - 1}) {
+            if (mesh.indices[i] >= mesh.positions.size()) continue;
             sample.extend(transform_point(instance.world_from_local, mesh.positions[mesh.indices[i]]));
+        }
     }
     return sample;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -21,6 +20,15 @@ std::string without_idle_zeros(std::string number) {
     return number == "-0" ? "0" : number;
 }
 
+/// Returns how many digits `size` has above the point, below 1 for zeros behind it: 3 of 250, 0 of 0.5, -1 of 0.05. 1
+/// for 0.
+int digits_above_point(double size) {
+    int digits = 1;
+    for (double power = 10; size >= power; power *= 10) ++digits;
+    for (double least = 1; size > 0 && size < least; least /= 10) --digits;
+    return digits;
+}
+
 std::array<std::string, 3> numbers_of(const Scene& scene, Vec3 p, int digits) {
     if (scene.origin_in_file == DoubleVec3{0, 0, 0}) {
         const auto text = [&](float x) { return fmt::format("{:.{}g}", x, digits); };
@@ -28,8 +36,7 @@ std::array<std::string, 3> numbers_of(const Scene& scene, Vec3 p, int digits) {
     }
     const Bounds3 bounds = bounds_of(scene);
     const float size = bounds.is_empty() ? 1.0f : max_component(bounds.size());
-    const double above = size > 0 ? std::floor(std::log10(static_cast<double>(size))) + 1 : 1; // the point
-    const int decimals = std::clamp(digits - static_cast<int>(above), 0, 15);
+    const int decimals = std::clamp(digits - digits_above_point(static_cast<double>(size)), 0, 15);
     const DoubleVec3 place = in_file(scene, p);
     const auto text = [&](double x) { return without_idle_zeros(fmt::format("{:.{}f}", x, decimals)); };
     return {text(place.x), text(place.y), text(place.z)};

@@ -366,7 +366,8 @@ class Pictures(CliTest):
             self.assertLess(waited, 2)
             self.assertTrue(header["width"] < 640 or waited < 0.25, (header, waited))  # a fast machine keeps the rate at full size
             said = client.text("state", lambda s: s["input"] >= number)["rows"]
-            self.assertIn(["Frames", "size chosen for", "8 a second"], said)
+            if header["width"] < 640:
+                self.assertIn(["Frames", "size chosen for", "8 a second"], said)
             # Input comes faster than pictures: these come all the same, five a second where the machine has a moment for
             # it, and none is far behind.
             for _ in range(5):

@@ -81,7 +81,9 @@ TEST_CASE("photon mapping comes to path tracing's picture, at least as fast as K
             CAPTURE(few);
             CAPTURE(many);
             CAPTURE(end);
-            CHECK(many < few * std::pow(16, -2.0 / 3)); // the squared error falls with the passes to the power -2/3
+            // The squared error falls with the passes to the power -2/3, or is near what the reference's own noise
+            // leaves.
+            CHECK(many < std::max(few * std::pow(16, -2.0 / 3), 3 * c.bound));
             CHECK(end < c.bound);
             CHECK(means == doctest::Approx(light).epsilon(0.01));
         }
