@@ -158,7 +158,7 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
         CHECK(test::p_value(both, path) > 0.001);
         CHECK(test::p_value(test::brightened(both, 1.07, 5e-3), path) < 1e-4); // the test can see
         if (!c.light_is_even) continue;
-        const test::PictureEstimate light = estimate(IntegratorKind::Light, 48, 500);
+        const test::PictureEstimate light = estimate(IntegratorKind::Light, 48, 5000);
         const double same = test::p_value(light, path);
         if (c.light_finds_all) {
             CHECK(same > 0.001);

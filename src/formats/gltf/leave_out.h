@@ -12,9 +12,10 @@
 namespace pertev::gltf {
 
 /// Runs `read`. Where it throws Error(BadInput), a warning gives the reason and says that `what` is left out. Returns
-/// whether `read` came to its end. Other errors pass: a limit holds for the whole file.
+/// whether `read` came to its end. Other errors pass: a limit holds for the whole file. Never inlined, because g++ 12
+/// at -O3 then loses what the caller's std::optional held before `read`, where that throws.
 template <class Read>
-bool read_or_leave_out(const std::string& what, Messages& messages, const Read& read) {
+[[gnu::noinline]] bool read_or_leave_out(const std::string& what, Messages& messages, const Read& read) {
     try {
         read();
         return true;
