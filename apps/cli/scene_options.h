@@ -50,7 +50,7 @@ void add_file_scene(CLI::App& verb, SceneOptions& options);
 void add_animation(CLI::App& verb, SceneOptions& options);
 /// The environment, lamps and --two-sided-lights alone.
 void add_light_options(CLI::App& verb, SceneOptions& options);
-/// What a file's reader takes, --allow-path, --up-axis and --unit, alone.
+/// Adds what a file's reader takes, --allow-path, --up-axis and --unit, alone.
 void add_read_options(CLI::App& verb, SceneOptions& options);
 
 /// What can be told before the scene is read. Throws Error(BadInput) for a flag that another one makes useless.

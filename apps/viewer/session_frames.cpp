@@ -424,7 +424,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     uint32_t added = 0;
     ShownFrame exposed;
     expose(request, exposed);
-    // The same samples are first shown as they are to be shown now.
+    // A change of tones first shows the samples that are there.
     const bool waits = was_begun && !is_small && is_slow && shows_film_ && !is_shown_as(shown_as_, request, exposed);
     if (before < wanted && !waits) {
         added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {

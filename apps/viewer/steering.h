@@ -11,7 +11,7 @@
 #include "apps/viewer/client_message.h"
 #include "math/double_vec3.h"
 #include "scene/camera.h"
-#include "session/field_of_view.h"
+#include "session/degrees.h"
 
 namespace pertev {
 

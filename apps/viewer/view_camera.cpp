@@ -7,11 +7,11 @@
 #include "math/portable_math.h"
 #include "scene/scene_origin.h"
 #include "session/choose_camera.h"
+#include "session/degrees.h"
 
 namespace pertev {
 namespace {
 
-constexpr float kRadiansPerDegree = kPi / 180.0f;
 constexpr float kLeastFov = 0.01f, kMostFov = 179; // degrees, as a path's file may have them
 constexpr float kFarthest = 1e9f;                  // metres that anybody may go
 

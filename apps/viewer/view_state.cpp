@@ -253,7 +253,7 @@ std::vector<ViewSetting> make_settings() {
     numeric(
         "fov", "Angle of view, degrees", "Camera", "From the lower to the upper edge of the picture", Kind::Number,
         0.01, 179, 1, [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
-        [](ViewState& s, float v) { s.lens.fov_y = v * (kPi / 180.0f); });
+        [](ViewState& s, float v) { s.lens.fov_y = v * kRadiansPerDegree; });
     numeric(
         "aperture", "Radius of the lens, m", "Camera",
         "0: all is sharp. The larger, the more is blurred that is not in focus. hybrid, raster and reyes have none",

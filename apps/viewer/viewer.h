@@ -35,7 +35,7 @@ struct ViewerStart {
     SceneClock clock;
     PictureRecord record; // for pictures that are saved
     float speed = 1;      // metres a second of keys
-    /// What the panel says of the scene beside its name: a label and its value a row, in the group "Scene".
+    /// The panel says this of the scene beside its name: a label and its value a row, in the group "Scene".
     std::vector<std::pair<std::string, std::string>> about;
 };
 

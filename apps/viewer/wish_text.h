@@ -1,6 +1,6 @@
 #pragma once
 
-// What a client that does not steer tried to do, in words for the one that steers.
+// This puts what a client that does not steer tried to do into words for the one that steers.
 
 #include <string>
 

@@ -7,15 +7,17 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace pertev {
 
-template <std::size_t kWords>
+/// `Key` is an array or a struct of words of 32 bits; equal keys have equal words.
+template <class Key>
 class KeyNumbers {
-public:
-    using Key = std::array<uint32_t, kWords>;
+    static_assert(std::has_unique_object_representations_v<Key> && sizeof(Key) % sizeof(uint32_t) == 0);
 
+public:
     /// `most` bounds the number of different keys; it is less than 2^32 - 1.
     explicit KeyNumbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), kFree) {}
 
@@ -38,7 +40,7 @@ private:
 
     static std::size_t hash(const Key& key) {
         uint64_t bits = 0;
-        for (const uint32_t word : key) {
+        for (const uint32_t word : std::bit_cast<std::array<uint32_t, sizeof(Key) / sizeof(uint32_t)>>(key)) {
             bits = (bits ^ word) * 0x9e3779b97f4a7c15u;
             bits ^= bits >> 32;
         }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a library wants to say without printing: warnings and notices. The command line prints them; tests read them.
+// A library says with these, without printing, warnings and notices. The command line prints them; tests read them.
 // Repeats are counted, not stored.
 //
 // One rule holds for all that is read: what is not known or cannot be read is left out with a warning (leave_out) that

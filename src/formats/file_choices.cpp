@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kAll = "all"; // of clips
 
-/// What of a file is chosen.
+/// This is the part of a file that is chosen.
 struct Kind {
     const char* name;
     bool has_all; // "all" is no name of one of them

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/messages.h"
-#include "formats/vertex_table.h"
+#include "formats/vertex_key.h"
 #include "math/double_bounds3.h"
 #include "math/vec2.h"
 #include "math/vec3.h"

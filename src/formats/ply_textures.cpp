@@ -6,8 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "base/key_numbers.h"
 #include "base/message_text.h"
-#include "formats/vertex_table.h"
+#include "formats/vertex_key.h"
 
 namespace pertev {
 namespace {
@@ -76,14 +77,14 @@ std::vector<Part> split_by_texture(Mesh mesh, const std::vector<uint32_t>& sizes
 } // namespace
 
 void split_vertices(const std::vector<Vec2>& uvs, std::vector<uint32_t>& corners, Mesh& mesh) {
-    VertexTable table(corners.size());
+    KeyNumbers<VertexKey> table(corners.size());
     for (std::size_t i = 0; i < corners.size(); ++i) {
         corners[i] =
-            table.vertex_of({corners[i], std::bit_cast<uint32_t>(uvs[i].x), std::bit_cast<uint32_t>(uvs[i].y)});
+            table.number_of({corners[i], std::bit_cast<uint32_t>(uvs[i].x), std::bit_cast<uint32_t>(uvs[i].y)});
     }
     std::vector<uint32_t> places;
     std::vector<Vec2> uv;
-    for (const VertexKey& vertex : table.vertices()) {
+    for (const VertexKey& vertex : table.keys()) {
         places.push_back(vertex.position);
         uv.push_back({std::bit_cast<float>(vertex.uv), std::bit_cast<float>(vertex.normal)});
     }

@@ -13,13 +13,13 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/key_numbers.h"
 #include "base/message_text.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
 #include "formats/load_textures.h"
 #include "formats/parse_obj.h"
 #include "formats/read_mtl.h"
-#include "formats/vertex_table.h"
 #include "scene/scene_origin.h"
 
 namespace fs = std::filesystem;
@@ -69,15 +69,15 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     Mesh mesh;
     mesh.name = group.name.empty() ? group.material : group.name;
     mesh.origin = fmt::format("line {}", group.line);
-    VertexTable table(group.corners.size());
+    KeyNumbers<ObjCorner> table(group.corners.size());
     mesh.indices.reserve(group.corners.size());
     bool has_uv = false, has_normal = false;
     for (const ObjCorner& corner : group.corners) {
-        mesh.indices.push_back(table.vertex_of(corner));
+        mesh.indices.push_back(table.number_of(corner));
         has_uv |= corner.uv != kNoIndex;
         has_normal |= corner.normal != kNoIndex;
     }
-    const std::vector<ObjCorner>& vertices = table.vertices();
+    const std::vector<ObjCorner>& vertices = table.keys();
     mesh.positions.reserve(vertices.size());
     for (const ObjCorner& v : vertices) mesh.positions.push_back(data.positions[v.position]);
     if (!data.colors.empty()) {

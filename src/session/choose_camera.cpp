@@ -9,14 +9,13 @@
 #include "formats/parse_number.h"
 #include "math/portable_math.h"
 #include "scene/scene_origin.h"
+#include "session/degrees.h"
 #include "session/place_text.h"
 #include "session/survey/aim_camera.h"
 #include "session/survey/default_camera.h"
 
 namespace pertev {
 namespace {
-
-constexpr float kRadiansPerDegree = kPi / 180.0f;
 
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 std::string text_of(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }

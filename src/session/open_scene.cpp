@@ -10,16 +10,14 @@
 #include "formats/file_choices.h"
 #include "formats/read_environment.h"
 #include "math/scalar.h"
+#include "session/degrees.h"
 #include "session/photometry.h"
 #include "session/survey/default_light.h"
 #include "session/survey/ground.h"
 #include "session/survey/lamp_fronts.h"
-#include "session/survey/surroundings.h"
 
 namespace pertev {
 namespace {
-
-constexpr float kRadiansPerDegree = kPi / 180.0f;
 
 /// Nothing where the options give none.
 std::optional<Environment> environment_of(const OpenOptions& options, Messages& messages) {
@@ -62,16 +60,15 @@ void show_back_faces(Scene& scene, Messages& messages) {
     if (!any_hidden) messages.warn("--show-back-faces: no surface of the scene hides its back");
 }
 
-/// `light`: what was made up.
-bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight light) {
+/// `light`: what was made up. `around`: of the scene, where that is a sky.
+bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight light, const Surroundings& around) {
     switch (options.ground) {
     case Ground::Off:
         return false;
     case Ground::On:
         return true;
     case Ground::Auto:
-        return light == DefaultLight::Sky && scene.cameras.empty() &&
-               look_around(scene).kind == SurroundingsKind::Object;
+        return light == DefaultLight::Sky && scene.cameras.empty() && around.kind == SurroundingsKind::Object;
     }
     return false;
 }
@@ -157,8 +154,9 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     }
     if (options.show_back_faces) show_back_faces(scene, messages);
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
-    const DefaultLight light = add_default_light(scene, options.use, messages);
-    if (wants_ground(options, scene, light)) {
+    Surroundings around;
+    const DefaultLight light = add_default_light(scene, options.use, messages, &around);
+    if (wants_ground(options, scene, light, around)) {
         add_ground(scene);
         messages.make_up("a made-up ground catches the shadow; --ground off leaves it out");
     }

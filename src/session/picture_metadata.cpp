@@ -9,7 +9,7 @@
 #include "base/version.h"
 #include "formats/file_choices.h"
 #include "image/tone_map_image.h"
-#include "session/field_of_view.h"
+#include "session/degrees.h"
 #include "session/settings_text.h"
 #include "session/survey/ground.h"
 

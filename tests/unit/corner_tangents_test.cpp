@@ -40,10 +40,10 @@ std::vector<Vec4> tangents_of(const TangentMesh& mesh) { return corner_tangents(
 
 /// For each corner a number of its vertex and tangent, so that corners which stay one vertex have equal numbers.
 std::vector<uint32_t> numbers_of(const Case& made, const std::vector<Vec4>& tangents) {
-    KeyNumbers<5> known(tangents.size());
+    KeyNumbers<std::array<uint32_t, 5>> known(tangents.size());
     std::vector<uint32_t> numbers;
     for (std::size_t i = 0; i < tangents.size(); ++i) {
-        KeyNumbers<5>::Key key = {made.indices[i]};
+        std::array<uint32_t, 5> key = {made.indices[i]};
         std::memcpy(key.data() + 1, &tangents[i], sizeof(Vec4));
         numbers.push_back(known.number_of(key));
     }

@@ -1,4 +1,4 @@
-// What the page says when there is no connection: what is known, what somebody can do, and no promise.
+// The page says this when there is no connection: what is known, what somebody can do, and no promise.
 
 import { element } from "./panel.js";
 

@@ -1,4 +1,4 @@
-// What the viewer is to know of the screen: how often it shows a new picture, as the browser calls back once for each, and
+// The viewer is to know this of the screen: how often it shows a new picture, as the browser calls back once for each, and
 // the shape of the window.
 
 const kPictures = 60; // that a rate is told from

@@ -17,7 +17,7 @@ SplitVertices split_vertices(std::span<const uint32_t> indices, std::size_t vert
         if (first == kNoCornerShows) first = corner;
         if (!(tangents[corner] == tangents[first])) others.push_back(corner);
     }
-    KeyNumbers<5> known(others.size());
+    KeyNumbers<std::array<uint32_t, 5>> known(others.size());
     for (const uint32_t corner : others) {
         const Vec4 t = tangents[corner];
         const uint32_t copy =

@@ -17,7 +17,7 @@ constexpr uint32_t kNoCorner = 0xffffffffu;
 uint32_t bits_of_number(float x) { return std::bit_cast<uint32_t>(x + 0.0f); }
 
 std::vector<uint32_t> weld(const TangentMesh& mesh) {
-    KeyNumbers<8> known(mesh.positions.size());
+    KeyNumbers<std::array<uint32_t, 8>> known(mesh.positions.size());
     std::vector<uint32_t> of_vertex(mesh.positions.size());
     for (std::size_t i = 0; i < of_vertex.size(); ++i) {
         const Vec3 p = mesh.positions[i], n = mesh.normals[i];

@@ -71,12 +71,13 @@ void add_lamps(Scene& scene, const Surroundings& room) {
 
 } // namespace
 
-DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages) {
+DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, Surroundings* seen) {
     const OwnLight own = own_light(scene);
     const bool is_weak = own == OwnLight::Glowing && use == SceneUse::Picture && is_light_too_weak(scene);
     if (own != OwnLight::None && !is_weak) return DefaultLight::None;
     const char* why = is_weak ? "what glows in the scene lights too little of it to see by" : "no light in the scene";
     const Surroundings around = look_around(scene);
+    if (seen != nullptr) *seen = around;
     if (around.is_dark) {
         add_lamps(scene, around);
         messages.make_up(fmt::format("{}, a closed room: it gets a row of lamps", why));

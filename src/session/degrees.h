@@ -1,7 +1,7 @@
 #pragma once
 
-// Angles of view as a flag gives them: --fov is in degrees, a camera has radians, and not each angle has degrees that
-// lead back to it unless they are looked for.
+// Angles as people say them, in degrees. What holds radians has not always degrees that lead back to the same bits,
+// unless these are looked for.
 
 #include <bit>
 #include <cstdint>
@@ -11,6 +11,8 @@
 
 namespace pertev {
 
+inline constexpr float kRadiansPerDegree = kPi / 180.0f;
+
 /// Returns the degrees, in (0, 360), that choose_camera() makes `radians` of, to the bit where there are such.
 inline float degrees_for(float radians) {
     const float near = radians * (180 / kPi);
@@ -18,7 +20,7 @@ inline float degrees_for(float radians) {
     for (uint32_t i = 0; i < 16; ++i) {
         for (const uint32_t candidate : {bits - i, bits + i}) {
             const auto degrees = std::bit_cast<float>(candidate);
-            if (degrees * (kPi / 180.0f) == radians) return degrees;
+            if (degrees * kRadiansPerDegree == radians) return degrees;
         }
     }
     return near;
