@@ -159,13 +159,11 @@ void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart&
 /// Where the view turns about what is in the middle of the picture, unless a target was given.
 Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& source, float scene_size) {
     const Camera& camera = record.camera.camera;
-    std::optional<Vec3> target;
-    if (record.camera.target) target = in_scene(scene, *record.camera.target);
     float distance = 0.5f * scene_size;
-    if (!target) {
+    if (!record.camera.target) {
         if (const auto point = source.pick(camera, 0.5f, 0.5f)) distance = max(point->distance, 1e-3f * scene_size);
     }
-    return pose_of(camera, target, record.camera.up, distance);
+    return pose_of(record.camera, scene, distance);
 }
 
 /// Of the GPU that renders; null where pictures are packed by the CPU.

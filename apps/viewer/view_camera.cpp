@@ -13,6 +13,7 @@ namespace pertev {
 namespace {
 
 constexpr float kLeastFov = 0.01f, kMostFov = 179; // degrees, as a path's file may have them
+constexpr int kMostTargets = 256;                  // that are tried to say a place to the bit
 constexpr float kFarthest = 1e9f;                  // metres that anybody may go
 
 bool is_finite_place(const Transform& m) {
@@ -25,6 +26,22 @@ void follow(float& lens, float before, float now) {
 }
 
 } // namespace
+
+Pose pose_of(const CameraSource& source, const Scene& scene, float distance) {
+    const auto asked = source.target ? std::optional(in_scene(scene, *source.target)) : std::nullopt;
+    Pose pose = pose_of(source.camera, asked, source.up, distance);
+    const Transform& placed = source.camera.world_from_camera;
+    if (asked || look_at(pose.eye, pose.target, pose.up) == placed) return pose;
+    // Of the points near what is in focus, the first that leads back to these axes: most are off by a last digit.
+    for (int i = 0; i < kMostTargets; ++i) {
+        const float away = source.camera.focus_distance * (1 + static_cast<float>(i) / kMostTargets);
+        const Vec3 target = told_in_file(scene, pose.eye - away * column(placed, 2));
+        if (!(look_at(pose.eye, target, pose.up) == placed)) continue;
+        pose.target = target;
+        break;
+    }
+    return pose;
+}
 
 ViewCamera::ViewCamera(const StartCamera& start, const Scene& scene)
     : start_(start), scene_(scene), base_(start.camera), pose_(start.pose), name_(start.name), path_(start.path),
@@ -63,8 +80,7 @@ bool ViewCamera::moves_with_time() const {
 void ViewCamera::place(const CameraSource& source, Camera& lens) {
     const Camera before = base_;
     base_ = source.camera;
-    const auto target = source.target ? std::optional(in_scene(scene_, *source.target)) : std::nullopt;
-    pose_ = pose_of(base_, target, source.up, length(pose_.target - pose_.eye));
+    pose_ = pose_of(source, scene_, length(pose_.centre - pose_.eye));
     is_own_ = false;
     follow(lens.fov_y, before.fov_y, base_.fov_y);
     follow(lens.aperture_radius, before.aperture_radius, base_.aperture_radius);
@@ -146,6 +162,7 @@ bool ViewCamera::follow_path(std::optional<double> time_s, Camera& lens) {
 
 void ViewCamera::step(const ClientMessage& message, const Camera& lens, float speed) {
     const Pose before = pose_;
+    if (!is_own_) pose_.target = pose_.centre; // what the view turns about is what it looks at from now on
     const bool is_flat = base_.projection == Projection::Orthographic;
     const float height = is_flat ? base_.ortho_height : 2 * tan(0.5f * lens.fov_y);
     if (message.kind == MessageKind::Move) {

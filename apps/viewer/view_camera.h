@@ -13,6 +13,10 @@
 
 namespace pertev {
 
+/// The pose of a camera of `scene`, which turns about its target or, where none was asked for, about a point `distance`
+/// ahead. Its words say the camera's place to the bit wherever what is in focus can be such a target.
+Pose pose_of(const CameraSource& source, const Scene& scene, float distance);
+
 /// What the view begins with, and goes home to.
 struct StartCamera {
     Camera camera;

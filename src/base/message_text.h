@@ -17,6 +17,9 @@ inline std::string counted(uint64_t count, const char* thing) {
     return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
+/// The verb of so many things.
+inline const char* is_or_are(uint64_t count) { return count == 1 ? "is" : "are"; }
+
 /// Place `i` of a list of the scene; `origin` says where the file describes it.
 inline std::string numbered(const char* kind, std::size_t i, const std::string& name, const std::string& origin = "") {
     const std::string place = origin.empty() ? fmt::format("{} {}", kind, i) : origin;

@@ -84,16 +84,17 @@ public:
             }
         }
         for (const auto& [key, lines] : left_out_) {
-            messages_.leave_out(
-                fmt::format("{}:{}: {} of {}: left out", file_, lines.first_line, counted(lines.times, "line"), key));
+            messages_.leave_out(fmt::format("{}:{}: {} of {} {} left out", file_, lines.first_line,
+                                            counted(lines.times, "line"), key, is_or_are(lines.times)));
         }
         if (too_long_.times > 0) {
-            messages_.leave_out(fmt::format("{}:{}: {} with more than the key takes: the rest left out", file_,
+            messages_.leave_out(fmt::format("{}:{}: {} with more than the key takes; the rest is left out", file_,
                                             too_long_.first_line, counted(too_long_.times, "line")));
         }
         if (unknown_.times > 0) {
-            messages_.leave_out(fmt::format("{}:{}: {} not understood ({} is the first): left out", file_,
-                                            unknown_.first_line, counted(unknown_.times, "line"), first_unknown_));
+            messages_.leave_out(fmt::format("{}:{}: {} that {} not understood ({} is the first) {} left out", file_,
+                                            unknown_.first_line, counted(unknown_.times, "line"),
+                                            is_or_are(unknown_.times), first_unknown_, is_or_are(unknown_.times)));
         }
         return std::move(materials_);
     }

@@ -246,13 +246,13 @@ public:
         leave_out_bad_faces();
         CountedLines no_vertex;
         for (const CountedLines& of_group : without_vertex) no_vertex.add(of_group);
-        say(no_vertex, "face", "with a vertex that is not in the file: left out");
-        say(missing, "face corner", "with a texture coordinate or normal that is not in the file: without it");
-        say(all_of(&PieceParser::bad_numbers), "line", "with a number missing or not readable");
-        say(all_of(&PieceParser::short_faces), "face", "of fewer than three corners: left out");
-        say(all_of(&PieceParser::points_and_lines), "statement", "of points or lines: left out");
-        say(all_of(&PieceParser::free_form), "statement", "of curves or free-form surfaces: left out");
-        say(all_of(&PieceParser::unknown), "line", "not understood: left out");
+        leave_out(no_vertex, "face", "with a vertex that is not in the file");
+        leave_out(all_of(&PieceParser::short_faces), "face", "of fewer than three corners");
+        leave_out(all_of(&PieceParser::points_and_lines), "statement", "of points or lines");
+        leave_out(all_of(&PieceParser::free_form), "statement", "of curves or free-form surfaces");
+        leave_out(all_of(&PieceParser::unknown), "line", "that nothing is known of");
+        warn(missing, "face corner", "with a texture coordinate or normal that is not in the file; it does without");
+        warn(all_of(&PieceParser::bad_numbers), "line", "with a number missing or not readable");
         return std::move(data_);
     }
 
@@ -270,17 +270,21 @@ private:
         if (bad.times == 0) return;
         const auto first =
             std::ranges::find_if(parsers_, [](const PieceParser& parser) { return parser.bad_faces.times > 0; });
-        messages_.leave_out(fmt::format("{}; {} left out", first->first_bad_face, counted(bad.times, "such face")));
+        messages_.leave_out(fmt::format("{}; {} {} left out", first->first_bad_face, counted(bad.times, "such face"),
+                                        is_or_are(bad.times)));
     }
 
-    void say(const CountedLines& what, const char* thing, const char* text) const {
+    std::string told(const CountedLines& what, const char* thing, const char* text) const {
+        return fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text);
+    }
+
+    void leave_out(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        std::string said = fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text);
-        if (said.ends_with("left out")) {
-            messages_.leave_out(std::move(said));
-        } else {
-            messages_.warn(std::move(said));
-        }
+        messages_.leave_out(fmt::format("{} {} left out", told(what, thing, text), is_or_are(what.times)));
+    }
+
+    void warn(const CountedLines& what, const char* thing, const char* text) const {
+        if (what.times > 0) messages_.warn(told(what, thing, text));
     }
 
     void parse_pieces(const FoundMaterials& found_materials) {

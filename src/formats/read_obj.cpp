@@ -229,8 +229,9 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     }
 
     if (unknown > 0 && !options.geometry_only) {
-        messages.leave_out(fmt::format("{}: {} in no .mtl file ({} is the first): taken as grey", file,
-                                       counted(unknown, "material"), shortened(first_unknown)));
+        messages.leave_out(fmt::format("{}: {} that {} in no .mtl file ({} is the first) {} shown grey", file,
+                                       counted(unknown, "material"), is_or_are(unknown), shortened(first_unknown),
+                                       is_or_are(unknown)));
     }
 
     parallel_invoke([&] { loader.load_into(scene); },

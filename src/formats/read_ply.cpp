@@ -99,12 +99,12 @@ public:
                 bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_)));
         }
         if (bad_textures_ > 0) {
-            messages.leave_out(fmt::format("{}: {} of a texture that is not in the header: without it", file_,
-                                           counted(bad_textures_, "face")));
+            messages.leave_out(fmt::format("{}: {} of a texture that is not in the header {} without it", file_,
+                                           counted(bad_textures_, "face"), is_or_are(bad_textures_)));
         }
         if (strays_ > 0) {
-            messages.leave_out(
-                fmt::format("{}: {} of fewer than three corners: left out", file_, counted(strays_, "face")));
+            messages.leave_out(fmt::format("{}: {} of fewer than three corners {} left out", file_,
+                                           counted(strays_, "face"), is_or_are(strays_)));
         }
         return std::move(mesh_);
     }

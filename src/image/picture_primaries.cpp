@@ -42,7 +42,7 @@ std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, con
     }
     if (messages != nullptr) {
         messages->leave_out(
-            fmt::format("{}: its chromaticities are no primaries of colours: left out, its colours are taken "
+            fmt::format("{}: its chromaticities are no primaries of colours and are left out; its colours are taken "
                         "as Rec. 709",
                         name));
     }

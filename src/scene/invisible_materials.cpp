@@ -64,14 +64,16 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Me
     std::size_t invisible = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if (unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMostNamed) continue;
-        messages.warn(
-            fmt::format("{}: {} is invisible: it lets all light through, by an alpha of 0 or below its cutoff "
-                        "(in MTL d 0 or Tr 1); {} with it cannot be seen",
-                        file, numbered("material", i, scene.materials[i].name, scene.materials[i].origin),
-                        counted(unseen[i], "surface")));
+        const Material& material = scene.materials[i];
+        messages.warn(fmt::format(
+            "{}: the material {} is invisible{}: it lets all light through, by an alpha of 0 or below its "
+            "cutoff (in MTL d 0 or Tr 1); {} with it cannot be seen",
+            file, material.name.empty() ? fmt::format("{}", i) : material.name,
+            material.origin.empty() ? "" : fmt::format(" ({})", material.origin), counted(unseen[i], "surface")));
     }
     if (invisible > kMostNamed) {
-        messages.warn(fmt::format("{}: {} invisible", file, counted(invisible - kMostNamed, "further material")));
+        messages.warn(fmt::format("{}: {} {} invisible", file, counted(invisible - kMostNamed, "further material"),
+                                  is_or_are(invisible - kMostNamed)));
     }
 }
 

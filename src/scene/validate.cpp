@@ -122,20 +122,20 @@ private:
     }
 
     void report() {
-        const auto text = [&](uint64_t count, const char* thing, const char* what) {
-            return fmt::format("{}: {} {}", file_, counted(count, thing), what);
+        const auto text = [&](uint64_t count, const char* thing, const char* which, const char* done) {
+            return fmt::format("{}: {} {} {} {}", file_, counted(count, thing), which, is_or_are(count), done);
         };
-        const auto say = [&](uint64_t count, const char* thing, const char* what) {
-            if (count > 0) messages_.warn(text(count, thing, what));
+        const auto warn = [&](uint64_t count, const char* thing, const char* which, const char* done) {
+            if (count > 0) messages_.warn(text(count, thing, which, done));
         };
         if (repairs_.not_finite > 0) {
-            messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite: left out"));
+            messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
         }
-        say(repairs_.without_area, "triangle", "without area: left out");
-        say(repairs_.normals, "normal", "of length zero or not finite: replaced by the surface's own");
-        say(repairs_.tangents, "tangent", "of length zero or not finite: replaced");
-        say(repairs_.texture_coordinates, "texture coordinate", "not finite: set to 0");
-        say(repairs_.colors, "vertex colour", "outside [0, 1]: clamped");
+        warn(repairs_.without_area, "triangle", "without area", "left out");
+        warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the surface's own");
+        warn(repairs_.tangents, "tangent", "of length zero or not finite", "replaced");
+        warn(repairs_.texture_coordinates, "texture coordinate", "that is not finite", "set to 0");
+        warn(repairs_.colors, "vertex colour", "outside [0, 1]", "clamped");
     }
 
     void drop_empty_meshes() {

@@ -20,8 +20,8 @@ public:
         for (std::size_t i = 0; i < scene_.images.size(); ++i) image(i);
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) material(i);
         if (clamped_ > 0) {
-            messages_.warn(fmt::format("{}: {} of materials outside the range: clamped; the first is {}", file_,
-                                       counted(clamped_, "number"), first_clamped_));
+            messages_.warn(fmt::format("{}: {} of materials outside the range {} clamped; the first is {}", file_,
+                                       counted(clamped_, "number"), is_or_are(clamped_), first_clamped_));
         }
         if (scene_.environment) environment(*scene_.environment);
     }

@@ -228,7 +228,7 @@ class WhatIsRefused(CliTest):
 
     def test_what_was_left_out_is_said_before_the_error_that_follows_from_it(self):
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
-        outcome = self.refuse(2, "info", "flat.obj", says=["1 triangle without area: left out", "no geometry"])
+        outcome = self.refuse(2, "info", "flat.obj", says=["1 triangle without area is left out", "no geometry"])
         self.assertLess(outcome.stderr.index("without area"), outcome.stderr.index("no geometry"))
 
     def test_a_sample_that_is_not_finite_fails_only_a_strict_render_and_is_always_counted(self):

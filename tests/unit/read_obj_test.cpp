@@ -269,10 +269,10 @@ TEST_CASE("mtl: what is not read is a warning with the first line") {
                                "Kd 1 0 0\nnewmtl m\nfoo 3\nmap_Normal x.png\nKd spectral x.rfl\nmap_Ks t.png\n"
                                "map_Ks u.png\nNs 10 11\nPc 0.5\nPs 0\nKa 1 1 1\nsharpness 60\nmap_Ka t.png\n");
     CHECK(l.said("a.mtl:1: 3 lines not understood (Kd is the first)"));
-    CHECK(l.said("a.mtl:5: 1 line of Kd spectral: left out"));
-    CHECK(l.said("a.mtl:6: 2 lines of map_Ks: left out"));
+    CHECK(l.said("a.mtl:5: 1 line of Kd spectral is left out"));
+    CHECK(l.said("a.mtl:6: 2 lines of map_Ks are left out"));
     CHECK(l.said("a.mtl:8: 1 line with more than the key takes"));
-    CHECK(l.said("a.mtl:9: 1 line of Pc: left out"));
+    CHECK(l.said("a.mtl:9: 1 line of Pc is left out"));
     CHECK(l.messages.all().size() == 5);
     CHECK(l.material("m").base_color == grey(0.5f));
 }

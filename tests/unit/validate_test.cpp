@@ -78,8 +78,8 @@ TEST_CASE("triangles with a vertex that is not finite, and those without area, a
     CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
     for (const Vec3 p : mesh.positions) CHECK(is_finite(p));
     REQUIRE(result.messages.all().size() == 2);
-    CHECK(result.messages.all()[0].text == "file: 2 triangles with a vertex that is not finite: left out");
-    CHECK(result.messages.all()[1].text == "file: 3 triangles without area: left out");
+    CHECK(result.messages.all()[0].text == "file: 2 triangles with a vertex that is not finite are left out");
+    CHECK(result.messages.all()[1].text == "file: 3 triangles without area are left out");
 }
 
 TEST_CASE("tiny and huge triangles have an area") {
@@ -123,9 +123,8 @@ TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where
     CHECK(result.scene.instances[0].name == "one");
     CHECK(result.scene.instances[1].name == "last");
     REQUIRE(result.messages.all().size() == 1);
-    CHECK(result.messages.all()[0].text ==
-          "file: 2 instances with a singular transform, such as a scale of 0: hidden; "
-          "the first is /nodes/5 hidden");
+    CHECK(result.messages.all()[0].text == "file: 2 instances with a singular transform, such as a scale of 0: hidden; "
+                                           "the first is /nodes/5 hidden");
 
     check_refused("file: no geometry, not one triangle to see: 1 instance with a singular transform, the first of them "
                   "/nodes/5 hidden; expected scales "
@@ -317,5 +316,5 @@ TEST_CASE("messages name what has a name, number the rest, and count one thing a
     });
     const Result result = validated([](Scene& scene) { scene.meshes[0].indices[1] = 0; });
     REQUIRE(result.messages.all().size() == 1);
-    CHECK(result.messages.all()[0].text == "file: 1 triangle without area: left out");
+    CHECK(result.messages.all()[0].text == "file: 1 triangle without area is left out");
 }

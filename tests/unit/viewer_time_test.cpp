@@ -4,7 +4,9 @@
 
 #include "apps/viewer/scene_clock.h"
 #include "apps/viewer/view_camera.h"
+#include "scene/scene_origin.h"
 #include "session/choose_camera.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
 
@@ -193,4 +195,30 @@ TEST_CASE("a view that is made up is made up again for another shape of the wind
     CHECK(away() == own);
     camera.go_home(std::nullopt, lens);
     CHECK(away() == 4);
+}
+
+TEST_CASE("a made-up view is said to the bit by eye and target before anybody steps") {
+    test::Random random(5);
+    for (int i = 0; i < 200; ++i) {
+        Scene scene;
+        scene.materials.emplace_back();
+        Mesh mesh;
+        const Vec3 corner = {random.within(-9, 9), random.within(-9, 9), random.within(-9, 9)};
+        mesh.positions = {corner, corner + Vec3{1, 0.1f, 0}, corner + Vec3{0, random.within(0.1f, 5), 1}};
+        mesh.indices = {0, 1, 2};
+        scene.meshes.push_back(std::move(mesh));
+        scene.instances.emplace_back();
+        Messages unsaid;
+        const float aspect = random.within(0.5f, 2);
+        StartCamera start;
+        start.camera = choose_camera({}, scene, aspect, unsaid);
+        start.pose = pose_of(CameraSource{.camera = start.camera}, scene, 3);
+        CHECK(length(start.pose.centre - start.pose.eye) == doctest::Approx(3));
+        const ViewCamera view(start, scene);
+        CHECK(view.is_said_by_pose());
+        const Pose pose = view.pose();
+        const CameraChoice said = {
+            .eye = in_file(scene, pose.eye), .target = in_file(scene, pose.target), .up = pose.up};
+        CHECK(choose_camera(said, scene, aspect, unsaid).world_from_camera == start.camera.world_from_camera);
+    }
 }

@@ -91,6 +91,30 @@ TEST_CASE("a lamp whose texture is black gives no light, so there is a sky") {
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::Sky);
 }
 
+TEST_CASE("lights without a size get a sky beside them only where they reach nothing that is seen") {
+    Scene scene;
+    scene.materials.push_back({.name = "floor"});
+    add_quad(scene, {}, {0, 1, 0}, 2, 0);
+    scene.lights.push_back({.name = "lamp", .position = {0, 2, 0}, .intensity = grey(100)});
+    Light& light = scene.lights.front();
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
+    light.range = 1.5f; // ends above the floor
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+    CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
+    CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
+    light = {.name = "lamp", .kind = LightKind::Spot, .position = {0, 2, 0}, .direction = {0, -1, 0}};
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
+    light.direction = {0, 1, 0};
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+    light = {.name = "sun", .kind = LightKind::Directional, .direction = {0, -1, 0}};
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
+    add_quad(scene, {0, 3, 0}, {0, 1, 0}, 20, 0); // a roof
+    Camera from_beside;
+    from_beside.world_from_camera = look_at({0, 2, 4}, {}, {0, 1, 0});
+    scene.cameras.push_back(from_beside);
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
+}
+
 TEST_CASE("the first camera of the file decides, and how bright the lamp is does not") {
     Scene scene = make_lit_floor();
     for (const float scale : {1e-6f, 1e6f}) {

@@ -27,8 +27,9 @@ bool has_light(const TextureImage& image) {
 }
 
 enum class OwnLight {
-    Enough,  // lights or an environment, or all is unlit and shows without light
-    Glowing, // surfaces alone
+    Enough,   // an environment, or all is unlit and shows without light
+    Punctual, // lights without a size
+    Glowing,  // surfaces alone
     None,
 };
 
@@ -36,7 +37,7 @@ OwnLight own_light(const Scene& scene) {
     if (scene.environment) return OwnLight::Enough;
     const bool is_lit = std::any_of(scene.lights.begin(), scene.lights.end(),
                                     [](const Light& light) { return max_component(light.intensity) > 0; });
-    if (is_lit) return OwnLight::Enough;
+    if (is_lit) return OwnLight::Punctual;
     std::vector<bool> is_used(scene.materials.size());
     for (const Instance& instance : scene.instances) is_used[instance.material] = true; // hidden or not: it may come
     bool is_all_unlit = true;
@@ -73,9 +74,13 @@ void add_lamps(Scene& scene, const Surroundings& room) {
 
 DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, Surroundings* seen) {
     const OwnLight own = own_light(scene);
-    const bool is_weak = own == OwnLight::Glowing && use == SceneUse::Picture && is_light_too_weak(scene);
+    const bool may_be_weak = use == SceneUse::Picture && (own == OwnLight::Glowing || own == OwnLight::Punctual);
+    const bool is_weak =
+        may_be_weak && (own == OwnLight::Glowing ? is_light_too_weak(scene) : lights_nothing_seen(scene));
     if (own != OwnLight::None && !is_weak) return DefaultLight::None;
-    const char* why = is_weak ? "what glows in the scene lights too little of it to see by" : "no light in the scene";
+    const char* why = !is_weak                    ? "no light in the scene"
+                      : own == OwnLight::Punctual ? "the lights of the scene reach nothing that is seen"
+                                                  : "what glows in the scene lights too little of it to see by";
     const Surroundings around = look_around(scene);
     if (seen != nullptr) *seen = around;
     if (around.is_dark) {

@@ -16,6 +16,7 @@ constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16, kDepth 
 constexpr float kVisible = 0.18f / 16;                      // four stops below middle grey
 constexpr float kBurnt = 16;                                // agx makes white of it
 constexpr double kShareToSeeBy = 0.75, kMostBurnt = 0.0625; // of the surfaces in the picture
+constexpr double kNextToNothing = 0.03125;
 
 SeenShares look_from(const Camera& camera, const Scene& scene) {
     Queue queue = Queue::make_cpu();
@@ -79,5 +80,7 @@ bool is_light_too_weak(const Scene& scene) {
     const SeenShares seen = shares_seen(scene);
     return seen.lit < kShareToSeeBy || seen.burnt > kMostBurnt;
 }
+
+bool lights_nothing_seen(const Scene& scene) { return shares_seen(scene).lit < kNextToNothing; }
 
 } // namespace pertev

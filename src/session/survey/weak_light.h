@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether the surfaces that glow light a scene well enough to see it by.
+// Whether what gives light in a scene lights it well enough to see it by.
 
 #include "scene/scene.h"
 
@@ -20,5 +20,9 @@ SeenShares shares_seen(const Scene& scene);
 /// The light is too weak where less than three quarters of what is shown is lit; or where over a sixteenth is burnt, as
 /// labels are that glow past what is behind them: they dazzle, and would be read by another light.
 bool is_light_too_weak(const Scene& scene);
+
+/// Whether next to nothing of what is shown is lit, as where every light is out of range, turned away or walled in. Of
+/// lights without a size no more is asked: whoever placed them meant the shadows that they leave.
+bool lights_nothing_seen(const Scene& scene);
 
 } // namespace pertev
